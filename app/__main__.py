@@ -1,6 +1,6 @@
 """`python -m app` is `gaitwright`; frozen into a program of its own, it is each process that this one starts, too.
 
-Such a program is no Python that takes a module to run. It begins anew as itself, and what it is to be is told by its
+Such a program is no Python that takes a module to run. It begins again as itself, and what it is to be is given by its
 arguments: a worker of a batch by those of `multiprocessing`, the reader of foreign files by a word.
 """
 
@@ -8,7 +8,7 @@ import os
 import sys
 
 LIBRARIES, LIBRARIES_BEFORE = "LD_LIBRARY_PATH", "LD_LIBRARY_PATH_ORIG"
-BEGIN_ANEW = "PYINSTALLER_RESET_ENVIRONMENT"
+BEGIN_AGAIN = "PYINSTALLER_RESET_ENVIRONMENT"
 
 
 def begin() -> int:
@@ -37,13 +37,13 @@ def _keep_own_libraries() -> None:
     """Leave the system's programs that we start (players, the viewer, the desktop's) their own libraries.
 
     What started us put ours before the system's for all processes to come; this one has looked there already. Ours get
-    them again, when they are told to begin as the first one did.
+    them again, when they are given to begin as the first one did.
     """
     before = os.environ.pop(LIBRARIES_BEFORE, None)
     os.environ.pop(LIBRARIES, None)
     if before:
         os.environ[LIBRARIES] = before
-    os.environ[BEGIN_ANEW] = "1"
+    os.environ[BEGIN_AGAIN] = "1"
 
 
 if __name__ == "__main__":

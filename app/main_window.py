@@ -32,7 +32,7 @@ from app.storage.layout import default_folder
 from app.system.logs import log_qt_messages
 from app.system.settings import Scheme, Settings
 from app.theme.notifier import ThemeNotifier, load_fonts
-from app.widgets.accessible_role import tell_roles
+from app.widgets.accessible_role import show_roles
 from app.widgets.focus_ring import FocusRing
 from app.widgets.folder_dialog import keep_no_visited_folders
 from app.widgets.grid import COMPACT_BELOW
@@ -56,7 +56,7 @@ SMALLEST_SIZE = (640, 480)
 DROP_EDGE = 2.5
 POLL_MS = 1000
 SWITCH_S = 0.001  # a frame needs Python several times, and waits so long each time while an analysis runs beside it
-IN_ANOTHER_LANGUAGE = 90  # what the event loop ends with where the window is to be opened anew
+IN_ANOTHER_LANGUAGE = 90  # what the event loop ends with where the window is to be opened again
 PREPARE_AFTER_MS = 200  # the first frame goes before
 MAKE_EVERY_MS = 300  # of what is made before it is needed; what the user does comes between
 ACTIVITY = frozenset(
@@ -92,7 +92,7 @@ class MainWindow(QWidget):
         self._has_come_back = False  # the library, and nobody has read what was recorded meanwhile
         self._must_refresh = False  # another station did something under the cover
         self._is_dark: bool | None = None  # not yet known
-        self._apply_settings()  # before there is anything to be styled anew
+        self._apply_settings()  # before there is anything to be styled again
         self.setWindowTitle(" – ".join(("Gaitwright", tr(PURPOSE))))
         self.setAcceptDrops(True)
         self.setMinimumSize(*SMALLEST_SIZE)
@@ -176,7 +176,7 @@ class MainWindow(QWidget):
 
     def eventFilter(self, watched: QObject, event: QEvent) -> bool:
         """Hear what the user does, from the window of the desktop: of the application's every event, a hundred times
-        as many would be heard."""
+        as many would be received."""
         if event.type() in ACTIVITY:
             self.idle.note_activity()
         return False
@@ -198,7 +198,7 @@ class MainWindow(QWidget):
         self._settings.changed.connect(self._apply_settings)
         self._look.changed.connect(self._on_look_changed)
         QGuiApplication.styleHints().colorSchemeChanged.connect(self._apply_settings)
-        self.session.demonstration_wished.connect(self.open_demonstration)
+        self.session.demonstration_requested.connect(self.open_demonstration)
         for keys, slot in (
             (QKeySequence.StandardKey.Open, self._on_open),
             ("Ctrl+D", self._on_demonstration),
@@ -215,10 +215,10 @@ class MainWindow(QWidget):
         self.entry.entered.connect(self._on_entered)
         self.entry.uncovered.connect(self._on_uncovered)
         self.entry.left.connect(self._log_out)
-        self.entry.first_start.demonstration_wished.connect(self.open_demonstration)
-        self.entry.log_in.demonstration_wished.connect(self.open_demonstration)
-        self.entry.join.demonstration_wished.connect(self.open_demonstration)
-        self.controller.refused.connect(self._on_told)
+        self.entry.first_start.demonstration_requested.connect(self.open_demonstration)
+        self.entry.log_in.demonstration_requested.connect(self.open_demonstration)
+        self.entry.join.demonstration_requested.connect(self.open_demonstration)
+        self.controller.refused.connect(self._on_reported)
         self.controller.gone.connect(self._on_library_gone)
         self.controller.back.connect(self._on_library_back)
         self.controller.changed_elsewhere.connect(self._on_changed_elsewhere)
@@ -291,12 +291,12 @@ class MainWindow(QWidget):
 
             self._home = Home(self._look, self.controller, self._settings)
             self.screens.addWidget(self._home)
-            self._home.session_wished.connect(self._on_session_wished)
+            self._home.session_requested.connect(self._on_session_requested)
             self._home.session_opened.connect(self._on_session_opened)
-            self._home.demonstration_wished.connect(self.open_demonstration)
-            self._home.own_library_wished.connect(self._log_out)
-            self._home.help_wished.connect(self._show_help)
-            self._home.lock_wished.connect(self.idle.lock_now)
+            self._home.demonstration_requested.connect(self.open_demonstration)
+            self._home.own_library_requested.connect(self._log_out)
+            self._home.help_requested.connect(self._show_help)
+            self._home.lock_requested.connect(self.idle.lock_now)
             self._home.settings_left.connect(self._on_settings_left)
         return self._home
 
@@ -308,7 +308,7 @@ class MainWindow(QWidget):
         if self._wizard is None:
             self.prepare()
 
-    def _on_session_wished(self, patient: "StoredPatient | None") -> None:
+    def _on_session_requested(self, patient: "StoredPatient | None") -> None:
         self._entered_wizard().begin(patient)
 
     def _on_session_opened(self, session_id: UUID) -> None:
@@ -327,8 +327,8 @@ class MainWindow(QWidget):
             self._wizard = Wizard(self._look, self.controller, self._settings)
             self.screens.addWidget(self._wizard)
             self._wizard.left.connect(self._on_wizard_left)
-            self._wizard.settings_wanted.connect(self._on_settings_wanted)
-            self._wizard.help_wanted.connect(self._show_help)
+            self._wizard.settings_required.connect(self._on_settings_required)
+            self._wizard.help_required.connect(self._show_help)
         return self._wizard
 
     def _on_wizard_left(self) -> None:
@@ -336,7 +336,7 @@ class MainWindow(QWidget):
             self._home.patients.read()
             self._show(self._home)
 
-    def _on_settings_wanted(self) -> None:
+    def _on_settings_required(self) -> None:
         """Show the settings; Back leads to the visit again."""
         if self._home is not None:
             self._home.show_settings()
@@ -363,28 +363,28 @@ class MainWindow(QWidget):
         elif self.entry is not None:
             self.entry.begin()
 
-    def _on_told(self, what: str, remedy: str) -> None:
+    def _on_reported(self, what: str, remedy: str) -> None:
         if self._home is not None and self.controller.state is not None:
-            self._home.banner.tell(what, remedy)
+            self._home.banner.show_message(what, remedy)
         elif self.entry is not None:
-            self.entry.tell(what, remedy)
+            self.entry.show_message(what, remedy)
 
     def _on_library_gone(self, what: str, then: str) -> None:
-        """Say it at home and on the cover; a visit says it itself."""
+        """Say it at home and on the cover; a visit states it itself."""
         if self._home is not None:
-            self._home.banner.tell(what, then)
+            self._home.banner.show_message(what, then)
         if self.entry is not None and self.is_covered:
-            self.entry.tell(what, then)
+            self.entry.show_message(what, then)
 
     def _on_library_back(self, what: str, then: str) -> None:
         self._on_library_gone(what, then)
         self._has_come_back = True
-        self._on_changed_elsewhere()  # nobody heard what others did meanwhile
+        self._on_changed_elsewhere()  # nobody received what others did meanwhile
         if not self.is_covered:
             self._recover_what_came_home()
 
     def _on_changed_elsewhere(self) -> None:
-        """Another station of the clinic did something: what is on the screen of it is read anew."""
+        """Another station of the clinic did something: what is on the screen of it is read again."""
         self._must_refresh = self.is_covered  # under the cover it waits for the passphrase
         if self._home is None or self.is_covered:
             return
@@ -426,7 +426,7 @@ class MainWindow(QWidget):
             self._wizard.asked.cover(is_covered=True)
         self.entry.cover(state.operator.code, self._is_recording, is_asked_for=self.idle.is_asked_for)
         if self.controller.gone_words is not None:
-            self.entry.tell(*self.controller.gone_words)
+            self.entry.show_message(*self.controller.gone_words)
         self.controller.lock()
 
     def _on_uncovered(self) -> None:
@@ -445,7 +445,7 @@ class MainWindow(QWidget):
     def _apply_settings(self) -> None:
         scheme, system = self._settings.scheme, QGuiApplication.styleHints().colorScheme()
         is_dark = scheme is Scheme.DARK or (scheme is Scheme.SYSTEM and system is Qt.ColorScheme.Dark)
-        if is_dark is not self._is_dark:  # else what the look was told otherwise holds
+        if is_dark is not self._is_dark:  # else what the look was reported otherwise holds
             self._is_dark = is_dark
             self._look.set_dark(is_dark)
         if self._settings.scale != self._look.theme.scale:
@@ -527,7 +527,7 @@ def open_window(argv: list[str], language: str = "") -> int:
         What stood behind the program's name.
     language
         What to speak from now on, as "de"; empty: what was chosen last. Another one chosen in the settings opens the
-        window anew, which is locked then: every word of the old one was written in the language before.
+        window again, which is locked then: every word of the old one was written in the language before.
     """
     signal.signal(signal.SIGINT, signal.SIG_DFL)  # Ctrl-C in the terminal ends it; Python would wait for the event loop
     sys.setswitchinterval(SWITCH_S)
@@ -538,7 +538,7 @@ def open_window(argv: list[str], language: str = "") -> int:
     keep_no_visited_folders()
     app.setStyle("Fusion")
     load_fonts()
-    tell_roles()
+    show_roles()
     settings, folders = Settings(own_settings()), [word for word in app.arguments()[1:] if not word.startswith("-")]
     settings.language = language or settings.language
     settings.language_changed.connect(partial(app.exit, IN_ANOTHER_LANGUAGE))

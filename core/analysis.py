@@ -165,9 +165,9 @@ def _analyse_span(
 
 def _affected_side(patient: Patient) -> Side | None:
     """The side that symmetry compares with the sound one; None where none or both are affected."""
-    said = (patient.affected_side, patient.prosthetic_side)
-    one = [side for side in said if side in set(Side)]
-    return Side(one[0]) if one and "both" not in said else None
+    stated = (patient.affected_side, patient.prosthetic_side)
+    one = [side for side in stated if side in set(Side)]
+    return Side(one[0]) if one and "both" not in stated else None
 
 
 def _stiff_sides(patient: Patient) -> frozenset[Side]:
@@ -356,7 +356,7 @@ def _slipped(
         walks = [recording for recording in tracks.span if recording.name in calibration.walks]
         for walk, slip in slips_in_walks(tracks, walks, calibration.joints, lags):
             if (walk.name, slip.site.side) in slipped:
-                continue  # an earlier slip, told already
+                continue  # an earlier slip, reported already
             numbers = {"from_s": round(float(slip.from_s), 1), "turn_deg": round(float(np.rad2deg(abs(slip.turn_rad))))}
             findings.append(Finding("strap_slipped", Severity.WARNING, f"{walk.name}, {slip.site}", numbers))
             slipped[walk.name, slip.site.leg_side] = slip.sure_until_s
@@ -366,7 +366,7 @@ def _slipped(
 
 
 def _until_free_motion(span: tuple[Recording, ...], walk: Recording, site: Site) -> list[Recording]:
-    """Walks after one in which the sensor at `site` slipped, before its axes were identified anew."""
+    """Walks after one in which the sensor at `site` slipped, before its axes were identified again."""
     later = []
     for recording in span[span.index(walk) + 1 :]:
         if recording.kind is RecordingKind.FREE_MOTION and recording.holds(site):
@@ -394,7 +394,7 @@ def _lags_in(recording: Recording, lags: dict[tuple[str, Joint], float]) -> dict
 def _clock_offset_s(
     tracks: SensorTracks, recording: Recording, side: Side, lags: dict[tuple[str, Joint], float]
 ) -> float:
-    """What brings the clock of the sensor that tells the events to the thigh's."""
+    """What brings the clock of the sensor that reports the events to the thigh's."""
     site = site_of_events(tracks, recording, side)
     return _offset_of_s(recording, site or Site(f"{side}_{Segment.SHANK}"), lags)
 

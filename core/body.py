@@ -64,7 +64,7 @@ class JointKind(StrEnum):
 
 
 class Joint(StrEnum):
-    """A joint between two neighbouring segments. Flexion (knee, hip) and dorsiflexion are positive on both legs."""
+    """A joint between two adjacent segments. Flexion (knee, hip) and dorsiflexion are positive on both legs."""
 
     LEFT_KNEE = "left_knee"
     LEFT_ANKLE = "left_ankle"

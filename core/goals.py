@@ -42,7 +42,7 @@ OF_TESTS = {  # of timed tests, as `core.timed.measures` calls them
 NOT_BETWEEN = (STRIDE_LENGTH,)
 MOST = {**OF_LEGS, **OF_WALKS, **OF_TESTS}
 GOAL_COLUMNS = tuple(MOST)
-LEAST = 0.01  # but legs may be wanted not to differ at all
+LEAST = 0.01  # but legs may be required not to differ at all
 MOST_NOTE = 200  # letters
 
 DAYS = ("agreed", "until", "ended")
@@ -139,14 +139,14 @@ class AgreedGoals:
     day: datetime.date | None = None
 
     @property
-    def told(self) -> tuple[Goal, ...]:
-        """Goals of which may be said whether they are reached: agreed before the day, and held at its end."""
+    def reported(self) -> tuple[Goal, ...]:
+        """Goals of which may be stated whether they are reached: agreed before the day, and held at its end."""
         return tuple(goal for goal in self.held if self.day is not None and goal.agreed < self.day)
 
     def is_chosen(self, column: str, sides: Iterable[Side]) -> bool:
         """Whether a goal was of a column of one of these legs, of the walk, or of what the legs differ by."""
-        wanted = {GoalOf.WALK, GoalOf.BETWEEN, *(GoalOf(side.value) for side in sides)}
-        return any(one == column and of in wanted for one, of in self.chosen)
+        required = {GoalOf.WALK, GoalOf.BETWEEN, *(GoalOf(side.value) for side in sides)}
+        return any(one == column and of in required for one, of in self.chosen)
 
     def of(self, column: str, side: Side | None = None) -> tuple[Goal, ...]:
         """The goals of a column that are no other leg's; without a side, all of them."""
@@ -202,9 +202,9 @@ def brought_together(goals: Iterable[Goal], others: Iterable[Goal]) -> tuple[Goa
 
 def goal_table(goal: Goal) -> dict[str, object]:
     """A goal as plain values, for a file: what is empty is left out."""
-    told = {"measure": goal.column, **asdict(goal)}
-    del told["column"]
-    plain = {name: value.isoformat() if isinstance(value, datetime.date) else value for name, value in told.items()}
+    reported = {"measure": goal.column, **asdict(goal)}
+    del reported["column"]
+    plain = {name: value.isoformat() if isinstance(value, datetime.date) else value for name, value in reported.items()}
     plain["of"] = str(goal.of)
     return {name: value for name, value in plain.items() if name == "value" or value not in (None, "", False)}
 
@@ -214,14 +214,14 @@ def goal_of_table(table: object) -> Goal | None:
     names = {"measure", *(field.name for field in fields(Goal))} - {"column"}
     if not isinstance(table, Mapping) or not {"measure", "of", "value", "agreed"} <= set(table) <= names:
         return None
-    told = dict(table)
-    value, is_at_most = told.pop("value"), told.pop("is_at_most", False)
+    reported = dict(table)
+    value, is_at_most = reported.pop("value"), reported.pop("is_at_most", False)
     is_number = isinstance(value, int | float) and not isinstance(value, bool)
-    if not is_number or not isinstance(is_at_most, bool) or not all(isinstance(one, str) for one in told.values()):
+    if not is_number or not isinstance(is_at_most, bool) or not all(isinstance(one, str) for one in reported.values()):
         return None
     try:
-        days = {name: datetime.date.fromisoformat(told.pop(name)) for name in DAYS if name in told}
-        named: dict[str, Any] = {**days, **told, "of": GoalOf(told.pop("of")), "is_at_most": is_at_most}
+        days = {name: datetime.date.fromisoformat(reported.pop(name)) for name in DAYS if name in reported}
+        named: dict[str, Any] = {**days, **reported, "of": GoalOf(reported.pop("of")), "is_at_most": is_at_most}
         return Goal(named.pop("measure"), value=float(value), **named)
     except (ValueError, OverflowError):
         return None

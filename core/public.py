@@ -1,4 +1,4 @@
-"""The public names of `core`, each from the module that defines it; `core/__init__.py` says what they are."""
+"""The public names of `core`, each from the module that defines it; `core/__init__.py` states what they are."""
 
 from core.analysis import analyse as analyse
 from core.body import Joint as Joint

@@ -50,10 +50,10 @@ class JointCalibration:
     `clinical_sign` (1 or -1) turns the twist about the axes (distal against proximal) into flexion or dorsiflexion;
     where `is_sign_certain` is False it is no more than the likelier one. `zero_rad` is subtracted from the twist
     before the sign, `offset_rad` (the goniometer's value) added after it.
-    `is_same_joint` is False where both sensors do not move as neighbours; its evidence is `disagreement`, what the best
-    common joint leaves of their accelerations (0 nothing, 1 all), and `is_lag_at_border`, that they would coincide best
-    at a lag that no clock has. `is_clock_shared`: both sensors are told to share one clock, so there is no lag to find.
-    `is_prosthetic`: its side is declared to wear a prosthesis.
+    `is_same_joint` is False where both sensors do not move as adjacent segments; its evidence is `disagreement`, what
+    the best common joint leaves of their accelerations (0 nothing, 1 all), and `is_lag_at_border`, that they would
+    coincide best at a lag that no clock has. `is_clock_shared`: both sensors are given to share one clock, so there is
+    no lag to find. `is_prosthetic`: its side is declared to wear a prosthesis.
     """
 
     joint: Joint
@@ -159,7 +159,7 @@ class RecordingAnalysis:
         What a sensor on the pelvis adds: hip angles, the pelvis itself, turns of the body, and how far the legs' clocks
         are apart. Empty and None without one.
     verdicts
-        What may be said of it; whoever changes what is above makes them anew.
+        What may be stated about it; whoever changes what is above makes them again.
     timed
         Of a walk that is a timed test.
     """
@@ -195,7 +195,7 @@ class RecordingAnalysis:
 
 @dataclass(frozen=True, slots=True)
 class Analysis:
-    """Everything one session tells. `calibrations` one per span of validity, in order of time.
+    """Everything one session reports. `calibrations` one per span of validity, in order of time.
 
     `stiff_sides` are those that a patient's device or condition may stiffen: the affected and the prosthetic ones.
     """

@@ -22,7 +22,7 @@ IntArray = NDArray[np.int64]
 
 
 class RateKind(StrEnum):
-    """What one angular-rate sample stands for: the instant of its stamp, or the mean over the interval before it."""
+    """What one angular-rate sample represents: the instant of its stamp, or the mean over the interval before it."""
 
     INSTANTANEOUS = "instantaneous"
     AVERAGED = "averaged"
@@ -104,7 +104,7 @@ class ImuBlock:
 
 @dataclass(frozen=True, slots=True)
 class SensorInfo:
-    """What is known of the sensor worn at one site. `rate_kind` None: not told, to be found from the data.
+    """What is known of the sensor worn at one site. `rate_kind` None: not reported, to be found from the data.
 
     Sensors whose `clock` is the same share one; empty: not known.
     """
@@ -139,10 +139,10 @@ class Patient:
 class Recording:
     """All sensors from one start to one stop.
 
-    `imu` says which site each block of samples was worn at; the sites share one clock up to a small lag.
+    `imu` states which site each block of samples was worn at; the sites share one clock up to a small lag.
     `left_out_s` holds, for each side, one time inside of each stride that a person has left out, ascending, seconds on
     the recording's clock: a time goes on naming the same stride when its events are found a little earlier or later.
-    `alignment` is what was changed at the prosthesis before the walk; None where nobody has said anything.
+    `alignment` is what was changed at the prosthesis before the walk; None where nobody has stated anything.
     `test` is the timed test that the walk is, with the instants of its keys; None of other walks.
     """
 
@@ -166,7 +166,7 @@ class Recording:
 
 @dataclass(frozen=True, slots=True)
 class Session:
-    """One visit of one patient: its recordings in order of time, and what was said about them.
+    """One visit of one patient: its recordings in order of time, and what was stated about them.
 
     `zero_rad` holds goniometer values while standing in the clinical sign, `turned_sign` the user's word on a joint's
     sign: -1 turns the sign that was found, 1 confirms it. `findings` is what the reader noticed.

@@ -18,7 +18,7 @@ if TYPE_CHECKING:
 __all__ = (
     "read_session", "write_session", "FileRefusedError",
     "simulate", "WalkerSettings", "Standing", "FreeMotion", "Walk",
-    "SensorProtocol", "Framer", "Heard", "Channel", "Decoder", "DecodedSensor", "SourceInfo", "SensorDetails",
+    "SensorProtocol", "Framer", "Received", "Channel", "Decoder", "DecodedSensor", "SourceInfo", "SensorDetails",
     "list_ports", "PortInfo", "SerialPort", "ByteSource", "CsvSerial", "Columns", "ReplaySource", "LiveSource",
     "host_time_ns", "SourceLostError", "SourceRefusedError",
 )

@@ -41,9 +41,10 @@ class Driver:
     bauds
         Of its serial ports, the likeliest first.
     hint
-        What a port's description says where one of these is plugged in, so that it is spoken to although it is silent.
+        What a port's description states where one of these is plugged in, so that it is spoken to although it is
+        silent.
     knock
-        Harmless to anything else; what is silent until it is told to send answers with `knocked`.
+        Harmless to anything else; what is silent until it is given to send answers with `knocked`.
     """
 
     key: str

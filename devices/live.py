@@ -13,7 +13,7 @@ Keep = Callable[[bytes], None]
 
 
 class SourceRefusedError(Exception):
-    """A source that does not open. Says what is wrong and what to do.
+    """A source that does not open. States what is wrong and what to do.
 
     Both are sentences without their full stop, written out where they are raised: so they are gathered for the
     translators, and whoever shows them puts them into the user's language. `values` fill their braces.
@@ -29,14 +29,14 @@ class SourceLostError(Exception):
 
 
 class SourceRestartedError(SourceLostError):
-    """A source that sends anew, after it was to send nothing: what lies between was not lost."""
+    """A source that sends again, after it was to send nothing: what lies between was not lost."""
 
 
 @dataclass(frozen=True, slots=True)
 class SensorDetails:
-    """What a sensor says of itself. `rate_hz`, `rate_kind` and `battery` (0 to 1) None: it does not tell.
+    """What a sensor states of itself. `rate_hz`, `rate_kind` and `battery` (0 to 1) None: it does not report.
 
-    `clock` is the same of those that share one; empty: its own. Not `is_loss_seen`: it tells neither time nor number,
+    `clock` is the same of those that share one; empty: its own. Not `is_loss_seen`: it reports neither time nor number,
     so that nobody sees where single samples are missing.
     """
 
@@ -94,7 +94,7 @@ class LiveSource(Protocol):
         """Stop listening; never raises, and may be called of a source that is closed."""
 
     def details(self) -> Mapping[str, SensorDetails]:
-        """What each sensor says of itself, by name."""
+        """What each sensor states of itself, by name."""
 
     def identify(self, sensor: str) -> bool:
         """Light the sensor's LED; False where it has none."""

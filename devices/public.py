@@ -1,4 +1,4 @@
-"""The public names of `devices`, each from the module that defines it; `devices/__init__.py` says what they are."""
+"""The public names of `devices`, each from the module that defines it; `devices/__init__.py` states what they are."""
 
 from devices.clocks.host_clock import host_time_ns as host_time_ns
 from devices.drivers.csv_serial import Columns as Columns
@@ -21,7 +21,7 @@ from devices.source import SourceInfo as SourceInfo
 from devices.stream import ByteSource as ByteSource
 from devices.stream import Decoder as Decoder
 from devices.stream import Framer as Framer
-from devices.stream import Heard as Heard
+from devices.stream import Received as Received
 from devices.stream import SensorProtocol as SensorProtocol
 from devices.transport.channels import Channel as Channel
 from devices.transport.ports import PortInfo as PortInfo

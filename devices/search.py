@@ -32,19 +32,19 @@ from devices.transport.ports import PortInfo, SerialPort, list_ports
 
 LISTEN_S = 0.4  # ten samples of the slowest rate that is of use, and a sensor's whole burst
 LEAST = 3  # messages
-ANSWER_S, MOST_ANSWER = 0.5, 4096  # what says more is something else
-ANNOUNCED_AT = 10000  # the port where x-IMU3s tell once a second that they are there
+ANSWER_S, MOST_ANSWER = 0.5, 4096  # what states more is something else
+ANNOUNCED_AT = 10000  # the port where x-IMU3s report once a second that they are there
 ANNOUNCED_S = 1.3
 MOST_DATAGRAM = 2048
-BLUETOOTH = "Bluetooth"  # the place of what is heard through it
+BLUETOOTH = "Bluetooth"  # the place of what is received through it
 NO_COLUMNS: Mapping[str, Columns] = MappingProxyType({})
 
 
 @dataclass(frozen=True, slots=True)
 class FoundSensor:
-    """A sensor that was heard, or `count` of them in one stream.
+    """A sensor that was received, or `count` of them in one stream.
 
-    `make` gives a source of it; nothing is open until that is opened. `rssi_dbm`: how strongly it was heard by air.
+    `make` gives a source of it; nothing is open until that is opened. `rssi_dbm`: how strongly it was received by air.
     """
 
     driver: str
@@ -58,7 +58,7 @@ class FoundSensor:
 
 @dataclass(frozen=True, slots=True)
 class Passed:
-    """A port that no sensor was heard at, and what to do about it."""
+    """A port that no sensor was received at, and what to do about it."""
 
     port: PortInfo
     refusal: SourceRefusedError
@@ -66,9 +66,9 @@ class Passed:
 
 @dataclass(frozen=True, slots=True)
 class SearchResult:
-    """What one search heard: sensors, ports that were passed over and why, ports that send lines of numbers.
+    """What one search received: sensors, ports that were passed over and why, ports that send lines of numbers.
 
-    `deaf` says why nothing was heard by Bluetooth LE, where it was to be.
+    `deaf` states why nothing was received by Bluetooth LE, where it was to be.
     """
 
     sensors: tuple[FoundSensor, ...] = ()
@@ -101,9 +101,9 @@ def search(
         What to listen to for Bluetooth LE; None: nothing.
     """
     looked_at = [port for port in (list_ports() if ports is None else ports) if port.is_likely]
-    heard: list[FoundSensor | Passed | LinesAt] = []
+    received: list[FoundSensor | Passed | LinesAt] = []
     works = [
-        threading.Thread(target=lambda port=port: heard.append(_at_port(port, columns)), daemon=True)
+        threading.Thread(target=lambda port=port: received.append(_at_port(port, columns)), daemon=True)
         for port in looked_at
     ]
     on_network: list[FoundSensor] = []
@@ -116,19 +116,19 @@ def search(
     for work in works:
         work.join()
     by_name: dict[tuple[str, str], FoundSensor] = {}
-    at_ports = sorted((one for one in heard if isinstance(one, FoundSensor)), key=lambda one: one.place)
-    lines = sorted((one for one in heard if isinstance(one, LinesAt)), key=lambda one: one.port.device)
+    at_ports = sorted((one for one in received if isinstance(one, FoundSensor)), key=lambda one: one.place)
+    lines = sorted((one for one in received if isinstance(one, LinesAt)), key=lambda one: one.port.device)
     at_ports += [_of_lines(one) for one in lines if one.columns is not None]
     in_air = [one for one in by_radio if isinstance(one, FoundSensor)]
     for one in [*at_ports, *on_network, *in_air]:  # by cable rather than by radio
         by_name.setdefault((one.driver, one.name), one)
-    passed = sorted((one for one in heard if isinstance(one, Passed)), key=lambda one: one.port.device)
+    passed = sorted((one for one in received if isinstance(one, Passed)), key=lambda one: one.port.device)
     deaf = next((one for one in by_radio if isinstance(one, SourceRefusedError)), None)
     return SearchResult(tuple(by_name.values()), tuple(passed), tuple(lines), deaf)
 
 
 def _by_radio(radio: Radio) -> Sequence[FoundSensor | SourceRefusedError]:
-    """The sensors that announce themselves by Bluetooth LE, DOTs all of one group; or why nobody could be heard."""
+    """The sensors that announce themselves by Bluetooth LE, DOTs all of one group; or why nobody could be received."""
     try:
         announced = sorted(radio.run(radio.announced()), key=lambda one: one.address)
     except SourceRefusedError as refusal:
@@ -151,8 +151,8 @@ def _at_port(port: PortInfo, columns: Mapping[str, Columns]) -> FoundSensor | Pa
         channel = SerialPort(port, baud)
         try:
             channel.open()
-            driver, is_sure, said = _recognised(channel, port)
-            if driver is None and (count := columns_in(said)):
+            driver, is_sure, stated = _recognised(channel, port)
+            if driver is None and (count := columns_in(stated)):
                 return LinesAt(port, baud, count, columns.get(port.key))
             if not is_sure:
                 driver = _answering(channel) or driver
@@ -188,11 +188,11 @@ def _of_lines(lines: LinesAt) -> FoundSensor:
 
 
 def _recognised(channel: Channel, port: PortInfo) -> tuple[Driver | None, bool, bytes]:
-    """Whose messages these are, of several, whose are damaged least; whether that is sure; and what was heard.
+    """Whose messages these are, of several, whose are damaged least; whether that is sure; and what was received.
 
     Messages without a sample among damaged ones are no proof: another sensor's packets may look like them.
     """
-    said = b""
+    stated = b""
     candidates = [
         (driver, driver.protocol().framer(SourceInfo(driver.key, "")))
         for driver in DRIVERS
@@ -201,19 +201,19 @@ def _recognised(channel: Channel, port: PortInfo) -> tuple[Driver | None, bool, 
     until_s = time.monotonic() + LISTEN_S
     while time.monotonic() < until_s:
         data, now_s = channel.read(), time.monotonic()
-        said += data
+        stated += data
         for _, framer in candidates:
             framer.feed(data, now_s)
     # a sensor may send what it is not asked for yet; noise is understood by nobody
     understood = [
-        (bool(framer.heard.rows) or not framer.heard.damaged, whole - framer.heard.damaged, driver)
+        (bool(framer.received.rows) or not framer.received.damaged, whole - framer.received.damaged, driver)
         for driver, framer in candidates
-        if (whole := len(framer.heard.rows) + framer.heard.skipped) >= LEAST and whole > framer.heard.damaged
+        if (whole := len(framer.received.rows) + framer.received.skipped) >= LEAST and whole > framer.received.damaged
     ]
     if understood:
         is_sure, _, found = max(understood, key=lambda one: one[:2])
-        return found, is_sure, said
-    return next((one for one in DRIVERS if one.hint and one.hint in port.description), None), False, said
+        return found, is_sure, stated
+    return next((one for one in DRIVERS if one.hint and one.hint in port.description), None), False, stated
 
 
 def _answering(channel: SerialPort) -> Driver | None:
@@ -221,11 +221,11 @@ def _answering(channel: SerialPort) -> Driver | None:
     for driver in DRIVERS:
         if not driver.knock or channel.baud not in driver.bauds:
             continue
-        said, until_s = b"", time.monotonic() + ANSWER_S
+        stated, until_s = b"", time.monotonic() + ANSWER_S
         channel.write(driver.knock)
-        while time.monotonic() < until_s and len(said) < MOST_ANSWER:
-            said += channel.read()
-            if driver.knocked in said:
+        while time.monotonic() < until_s and len(stated) < MOST_ANSWER:
+            stated += channel.read()
+            if driver.knocked in stated:
                 return driver
     return None
 
@@ -283,7 +283,7 @@ def search_streams(address: str) -> SearchResult:
 
 
 def _has_network() -> bool:
-    """Whether anybody but this machine could be heard; where nobody could, no port is opened for them."""
+    """Whether anybody but this machine could be received; where nobody could, no port is opened for them."""
     try:
         devices = Path("/proc/net/dev").read_text(encoding="ascii").splitlines()[2:]
     except OSError:  # not Linux
@@ -292,7 +292,7 @@ def _has_network() -> bool:
 
 
 def announcement(datagram: bytes, address: str) -> FoundSensor | None:
-    """What an x-IMU3 says of itself on the network; None where it is something else."""
+    """What an x-IMU3 states of itself on the network; None where it is something else."""
     try:
         details = json.loads(datagram)
     except (ValueError, RecursionError):
@@ -300,7 +300,7 @@ def announcement(datagram: bytes, address: str) -> FoundSensor | None:
     if not isinstance(details, dict) or not isinstance(serial := details.get("sn"), str) or not serial:
         return None
     tcp, send, receive = (_port(details.get(key)) for key in ("port", "send", "receive"))
-    # what the sensor told is its address is not believed: a datagram is no reason to speak with somebody else
+    # what the sensor reported is its address is not believed: a datagram is no reason to speak with somebody else
     channel: Callable[[], Channel]
     if tcp:
         channel, place = lambda: TcpChannel(address, tcp), f"TCP {address}:{tcp}"

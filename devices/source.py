@@ -74,7 +74,7 @@ class SharedClock:
     arrived_s : (n,)
         When it arrived, in seconds since the journal was opened; of what was fetched from a memory (0,).
     turn_s
-        After how long the clock begins anew; 0: never.
+        After how long the clock begins again; 0: never.
     ahead_s
         Of what was fetched from a memory: between what bounds the journal's seconds are ahead of this clock's, by when
         its beginning and its end were ordered.

@@ -1,7 +1,7 @@
 """Decoding of one sensor's byte stream, live and once more from a journal.
 
 A driver is a `SensorProtocol`: how to greet the sensor, and the `Framer` that finds messages in its bytes. All else is
-the same for all of them and stands here. A framer uses nothing but the bytes and what `SourceInfo` holds, and what it
+the same for all of them and is here. A framer uses nothing but the bytes and what `SourceInfo` holds, and what it
 finds does not depend on how the bytes were cut.
 """
 
@@ -25,14 +25,14 @@ Row = tuple[float, ...]
 """Seconds of the sensor's clock, then angular rate in rad/s (3) and specific force in m/s2 (3)."""
 
 _Clock = tuple[tuple[str, float] | None, int]
-"""The clock that a sensor runs by: its name and turn where it is shared, and how often its own has begun anew."""
+"""The clock that a sensor runs by: its name and turn where it is shared, and how often its own has begun again."""
 
 COLUMNS = 7
 WAITS_S = 0.02
 
 
 @dataclass(slots=True)
-class Heard:
+class Received:
     """What a framer found, taken from it piece by piece.
 
     Attributes
@@ -46,7 +46,7 @@ class Heard:
     skipped
         Whole messages that mean nothing here.
     battery
-        0 to 1, as it was told last.
+        0 to 1, as it was reported last.
     replies
         What the sensor answered.
     """
@@ -62,7 +62,7 @@ class Heard:
 class Framer(Protocol):
     """Finds messages in bytes. Holds a bounded number of them back, and raises nothing, whatever they are."""
 
-    heard: Heard
+    received: Received
 
     def feed(self, data: bytes, host_s: float) -> None:
         """Take the next bytes, in pieces of any size."""
@@ -88,12 +88,12 @@ class SensorProtocol(Framing, Protocol):
     """What is particular about one maker's sensors that are spoken with through a channel."""
 
     def greet(self, channel: Channel) -> tuple[SourceInfo, SensorDetails]:
-        """Find out who is there, and set it up as wanted.
+        """Find out who is there, and set it up as required.
 
         Raises
         ------
         SourceRefusedError
-            It is something else, or says nothing.
+            It is something else, or gives nothing.
         """
 
     def identifying(self) -> bytes:
@@ -102,14 +102,14 @@ class SensorProtocol(Framing, Protocol):
 
 def decoded(
     sensor: str,
-    heard: Heard,
+    received: Received,
     host_s: Sequence[float],
     step_s: float | None = None,
     begins: Sequence[int] = (),
     clock: tuple[str, float] | None = None,
-    anew: Collection[int] = (),
+    again: Collection[int] = (),
 ) -> DecodedSensor:
-    """Put what was heard of one sensor in order, its rows having arrived at `host_s` (n,); see `put_in_order`.
+    """Put what was known of one sensor in order, its rows having arrived at `host_s` (n,); see `put_in_order`.
 
     Parameters
     ----------
@@ -118,8 +118,8 @@ def decoded(
     step_s
         Between two samples, where it is known.
     clock
-        The name of the clock that it shares with other sensors, and after how many seconds it begins anew.
-    anew
+        The name of the clock that it shares with other sensors, and after how many seconds it begins again.
+    again
         See `put_in_order`.
 
     Returns
@@ -127,18 +127,18 @@ def decoded(
     DecodedSensor
         SI units, sensor axes, stamps by the host's clock.
     """
-    rows = np.array(heard.rows, dtype=float).reshape(-1, COLUMNS)
+    rows = np.array(received.rows, dtype=float).reshape(-1, COLUMNS)
     arrived_s = np.array(host_s, dtype=float)
-    ordered = put_in_order(rows[:, 0], arrived_s, step_s, begins, anew)
+    ordered = put_in_order(rows[:, 0], arrived_s, step_s, begins, again)
     block = ImuBlock(
         sensor=sensor,
         time_s=ordered.time_s,
         gyr_rad_s=rows[ordered.rows, 1:4],
         acc_m_s2=rows[ordered.rows, 4:7],
-        q_earth_from_sensor=_orientation(heard.orientations, ordered),
+        q_earth_from_sensor=_orientation(received.orientations, ordered),
     )
     shared = SharedClock(clock[0], ordered.device_s, arrived_s[ordered.rows], clock[1]) if clock else None
-    return DecodedSensor(block, replace(ordered.counts, damaged=ordered.counts.damaged + heard.damaged), shared)
+    return DecodedSensor(block, replace(ordered.counts, damaged=ordered.counts.damaged + received.damaged), shared)
 
 
 class Decoder:
@@ -148,10 +148,10 @@ class Decoder:
         self._protocol = protocol
         self._framer: Framer | None = None
         self._info = SourceInfo(protocol.driver, protocol.version)
-        self._heard = Heard()
+        self._received = Received()
         self._host_s: list[float] = []
         self._begins: list[int] = []
-        self._anew: list[int] = []
+        self._again: list[int] = []
         self._clocks: list[_Clock] = []
 
     def begin(self, source: SourceInfo) -> None:
@@ -159,7 +159,7 @@ class Decoder:
         self._begins.append(len(self._host_s))
         clock = _clock(source)
         if clock != (self._clocks or [clock])[-1]:
-            self._anew.append(len(self._host_s))
+            self._again.append(len(self._host_s))
         self._clocks.append(clock)
         self._info, self._framer = source, self._protocol.framer(source)
 
@@ -172,19 +172,19 @@ class Decoder:
         self._end()
         if not self._info.sensors:
             return {}
-        shared = None if self._anew else self._clocks[-1][0]  # it was another after it was lost: its own
+        shared = None if self._again else self._clocks[-1][0]  # it was another after it was lost: its own
         step_s = _step_s(self._info)
-        one = decoded(self._info.sensors[0], self._heard, self._host_s, step_s, self._begins, shared, self._anew)
+        one = decoded(self._info.sensors[0], self._received, self._host_s, step_s, self._begins, shared, self._again)
         return {one.block.sensor: one}
 
     def _take(self, host_time_s: float) -> None:
         assert self._framer is not None
-        found = self._framer.heard
+        found = self._framer.received
         self._host_s += [host_time_s] * len(found.rows)
-        self._heard.rows += found.rows
-        self._heard.orientations += found.orientations
-        self._heard.damaged += found.damaged
-        self._framer.heard = Heard(battery=found.battery)
+        self._received.rows += found.rows
+        self._received.orientations += found.orientations
+        self._received.damaged += found.damaged
+        self._framer.received = Received(battery=found.battery)
 
     def _end(self) -> None:
         if self._framer is not None:
@@ -257,7 +257,7 @@ class ByteSource:
         except BaseException:
             self._channel.close()
             raise
-        if self._info.sensors:  # it keeps its name, whatever it says of itself after it was lost
+        if self._info.sensors:  # it keeps its name, whatever it states of itself after it was lost
             info = replace(info, sensors=self._info.sensors)
         self._info, self._details = info, details
         self._framer, self._is_open = self._protocol.framer(info), True
@@ -271,13 +271,13 @@ class ByteSource:
         now_s = self._now_ns() / 1e9
         framer = self._framer
         framer.feed(data, now_s)
-        heard, framer.heard = framer.heard, Heard(battery=framer.heard.battery)
-        self._damaged += heard.damaged
-        if heard.battery is not None and heard.battery != self._details.battery:
-            self._details = replace(self._details, battery=heard.battery)
-        if not heard.rows:
+        received, framer.received = framer.received, Received(battery=framer.received.battery)
+        self._damaged += received.damaged
+        if received.battery is not None and received.battery != self._details.battery:
+            self._details = replace(self._details, battery=received.battery)
+        if not received.rows:
             return ()
-        rows = np.array(heard.rows, dtype=float)
+        rows = np.array(received.rows, dtype=float)
         stamps_s = self._clock.stamp(rows[:, 0], now_s)
         return (ImuBlock(self._info.sensors[0], stamps_s, rows[:, 1:4], rows[:, 4:7]),)
 
@@ -302,7 +302,7 @@ class ByteSource:
 
 
 def ask(channel: Channel, framer: Framer, command: bytes, is_answer: Callable[[bytes], bool], within_s: float) -> bytes:
-    """Send a command and wait for its answer; empty where none comes. What is heard meanwhile stays with the framer.
+    """Send a command and wait for its answer; empty where none comes. What is received meanwhile stays with the framer.
 
     Parameters
     ----------
@@ -315,11 +315,11 @@ def ask(channel: Channel, framer: Framer, command: bytes, is_answer: Callable[[b
         The answer, or none.
     """
     channel.write(command)
-    return listen(channel, framer, lambda heard: next(filter(is_answer, heard.replies), b""), within_s)
+    return listen(channel, framer, lambda received: next(filter(is_answer, received.replies), b""), within_s)
 
 
-def listen(channel: Channel, framer: Framer, found: Callable[[Heard], bytes], within_s: float) -> bytes:
-    """Read until `found` finds something in what was heard, for so long at most.
+def listen(channel: Channel, framer: Framer, found: Callable[[Received], bytes], within_s: float) -> bytes:
+    """Read until `found` finds something in what was received, for so long at most.
 
     Parameters
     ----------
@@ -334,7 +334,7 @@ def listen(channel: Channel, framer: Framer, found: Callable[[Heard], bytes], wi
     until_s = time.monotonic() + within_s
     while time.monotonic() < until_s:
         framer.feed(channel.read(), time.monotonic())
-        if answer := found(framer.heard):
+        if answer := found(framer.received):
             return answer
     return b""
 
@@ -352,7 +352,7 @@ def _clock(info: SourceInfo) -> _Clock:
 
 
 def _orientation(rows: Sequence[Row], ordered: Ordered) -> FloatArray | None:
-    """The orientation (n, 4) that was told of the same instant as each sample; NaN where none was."""
+    """The orientation (n, 4) that was given of the same instant as each sample; NaN where none was."""
     if not rows:
         return None
     details = np.array(rows, dtype=float)

@@ -2,7 +2,7 @@
 
 In `build/` an environment is made from `bundle.lock`, which holds the application with all its extras and what builds
 it, and PyInstaller makes one folder from it, `installers/gaitwright.spec`. Licences and the bill of materials are put
-beside it (`bundle_parts.py`), then it is packed into `dist/`. What Windows and macOS do with their folder stands in
+beside it (`bundle_parts.py`), then it is packed into `dist/`. What Windows and macOS do with their folder is in
 `installers/README.md`.
 """
 
@@ -31,27 +31,27 @@ def main(arguments: list[str]) -> None:
     parser.add_argument("--out", type=Path, default=ROOT / "dist", help="where to (dist)")
     parser.add_argument("--with-tour", action="store_true", help="also make what try_bundle.py leads a session with")
     parser.add_argument("--folder-only", action="store_true", help="pack nothing")
-    wanted = parser.parse_args(arguments)
+    required = parser.parse_args(arguments)
     python = make_environment(WORK / "environment")
     run([str(python), ROOT / "packaging" / "safety_tables.py"])  # ends here where a requirement has no test
-    folder = freeze(python, is_with_tour=wanted.with_tour)
+    folder = freeze(python, is_with_tour=required.with_tour)
     (WORK / "version.txt").write_text(f"{VERSION}\n", encoding="ascii")  # for windows.iss
-    wanted.out.mkdir(parents=True, exist_ok=True)
-    bill = wanted.out / f"gaitwright-{VERSION}.cdx.json"
+    required.out.mkdir(parents=True, exist_ok=True)
+    bill = required.out / f"gaitwright-{VERSION}.cdx.json"
     run([str(python), ROOT / "packaging" / "bundle_parts.py", WORK / "work" / "gaitwright", folder, bill])
     shutil.copyfile(bill, folder / bill.name)
     say(f"{folder}: {megabytes(folder)} MB.")
-    if wanted.folder_only:
+    if required.folder_only:
         return
     if not sys.platform.startswith("linux"):
         say("Go on with packaging/installers/README.md.")
         return
     tour = folder / "gaitwright-tour"
     if tour.exists():
-        tour.replace(wanted.out / tour.name)  # never part of what is given away
-    for made in (make_archive(folder, VERSION, wanted.out), make_deb(folder, VERSION, wanted.out)):
+        tour.replace(required.out / tour.name)  # never part of what is given away
+    for made in (make_archive(folder, VERSION, required.out), make_deb(folder, VERSION, required.out)):
         digest = hashlib.sha256(made.read_bytes()).hexdigest()
-        (wanted.out / f"{made.name}.sha256").write_text(f"{digest}  {made.name}\n", encoding="ascii")
+        (required.out / f"{made.name}.sha256").write_text(f"{digest}  {made.name}\n", encoding="ascii")
         say(f"{made}: {megabytes(made)} MB, SHA-256 {digest}")
 
 
@@ -89,7 +89,7 @@ def fingerprint() -> str:
 
 
 def freeze(python: Path, *, is_with_tour: bool) -> Path:
-    """Let PyInstaller make the folder, always anew, and give it."""
+    """Let PyInstaller make the folder, always again, and give it."""
     folder = WORK / "folder"
     shutil.rmtree(folder, ignore_errors=True)
     say("Freezing. This takes some minutes.")
@@ -122,7 +122,7 @@ def megabytes(place: Path) -> int:
 
 
 def run(command: Sequence[str | Path], environment: Mapping[str, str] | None = None) -> None:
-    """Run a step to its end; what it says is shown.
+    """Run a step to its end; what it states is shown.
 
     Raises
     ------

@@ -50,7 +50,7 @@ def main(arguments: list[str]) -> None:
     for language, recipe in LANGUAGES.items():
         place = out if language == "en" else out / language
         command = [str(mkdocs), "build", "--strict", "--quiet", "--config-file", str(RECIPES / recipe)]
-        # its makers' advertisement is none of ours; what is true of it stands in packaging/site/requirements.in
+        # its makers' advertisement is none of ours; what is true of it is in packaging/site/requirements.in
         subprocess.run([*command, "--site-dir", str(place)], check=True, env={**os.environ, "NO_MKDOCS_2_WARNING": "1"})
     say(f"The site is in {out}.")
 

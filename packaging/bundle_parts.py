@@ -36,7 +36,7 @@ TOOL_INSIDE = "pyinstaller"  # what starts the program is its own
 
 
 class PartsError(Exception):
-    """The folder may not be given to anybody so; the message says why."""
+    """The folder may not be given to anybody so; the message states why."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -62,8 +62,8 @@ def sources(work: Path) -> Iterator[Path]:
     for file in sorted(work.glob("*.toc")):
         if not file.name.startswith(("COLLECT", "PYZ")):
             continue
-        told = ast.literal_eval(file.read_text(encoding="utf-8"))
-        for entries in told:
+        reported = ast.literal_eval(file.read_text(encoding="utf-8"))
+        for entries in reported:
             if isinstance(entries, list):
                 yield from (
                     Path(source) for _, source, kind in entries if kind != "SYMLINK" and source not in ("", "-")
@@ -80,7 +80,7 @@ def owners() -> dict[str, str]:
 
 
 def sorted_out(files: Iterable[Path], owned: dict[str, str], stdlib: Path) -> tuple[set[str], set[Path]]:
-    """Tell distributions and libraries of the system apart.
+    """Report distributions and libraries of the system apart.
 
     Returns
     -------
@@ -109,7 +109,7 @@ def sorted_out(files: Iterable[Path], owned: dict[str, str], stdlib: Path) -> tu
 
 
 def part_of(name: str) -> Part:
-    """Read what a distribution says of itself.
+    """Read what a distribution states of itself.
 
     Raises
     ------
@@ -117,16 +117,18 @@ def part_of(name: str) -> Part:
         There is no text of its licence, neither with it nor among ours.
     """
     one = metadata.distribution(name)
-    told = one.metadata
+    reported = one.metadata
 
     def first(field: str) -> str:
-        return str((told.get_all(field) or ("",))[0]).strip()
+        return str((reported.get_all(field) or ("",))[0]).strip()
 
-    names = [line.rpartition(" :: ")[2] for line in told.get_all("Classifier") or () if line.startswith("License ::")]
-    said = first("License")
-    licence = first("License-Expression") or (said if said and "\n" not in said else "") or ", ".join(names)
+    names = [
+        line.rpartition(" :: ")[2] for line in reported.get_all("Classifier") or () if line.startswith("License ::")
+    ]
+    stated = first("License")
+    licence = first("License-Expression") or (stated if stated and "\n" not in stated else "") or ", ".join(names)
     licence = licence or LICENCES.get(name, "")
-    urls = [value.partition(", ") for value in told.get_all("Project-URL") or ()]
+    urls = [value.partition(", ") for value in reported.get_all("Project-URL") or ()]
     homes = [url for label, _, url in urls if label.lower() in HOMES] + [url for _, _, url in urls]
     texts = [
         Path(str(one.locate_file(file)))
@@ -160,13 +162,13 @@ def system_parts(files: Iterable[Path]) -> Iterator[Part]:
     """
     for file in sorted(files):
         asked = [str(file), str(file).removeprefix("/usr")]
-        found = next((answer for path in asked if (answer := _told_by("dpkg-query", "--search", path))), "")
+        found = next((answer for path in asked if (answer := _reported_by("dpkg-query", "--search", path))), "")
         package = found.partition(": ")[0].partition(",")[0].partition(":")[0]
         text = COPYRIGHT / package / "copyright"
         if not package or not text.is_file():
             raise PartsError(f"{file} comes from no package that is known here.")
-        version = _told_by("dpkg-query", "--show", "--showformat=${Version}", package)
-        home = _told_by("dpkg-query", "--show", "--showformat=${Homepage}", package)
+        version = _reported_by("dpkg-query", "--show", "--showformat=${Version}", package)
+        home = _reported_by("dpkg-query", "--show", "--showformat=${Homepage}", package)
         yield Part(package, version, "see its text", home, (text,), kind="deb/debian")
 
 
@@ -278,7 +280,7 @@ def _key(name: str) -> str:
     return re.sub("[-_.]+", "-", name).lower()
 
 
-def _told_by(*command: str) -> str:
+def _reported_by(*command: str) -> str:
     try:
         done = subprocess.run(command, capture_output=True, text=True)
     except FileNotFoundError:

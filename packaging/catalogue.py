@@ -20,7 +20,7 @@ from babel.messages.pofile import read_po, write_po
 ROOT = Path(__file__).resolve().parents[1]
 TEMPLATE = ROOT / "resources" / "locale" / "gaitwright.pot"
 TAKERS = {"tr": 1, "tr_n": 2, "later": 1}  # of app.wording.translation, with the number of sentences each takes
-# which are put into the user's language where they are shown: what, remedy; of some the first says where
+# which are put into the user's language where they are shown: what, remedy; of some the first states where
 REFUSALS = {
     "SourceRefusedError": 0,
     "DotRefusedError": 0,
@@ -53,40 +53,40 @@ msgstr ""
 
 
 def sentences(file: Path) -> Iterator[str | tuple[str, ...]]:
-    """Find what stands inside the functions of `app.wording`, in the order of reading; one and many as a pair."""
+    """Find what is inside the functions of `app.wording`, in the order of reading; one and many as a pair."""
     calls = [node for node in ast.walk(ast.parse(file.read_text(encoding="utf-8"))) if isinstance(node, ast.Call)]
     for call in sorted(calls, key=lambda call: (call.lineno, call.col_offset)):
         function = call.func.id if isinstance(call.func, ast.Name) else ""
         taken = call.args[: TAKERS.get(function, 0)]
-        said = [one.value for one in taken if isinstance(one, ast.Constant) and isinstance(one.value, str)]
-        if said and len(said) == len(taken):
-            yield said[0] if len(said) == 1 else tuple(said)
+        stated = [one.value for one in taken if isinstance(one, ast.Constant) and isinstance(one.value, str)]
+        if stated and len(stated) == len(taken):
+            yield stated[0] if len(stated) == 1 else tuple(stated)
         if function in REFUSALS:
-            told = call.args[REFUSALS[function] :]
-            yield from (one.value for one in told if isinstance(one, ast.Constant) and isinstance(one.value, str))
+            reported = call.args[REFUSALS[function] :]
+            yield from (one.value for one in reported if isinstance(one, ast.Constant) and isinstance(one.value, str))
 
 
 def refused(file: Path) -> Iterator[tuple[ast.Call, list[str]]]:
-    """Find what a module of `devices` refuses, and how it says so: in place, or by a constant's name."""
+    """Find what a module of `devices` refuses, and how it reports it: in place, or by a constant's name."""
     module = import_module(".".join(file.relative_to(ROOT).with_suffix("").parts))
     for call in ast.walk(ast.parse(file.read_text(encoding="utf-8"))):
         if isinstance(call, ast.Call) and isinstance(call.func, ast.Name) and call.func.id in REFUSALS:
             at = REFUSALS[call.func.id]
-            told = [one.value if isinstance(one, ast.Constant) else one for one in call.args[at:]]
-            named = [getattr(module, one.id, None) if isinstance(one, ast.Name) else one for one in told]
+            reported = [one.value if isinstance(one, ast.Constant) else one for one in call.args[at:]]
+            named = [getattr(module, one.id, None) if isinstance(one, ast.Name) else one for one in reported]
             yield call, [one for one in named if isinstance(one, str)]
 
 
 @cache
 def gathered() -> Catalog:
-    """Give every sentence of `app`, those that findings are told by, and the refusals and drivers of `devices`."""
+    """Give every sentence of `app`, those that findings are given by, and the refusals and drivers of `devices`."""
     catalogue = Catalog(charset="utf-8")
     for file in sorted((ROOT / "app").rglob("*.py")):
         for message in sentences(file):
             catalogue.add(message, locations=[(file.relative_to(ROOT).as_posix(), 0)])
     sys.path.insert(0, str(ROOT))  # a script sees its own folder only
     for file in sorted((ROOT / "devices").rglob("*.py")):
-        for message in (said for _, both in refused(file) for said in both):
+        for message in (stated for _, both in refused(file) for stated in both):
             catalogue.add(message, locations=[(file.relative_to(ROOT).as_posix(), 0)])
     from app.wording.translation import NAMES, SENTENCES
     from devices.catalogue import DRIVERS

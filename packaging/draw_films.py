@@ -24,7 +24,7 @@ def main(arguments: list[str]) -> None:
     parser = argparse.ArgumentParser(description=(__doc__ or "").split("\n\n")[0])
     parser.add_argument("into", metavar="INTO", type=Path, help="the folder for films and stills")
     parser.add_argument("--lang", default="en", help="in which language their words are, as de")
-    wanted = parser.parse_args(arguments)
+    required = parser.parse_args(arguments)
     os.environ.setdefault("QT_QPA_PLATFORM", "offscreen")
     sys.path.insert(0, str(Path(__file__).resolve().parents[1]))
     from PySide6.QtWidgets import QApplication
@@ -35,14 +35,14 @@ def main(arguments: list[str]) -> None:
 
     application = QApplication([])
     load_fonts()
-    use_language(wanted.lang)
+    use_language(required.lang)
     look = ThemeNotifier(application)
-    wanted.into.mkdir(parents=True, exist_ok=True)
+    required.into.mkdir(parents=True, exist_ok=True)
     for is_dark, suffix in ((False, ""), (True, "-dark")):
         look.set_dark(is_dark)
         for film in Film:
-            _drawn(look.theme, film, None).save(wanted.into / f"{film}{suffix}-stills.png")
-            _save_film(look.theme, film, wanted.into / f"{film}{suffix}.webp")
+            _drawn(look.theme, film, None).save(required.into / f"{film}{suffix}-stills.png")
+            _save_film(look.theme, film, required.into / f"{film}{suffix}.webp")
 
 
 def _save_film(theme: "Theme", film: "Film", file: Path) -> None:

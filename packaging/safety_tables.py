@@ -44,7 +44,7 @@ class Requirement:
     """One sentence that can be false, its tests, and the source that asks for it."""
 
     id: str
-    says: str
+    states: str
     source: str
     tests: tuple[str, ...]
     runs: tuple[str, ...] = ()
@@ -299,7 +299,7 @@ def _requirements_page(known: Sequence[Requirement]) -> str:
         for one in known:
             if one.id.startswith(f"R-{prefix}-"):
                 shown = [_test(test) for test in one.tests] + [f"script `python -m {run}`" for run in one.runs]
-                lines.append(f"| {one.id} | {one.says} | {one.source} | {'<br>'.join(shown)} |")
+                lines.append(f"| {one.id} | {one.states} | {one.source} | {'<br>'.join(shown)} |")
         lines.append("")
     return "\n".join(lines)
 
@@ -323,7 +323,7 @@ def _risks_page(entries: Sequence[Risk], known: Mapping[str, Requirement]) -> st
         lines += ["", f"## {one.id} {one.hazard}", "", f"- **How it comes about**: {one.sequence}"]
         lines += [f"- **Harm**: {one.harm}. Before {_level(one.before)}, after {_level(one.after)}.", "- **Controls**:"]
         for control in (known[name] for name in one.controls):
-            lines += [f"    - {control.id}: {control.says}", *(f"        - {_test(test)}" for test in control.tests)]
+            lines += [f"    - {control.id}: {control.states}", *(f"        - {_test(test)}" for test in control.tests)]
         lines.append(f"- **What is left**: {one.residual}")
     return "\n".join([*lines, ""])
 

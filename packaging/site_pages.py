@@ -78,9 +78,9 @@ def example_pages() -> Mapping[str, str]:
 
 def example_page(script: Path) -> str:
     source = script.read_text(encoding="utf-8")
-    told = ast.get_docstring(ast.parse(source)) or ""
+    reported = ast.get_docstring(ast.parse(source)) or ""
     code = source[source.index('"""', 3) + 3 :].strip()
-    return f"# {title_of(script.stem)}\n\n{told}\n\n```python\n{code}\n```\n"
+    return f"# {title_of(script.stem)}\n\n{reported}\n\n```python\n{code}\n```\n"
 
 
 def title_of(name: str) -> str:
@@ -88,12 +88,12 @@ def title_of(name: str) -> str:
 
 
 def _first_sentence(script: Path) -> str:
-    told = ast.get_docstring(ast.parse(script.read_text(encoding="utf-8"))) or ""
-    return " ".join(told.partition("\n\n")[0].split())
+    reported = ast.get_docstring(ast.parse(script.read_text(encoding="utf-8"))) or ""
+    return " ".join(reported.partition("\n\n")[0].split())
 
 
 def columns_page() -> str:
-    """What each column of each table means, as `columns.csv` has it; of left and right the left one stands for both."""
+    """What each column of each table means, as `columns.csv` has it; of left and right the left one represents both."""
     from app.exports.columns import KNOWN
 
     head = (

@@ -1,8 +1,8 @@
 """Make the list of parts that others made: `python packaging/soup.py`.
 
-`packaging/safety/soup.toml` says of each why it is there, what fails if it is wrong, and which anomalies are known;
-`packaging/requirements.lock` has its version. Together they are `packaging/safety/soup.md`. A locked part that stands
-in neither list of the TOML, or one that is not locked, is told and nothing is written.
+`packaging/safety/soup.toml` states of each why it is there, what fails if it is wrong, and which anomalies are known;
+`packaging/requirements.lock` has its version. Together they are `packaging/safety/soup.md`. A locked part that is
+in neither list of the TOML, or one that is not locked, is reported and nothing is written.
 """
 
 import re
@@ -30,12 +30,12 @@ class Soup:
     asked: str = ""
 
 
-def told() -> dict[str, Any]:
+def reported() -> dict[str, Any]:
     return tomllib.loads((SAFETY / "soup.toml").read_text(encoding="utf-8"))
 
 
 def parts() -> list[Soup]:
-    return [Soup(**one) for one in told()["part"]]
+    return [Soup(**one) for one in reported()["part"]]
 
 
 def locked() -> dict[str, str]:
@@ -46,7 +46,7 @@ def locked() -> dict[str, str]:
 def faults() -> Iterator[str]:
     """Say what the lock and the list do not have in common."""
     named = [name for part in parts() for name in part.names]
-    development = told()["development"]["names"]
+    development = reported()["development"]["names"]
     both = [*named, *development]
     yield from (f"{name} is there twice" for name in sorted({name for name in both if both.count(name) > 1}))
     yield from (f"{name} is locked, and nothing says why" for name in sorted(locked().keys() - set(both)))
@@ -61,7 +61,7 @@ def page() -> str:
         "",
         "Made by `python packaging/soup.py` from `soup.toml` and the lock, which are what to change.",
         "",
-        *told()["introduction"].strip().splitlines(),
+        *reported()["introduction"].strip().splitlines(),
         "",
         f"{sum(len(part.names) for part in listed)} of {len(versions)} locked parts run with the program; the others "
         "with its tests and checks only.",

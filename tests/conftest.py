@@ -46,12 +46,12 @@ def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
 @pytest.fixture(scope="session")
 def test_data() -> Callable[[str], Path]:
     """Find a file or folder of the shared recordings, as `test_data("hinge_mechanical")`, or skip the test."""
-    told = os.environ.get("GAITWRIGHT_TEST_DATA")
+    reported = os.environ.get("GAITWRIGHT_TEST_DATA")
 
     def find(path: str) -> Path:
-        if not told:
+        if not reported:
             pytest.skip("GAITWRIGHT_TEST_DATA does not name the folder of shared recordings")
-        found = Path(told) / path
+        found = Path(reported) / path
         if not found.exists():
             pytest.skip(f"the shared recordings hold no {path}")
         return found

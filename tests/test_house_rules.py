@@ -73,8 +73,8 @@ def test_a_library_of_one_purpose_is_imported_by_one_file(library: str, only: st
     assert found == []
 
 
-def test_the_opening_of_a_package_says_what_belongs_there_and_does_nothing() -> None:
-    # core and devices offer their public names, the test below; app sets one switch of PySide6 and says why
+def test_the_opening_of_a_package_states_what_belongs_there_and_does_nothing() -> None:
+    # core and devices offer their public names, the test below; app sets one switch of PySide6 and states why
     tops = {ROOT / package / "__init__.py" for package in PACKAGES}
     assert all(ast.get_docstring(parse(opening)) for opening in tops)
     for opening in {file for file in python_files(*PACKAGES) if file.name == "__init__.py"} - tops:
@@ -110,7 +110,7 @@ COLOUR_MAKERS = {"QColor", "mkColor", "mkPen", "mkBrush", "QPen", "QBrush"}
 
 
 def is_colour(node: ast.AST) -> bool:
-    """Tell whether this names a colour: in a string, as a constant of Qt, or as what makes one is given first."""
+    """Return whether this names a colour: in a string, as a constant of Qt, or as what makes one is given first."""
     match node:
         case ast.Constant(value=str(text)):
             return COLOUR.search(text) is not None
@@ -179,7 +179,7 @@ def test_an_exception_from_a_rule_names_the_rule_and_its_reason() -> None:
     assert [place(file, line) for file in files for line in unexplained(file.read_text(encoding="utf-8"))] == []
 
 
-def test_no_file_says_where_packages_are_fetched_from() -> None:
+def test_no_file_states_where_packages_are_fetched_from() -> None:
     # in two parts, so that this file does not name them either
     hosts = [f"{name}.{end}" for name, end in (("pypi", "org"), ("pythonhosted", "org"), ("anaconda", "org"))]
     assert [str(file) for file, text in text_files() if any(host in text for host in hosts)] == []
@@ -215,7 +215,7 @@ FROM_THE_ASKING_PROCESS = "app/cohort/batch/executors.py"  # through a pipe that
 
 
 def unsafe(parts: Iterable[ast.AST]) -> Iterator[int]:
-    """Find the lines with what would run or unpack what stands in a file."""
+    """Find the lines with what would run or unpack what is in a file."""
     for node in parts:
         match node:
             case ast.Import(names=names):
@@ -320,7 +320,7 @@ def test_a_docstring_that_lacks_a_shape_or_what_is_returned_is_found() -> None:
     ]
 
 
-def test_a_public_function_of_core_and_devices_says_what_its_numbers_are() -> None:
+def test_a_public_function_of_core_and_devices_states_what_its_numbers_are() -> None:
     assert [
         f"{place(file, node.lineno)} {node.name}: {', '.join(lacking)}"
         for file in python_files("core", "devices")

@@ -13,10 +13,10 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from app.acquisition.heard_sensor import SensorStatus
-from app.acquisition.heartbeat import Heartbeat, Standstill
+from app.acquisition.heartbeat import Heartbeat, ProcessStall
 from app.acquisition.preview import LiveEstimator, Preview
 from app.acquisition.reader import Reader
+from app.acquisition.sensor_stream import SensorStatus
 from app.storage.journal.writer import JournalSummary, JournalWriter
 from core.alignment import NetChange
 from core.samples import ImuBlock, RecordingKind
@@ -123,12 +123,12 @@ class Acquisition:
         return {name: count for reader in self._readers for name, count in reader.lost().items()}
 
     @property
-    def standstills(self) -> tuple[Standstill, ...]:
-        """When this process stood still since `start`, and heard nobody."""
+    def standstills(self) -> tuple[ProcessStall, ...]:
+        """When this process stood still since `start`, and received nobody."""
         return self._heartbeat.standstills
 
     def awake_s(self) -> float:
-        """A clock that stands still with this process, give or take half a second."""
+        """A clock that is still with this process, give or take half a second."""
         return self._heartbeat.awake_s()
 
     def latest(self, sensor: str, seconds: float) -> ImuBlock:
@@ -153,7 +153,7 @@ class Acquisition:
         """
         from app.acquisition.sensor_memory import MemoryRecording  # with bleak's part of the sensors
 
-        assert self.dots is not None  # `is_in_memory` has told
+        assert self.dots is not None  # `is_in_memory` has reported
         recording = MemoryRecording(self.dots)
         recording.begin(started_s)
         self._in_memory = recording
@@ -201,11 +201,11 @@ class Acquisition:
 
         Answers how long that will be done, s, as by a replay, whose recording ends; None: nobody knows.
         """
-        told = [reader.source.ask(kind) for reader in self._readers]
-        return max((length_s for length_s in told if length_s is not None), default=None)
+        reported = [reader.source.ask(kind) for reader in self._readers]
+        return max((length_s for length_s in reported if length_s is not None), default=None)
 
     def set_up(self, changes: Sequence[NetChange]) -> None:
-        """Tell the simulated user of a prosthesis what was changed at it; at a real one somebody has turned it."""
+        """Report the simulated user of a prosthesis what was changed at it; at a real one somebody has turned it."""
         for reader in self._readers:
             if isinstance(reader.source, ProsthesisUser):
                 reader.source.set_up(changes)

@@ -19,7 +19,8 @@ MOST = max(USUAL_SITES)
 
 
 class ChainSearch:
-    """Chains of the sensors that are heard, from the last KEPT_S; who was lifted first is remembered from the start on.
+    """Chains of the sensors that are received, from the last KEPT_S; who was lifted first is remembered from the start
+    on.
 
     Attributes
     ----------
@@ -69,7 +70,7 @@ class ChainSearch:
             self._alike = self._alike + 1 if before is not None and _legs(before) == _legs(found) else 1
 
     def _note_lifts(self, at_s: float) -> dict[str, float]:
-        """Mean speed over the last look's time of each sensor that is heard; who was lifted in it is noted."""
+        """Mean speed over the last look's time of each sensor that is received; who was lifted in it is noted."""
         half_s = 0.5 * MOVING_WINDOW_S
         speeds = {}
         for name, block in self._memory.between(at_s - LOOK_S - 2 * half_s, at_s).items():

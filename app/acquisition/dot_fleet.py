@@ -1,10 +1,10 @@
-"""The DOTs that were heard, until some of them are worn: who they are, and how those are to measure.
+"""The DOTs that were received, until some of them are worn: who they are, and how those are to measure.
 
 Standing and free motion are measured live, at 60 Hz: their count, their gauges and their hints need samples while the
 patient moves, they take seconds, and the patient is beside the computer. Walks are recorded in the sensors' memories,
 at 120 Hz, one file for each: nothing is lost over the air however far the patient goes, a file is fetched in a short
 while, and each can be held against its journal by itself; a file of the whole visit would hold many times as much, and
-the air suits a few minutes. Memory and air at once are not to be had, nor is another rate without synchronising anew.
+the air suits a few minutes. Memory and air at once are not to be had, nor is another rate without synchronising again.
 So sensors are synchronised once for what is live, and once more before the walks; where walks are recorded at 60 Hz,
 once is enough.
 """
@@ -26,7 +26,7 @@ from devices.transport.bluetooth import Radio, Tick
 
 Result = TypeVar("Result")
 
-ANSWERS_S = 8.0  # so long one that was heard is asked for
+ANSWERS_S = 8.0  # so long one that was received is asked for
 
 
 class DotAsked(StrEnum):
@@ -39,7 +39,7 @@ class DotAsked(StrEnum):
 
 
 @dataclass(frozen=True, slots=True)
-class HeardDot:
+class ReceivedDot:
     """A sensor that announced itself, and how strongly."""
 
     sensor: DotSensor
@@ -62,17 +62,17 @@ class DotPlan:
 class DotFleet:
     """Methods wait, some of them for seconds, so not from the screen's thread."""
 
-    def __init__(self, radio: Radio, dots: Sequence[HeardDot]) -> None:
+    def __init__(self, radio: Radio, dots: Sequence[ReceivedDot]) -> None:
         self.radio, self.dots = radio, tuple(dots)
         self._talking = threading.Lock()  # one question at a time, whoever asks
 
     @property
     def is_simulated(self) -> bool:
-        """Whether one of those that were asked says that it is emulated."""
+        """Whether one of those that were asked states that it is emulated."""
         return any(one.sensor.info is not None and one.sensor.info.model == EMULATED for one in self.dots)
 
     def ask(self, number: int, tick: Tick | None = None) -> DotAsked:
-        """Let one of them tell of itself and of what it does. Its link is left: adapters have few."""
+        """Let one of them report of itself and of what it does. Its link is left: adapters have few."""
         with self._talking:
             try:
                 return self.radio.run(_left(self.dots[number].sensor, _asked), tick)
@@ -80,7 +80,7 @@ class DotFleet:
                 return DotAsked.SILENT
 
     def identify(self, number: int) -> bool:
-        """Let its light blink; whether it was told."""
+        """Let its light blink; whether it was reported."""
         with self._talking:
             try:
                 return self.radio.run(_left(self.dots[number].sensor, _identified))
@@ -141,6 +141,6 @@ async def _asked(sensor: DotSensor) -> DotAsked:
 async def _identified(sensor: DotSensor) -> bool:
     await reached(sensor, ANSWERS_S)
     if await sensor.state() is DotAnswer.RECORDING:
-        return False  # nothing is told to one that records
+        return False  # nothing is given to one that records
     await sensor.identify()
     return True

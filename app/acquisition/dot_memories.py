@@ -1,4 +1,4 @@
-"""What lies in the memories of sensors that are worn: told, fetched once more, and erased.
+"""What lies in the memories of sensors that are worn: reported, fetched once more, and erased.
 
 A file is named by the second in which it was begun, and so is the recording that it belongs to.
 """
@@ -7,7 +7,7 @@ from collections.abc import Callable, Collection, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
-from app.acquisition.memory_fetching import FETCHED, Lack, MemoryFetching, Progress, WantedFile, fetched_files
+from app.acquisition.memory_fetching import FETCHED, Lack, MemoryFetching, Progress, RequiredFile, fetched_files
 from app.storage.data_key import KeyMaterial
 from app.storage.journal.decoding import decode
 from app.storage.journal.writer import JournalWriter
@@ -22,7 +22,7 @@ from devices.dot.source import DotGroup
 from devices.live import SourceLostError, SourceRefusedError
 from devices.transport.bluetooth import Tick
 
-Told = Callable[[str], None]
+Reported = Callable[[str], None]
 """Takes the name of the sensor that it is about now; what it raises ends the work."""
 
 
@@ -50,7 +50,7 @@ class DotMemories:
     def __init__(self, group: DotGroup) -> None:
         self._group = group
 
-    def held(self, tell: Told, tick: Tick | None = None) -> tuple[HeldRecording, ...]:
+    def held(self, show_message: Reported, tick: Tick | None = None) -> tuple[HeldRecording, ...]:
         """All that they hold, oldest first.
 
         Raises
@@ -58,13 +58,13 @@ class DotMemories:
         SourceLostError
             One is out of reach.
         SourceRefusedError
-            One records, or does not tell what it holds.
+            One records, or does not report what it holds.
         """
         group = self._group
         group.fall_silent(tick)
         files: dict[int, dict[str, RecordedFile]] = {}
         for sensor in group.sensors:
-            tell(sensor.name)
+            show_message(sensor.name)
             for file in group.radio.run(_listed(sensor), tick):
                 files.setdefault(file.started_utc_s, {})[sensor.name] = file
         return tuple(HeldRecording(started, files[started]) for started in sorted(files))
@@ -73,10 +73,12 @@ class DotMemories:
         """One that this program began, and did not fetch: it records on one clock only."""
         sensors = [sensor for sensor in self._group.sensors if sensor.name in held.files]
         clock = f"file {held.started_utc_s}" if len(sensors) > 1 else ""
-        wanted = [WantedFile(one, held.started_utc_s, held.files[one.name], clock=clock) for one in sensors]
-        return LeftRecording(MemoryFetching(self._group.radio, wanted))
+        required = [RequiredFile(one, held.started_utc_s, held.files[one.name], clock=clock) for one in sensors]
+        return LeftRecording(MemoryFetching(self._group.radio, required))
 
-    def erase(self, gone: Mapping[str, Collection[int]], utc_s: int, tell: Told, tick: Tick | None = None) -> None:
+    def erase(
+        self, gone: Mapping[str, Collection[int]], utc_s: int, show_message: Reported, tick: Tick | None = None
+    ) -> None:
         """Erase all memories. `gone`: by sensor when those files were begun that are kept, or that the user lets go.
 
         Raises
@@ -87,7 +89,7 @@ class DotMemories:
             One is out of reach.
         """
         for sensor in self._group.sensors:
-            tell(sensor.name)
+            show_message(sensor.name)
             self._group.radio.run(_erased(sensor, gone.get(sensor.name, ()), utc_s), tick)
 
 
@@ -114,8 +116,8 @@ class LeftRecording:
     def lacks(self) -> tuple[Lack, ...]:
         return self._fetching.lacks()
 
-    def told(self) -> str:
-        return self._fetching.told()
+    def reported(self) -> str:
+        return self._fetching.reported()
 
 
 def known(opened: OpenedLibrary, started_utc_s: int) -> KnownRecording:

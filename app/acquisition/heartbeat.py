@@ -1,7 +1,7 @@
-"""Did this process stand still? Stopped, starved or asleep with the machine, it hears no sensor meanwhile.
+"""Did this process stand still? Stopped, starved or asleep with the machine, it receives no sensor meanwhile.
 
 A thread that does nothing but sleep for a moment, again and again, sleeps longer only where nobody let it run. So a
-late beat tells a standstill of the process from a disk or a port that is late: those hold up their own threads only.
+late beat reports a standstill of the process from a disk or a port that is late: those hold up their own threads only.
 """
 
 import threading
@@ -14,11 +14,11 @@ from devices.clocks.host_clock import host_time_ns
 
 BEAT_S = 0.1
 STOOD_S = 0.5  # a beat so late counts as no time at all: shorter than what makes a disk late
-TOLD_S = 1.0  # so long a standstill is said: it may cost samples
+REPORTED_S = 1.0  # so long a standstill is stated: it may cost samples
 
 
 @dataclass(frozen=True, slots=True)
-class Standstill:
+class ProcessStall:
     """One standstill.
 
     Attributes
@@ -26,7 +26,7 @@ class Standstill:
     began_s, ended_s
         On the acquisition's clock.
     lasted_s, asleep_s
-        On the machine's; how much of it the machine slept, as far as its clocks tell them apart.
+        On the machine's; how much of it the machine slept, as far as its clocks report them apart.
     lost_before
         How many samples each sensor lacked when it began.
     """
@@ -62,7 +62,7 @@ class Heartbeat:
     lost
         How many samples each sensor lacks now.
     clock_s, running_s
-        The machine's clocks: one goes on while it sleeps, the other stands still then, where there is one that does.
+        The machine's clocks: one goes on while it sleeps, the other is still then, where there is one that does.
     """
 
     def __init__(
@@ -76,7 +76,7 @@ class Heartbeat:
         self._last = self._look()
         self._awake_s = 0.0
         self._lost_before: Mapping[str, int] = {}
-        self.standstills: tuple[Standstill, ...] = ()
+        self.standstills: tuple[ProcessStall, ...] = ()
         self._is_closing = threading.Event()
         self._thread = threading.Thread(target=self._run, name="heartbeat", daemon=True)
 
@@ -98,9 +98,9 @@ class Heartbeat:
         """Look at the clocks; called by the thread only, ten times a second."""
         last, now = self._last, self._look()
         step_s = now.clock_s - last.clock_s
-        if step_s > TOLD_S:
+        if step_s > REPORTED_S:
             asleep_s = max(step_s - (now.running_s - last.running_s), 0.0)
-            self.standstills += (Standstill(last.now_s, now.now_s, step_s, asleep_s, self._lost_before),)
+            self.standstills += (ProcessStall(last.now_s, now.now_s, step_s, asleep_s, self._lost_before),)
         else:
             self._lost_before = self._lost()
         self._awake_s += min(max(step_s, 0.0), STOOD_S)

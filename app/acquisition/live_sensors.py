@@ -4,7 +4,7 @@ from collections.abc import Iterable, Mapping
 
 import numpy as np
 
-from app.acquisition.heard_sensor import SensorStatus
+from app.acquisition.sensor_stream import SensorStatus
 from core.calibration.rest import Rest
 from core.live.sensors import LiveSensor
 from core.samples import RateKind
@@ -14,9 +14,9 @@ def live_sensors(
     sensors: Iterable[str],
     rests: Mapping[str, Rest],
     status: Mapping[str, SensorStatus],
-    untold: RateKind = RateKind.INSTANTANEOUS,
+    not_reported: RateKind = RateKind.INSTANTANEOUS,
 ) -> dict[str, LiveSensor]:
-    """Rate, bias and kind of rate by the sensor's name; those that tell no rate and are not heard are left out.
+    """Rate, bias and kind of rate by the sensor's name; those that report no rate and are not received are left out.
 
     Parameters
     ----------
@@ -24,13 +24,13 @@ def live_sensors(
         Of the sensors that have lain still; the others are taken as without bias, which the orientation filter then
         finds by itself as far as it can.
     untold
-        What the rates stand for where the sensor does not tell: what an analysis of the free motion has found.
+        What the rates stand for where the sensor does not report: what an analysis of the free motion has found.
     """
     found = {}
     for name in sensors:
         one = status.get(name)
-        rate_hz = (one.details.rate_hz or one.heard_hz) if one is not None else 0.0
+        rate_hz = (one.details.rate_hz or one.received_hz) if one is not None else 0.0
         if one is not None and rate_hz > 0.0:
             bias = rests[name].gyr_rad_s if name in rests else np.zeros(3)
-            found[name] = LiveSensor(rate_hz, bias, one.details.rate_kind or untold)
+            found[name] = LiveSensor(rate_hz, bias, one.details.rate_kind or not_reported)
     return found

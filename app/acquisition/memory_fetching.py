@@ -1,6 +1,6 @@
 """Files of the sensors' memories on their way into one journal, held against it, and only then erased.
 
-What a sensor sends is put into the journal before it is looked at. What could not be had is said, by number.
+What a sensor sends is put into the journal before it is looked at. What could not be had is stated, by number.
 """
 
 import json
@@ -32,20 +32,21 @@ for a while."""
 
 @dataclass(frozen=True, slots=True)
 class OrderedFile:
-    """When a file was first told to begin, said that it is recorded, and that it had ended, ns of the host's clock."""
+    """When a file was first asked to begin, stated that it is recorded, and that it had ended, ns of the host's
+    clock."""
 
-    told_ns: int
+    reported_ns: int
     recording_ns: int
     ended_ns: int
 
     def since(self, opened_ns: int) -> FileOrders:
         """In seconds since a journal was opened."""
-        told_s, recording_s = (self.told_ns - opened_ns) / 1e9, (self.recording_ns - opened_ns) / 1e9
-        return FileOrders((told_s, recording_s), (self.ended_ns - opened_ns) / 1e9)
+        reported_s, recording_s = (self.reported_ns - opened_ns) / 1e9, (self.recording_ns - opened_ns) / 1e9
+        return FileOrders((reported_s, recording_s), (self.ended_ns - opened_ns) / 1e9)
 
 
 @dataclass(frozen=True, slots=True)
-class WantedFile:
+class RequiredFile:
     """A file of one sensor's memory.
 
     Attributes
@@ -91,25 +92,25 @@ class _Begun:
 class MemoryFetching:
     """Methods wait, minutes where they fetch, so not from the screen's thread."""
 
-    def __init__(self, radio: Radio, wanted: Sequence[WantedFile]) -> None:
+    def __init__(self, radio: Radio, required: Sequence[RequiredFile]) -> None:
         self._radio = radio
-        self._wanted = {one.sensor.name: one for one in wanted}
+        self._required = {one.sensor.name: one for one in required}
         self._begun: dict[str, _Begun] = {}
         self._progress: Progress = _nobody
 
     @property
     def about(self) -> Mapping[str, int]:
         """How many samples of each sensor there are, about; 0 where that is not known yet."""
-        return {name: one.about for name, one in self._wanted.items()}
+        return {name: one.about for name, one in self._required.items()}
 
     @property
     def sensors(self) -> tuple[str, ...]:
-        return tuple(self._wanted)
+        return tuple(self._required)
 
     @property
     def is_done(self) -> bool:
         """Whether each was fetched to its end."""
-        return len(self.results) == len(self._wanted)
+        return len(self.results) == len(self._required)
 
     @property
     def results(self) -> Mapping[str, FetchedFile]:
@@ -126,23 +127,23 @@ class MemoryFetching:
         """
         failed: dict[str, SourceLostError | SourceRefusedError] = {}
         self._progress = progress
-        for name, wanted in self._wanted.items():
+        for name, required in self._required.items():
             if name in self.results:
                 continue
             try:
                 if name not in self._begun:
-                    self._begun[name] = _Begun(self._found(wanted, writer, tick))
+                    self._begun[name] = _Begun(self._found(required, writer, tick))
                 one = self._begun[name]
                 one.result = self._radio.run(one.fetching.fetch(), tick)
             except (SourceLostError, SourceRefusedError) as problem:
                 failed[name] = problem
         return failed
 
-    def _found(self, wanted: WantedFile, writer: JournalWriter, tick: Tick | None) -> Fetching:
-        sensor, file = wanted.sensor, wanted.file
+    def _found(self, required: RequiredFile, writer: JournalWriter, tick: Tick | None) -> Fetching:
+        sensor, file = required.sensor, required.file
         if file is None:
             files = self._radio.run(_listed(sensor), tick)
-            named = [one for one in files if one.started_utc_s == wanted.started_utc_s]
+            named = [one for one in files if one.started_utc_s == required.started_utc_s]
             file = named[-1] if named else None  # one that was given up in the same second comes before
         if file is None or sensor.info is None:
             raise DotRefusedError(
@@ -150,8 +151,8 @@ class MemoryFetching:
                 "Check whether it was switched off",
                 sensor=sensor.name,
             )
-        orders = None if wanted.orders is None else wanted.orders.since(writer.header.opened_ns)
-        settings = file_settings(file, wanted.rate_hz, wanted.clock, orders)
+        orders = None if required.orders is None else required.orders.since(writer.header.opened_ns)
+        settings = file_settings(file, required.rate_hz, required.clock, orders)
         is_simulated = sensor.info.model == EMULATED
         info = SourceInfo(DRIVER, VERSION, sensor.info.serial, (sensor.name,), settings, is_simulated)
         number = writer.source(info)
@@ -159,13 +160,13 @@ class MemoryFetching:
         def keep(data: bytes) -> None:
             writer.received(number, data)
 
-        def tell(done: int, of: int) -> None:
+        def show_message(done: int, of: int) -> None:
             self._progress(sensor.name, done, of)
 
-        return Fetching(sensor, file, keep, tell, wanted.about or file.most_bytes // RECORDED.size)
+        return Fetching(sensor, file, keep, show_message, required.about or file.most_bytes // RECORDED.size)
 
     def look_into(self, segments: Sequence[Path], data_key: KeyMaterial | None) -> Mapping[str, bool]:
-        """Whether the journal, read anew and closed before, holds every sample that each sensor sent."""
+        """Whether the journal, read again and closed before, holds every sample that each sensor sent."""
         sensors = decode(segments, data_key, DECODERS).sensors
         for name, one in self._begun.items():
             found = sensors.get(name)
@@ -175,7 +176,7 @@ class MemoryFetching:
                 and len(found.block) == one.result.samples > 0
                 and one.fetching.framer.has_forces()
             )
-        return {name: name in self._begun and self._begun[name].is_kept for name in self._wanted}
+        return {name: name in self._begun and self._begun[name].is_kept for name in self._required}
 
     def lacks(self, early_s: Mapping[str, float] = MappingProxyType({})) -> tuple[Lack, ...]:
         """What could not be had, of each sensor that lacks something; it may have ended `early_s` before it was to."""
@@ -184,17 +185,17 @@ class MemoryFetching:
         ]
         return tuple(one for one in every if one != Lack(one.sensor))
 
-    def told(self) -> str:
+    def reported(self) -> str:
         """What was fetched, for the journal: of each sensor when it was begun, its samples, whether that is all."""
-        told = {
+        reported = {
             name: [one.file.started_utc_s, one.samples, one.is_complete] for name, one in sorted(self.results.items())
         }
-        return FETCHED + json.dumps(told)
+        return FETCHED + json.dumps(reported)
 
     def erase(
         self, sensor: str, utc_s: int, *, is_confirmed: bool, may_lack: bool = False, others: Sequence[int] = ()
     ) -> None:
-        """Erase a sensor's memory, all of which must be in the journal: `look_into` has said so, and the user agrees.
+        """Erase a sensor's memory, all of which must be in the journal: `look_into` has stated so, and the user agrees.
 
         Parameters
         ----------
@@ -220,12 +221,12 @@ class MemoryFetching:
                 "{sensor} has data that were not fetched", "Fetch again, or discard these data", sensor=sensor
             )
         kept = {one.result.file.started_utc_s, *others}
-        self._radio.run(_erased(self._wanted[sensor].sensor, kept, utc_s))
+        self._radio.run(_erased(self._required[sensor].sensor, kept, utc_s))
 
 
 @dataclass(frozen=True, slots=True)
 class FetchedBefore:
-    """What a journal says of one sensor's file."""
+    """What a journal states of one sensor's file."""
 
     started_utc_s: int
     samples: int
@@ -233,11 +234,12 @@ class FetchedBefore:
 
 
 def fetched_files(mark: str) -> Mapping[str, FetchedBefore]:
-    """What `MemoryFetching.told` has told, by the sensor's name; nothing where it is not that."""
+    """What `MemoryFetching.reported` has reported, by the sensor's name; nothing where it is not that."""
     try:
-        told = json.loads(mark.removeprefix(FETCHED))
+        reported = json.loads(mark.removeprefix(FETCHED))
         return {
-            str(name): FetchedBefore(int(utc_s), int(count), bool(all_)) for name, (utc_s, count, all_) in told.items()
+            str(name): FetchedBefore(int(utc_s), int(count), bool(all_))
+            for name, (utc_s, count, all_) in reported.items()
         }
     except (ValueError, TypeError, AttributeError):
         return {}

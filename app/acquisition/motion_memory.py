@@ -36,9 +36,9 @@ class MotionMemory:
                 self._blocks[sensor].append(block)
 
     def has_passed(self, time_s: float) -> bool:
-        """Whether all sensors that were ever heard have reached an instant, or are more than WAIT_S behind."""
-        heard_s = [float(blocks[-1].time_s[-1]) for blocks in self._blocks.values() if blocks]
-        return bool(heard_s) and (min(heard_s) >= time_s or max(heard_s) >= time_s + WAIT_S)
+        """Whether all sensors that were ever received have reached an instant, or are more than WAIT_S behind."""
+        received_s = [float(blocks[-1].time_s[-1]) for blocks in self._blocks.values() if blocks]
+        return bool(received_s) and (min(received_s) >= time_s or max(received_s) >= time_s + WAIT_S)
 
     def forget_before(self, time_s: float) -> None:
         """Let go of blocks that end before an instant."""
@@ -47,7 +47,7 @@ class MotionMemory:
                 self._blocks[sensor] = [block for block in blocks if block.time_s[-1] >= time_s]
 
     def between(self, from_s: float, to_s: float) -> dict[str, ImuBlock]:
-        """Samples of from..to, the end excluded, of each sensor that was heard then."""
+        """Samples of from..to, the end excluded, of each sensor that was received then."""
         parts = {sensor: _between(sensor, blocks, from_s, to_s) for sensor, blocks in self._blocks.items()}
         return {sensor: part for sensor, part in parts.items() if len(part)}
 
@@ -64,15 +64,15 @@ class Looks:
 
     def update(self, blocks: Mapping[str, ImuBlock]) -> None:
         """Take new samples of some or all sensors, and as many steps as they allow."""
-        heard = [block for block in blocks.values() if len(block)]
-        if not heard:
+        received = [block for block in blocks.values() if len(block)]
+        if not received:
             return
         self._memory.feed(blocks)
         if self._next_s is None:
-            first_s = min(float(block.time_s[0]) for block in heard)
+            first_s = min(float(block.time_s[0]) for block in received)
             self._next_s = self._every_s * (math.floor((first_s + self._after_s) / self._every_s) + 1)
             self._steps = math.floor(first_s / STEP_EVERY_S)
-        allowed = math.floor(max(float(block.time_s[-1]) for block in heard) / STEP_EVERY_S)
+        allowed = math.floor(max(float(block.time_s[-1]) for block in received) / STEP_EVERY_S)
         for _ in range(allowed - self._steps):
             if self._going_on is None and not self._memory.has_passed(self._next_s):
                 break
@@ -95,7 +95,7 @@ class Looks:
 def tracks_in_steps(
     blocks: Mapping[str, ImuBlock], sensors: Mapping[str, LiveSensor]
 ) -> Generator[None, None, dict[str, list[OrientedTrack]]]:
-    """Oriented stretches of each block, with bias and kind of rate where `sensors` tell; a step for each."""
+    """Oriented stretches of each block, with bias and kind of rate where `sensors` report; a step for each."""
     tracks = {}
     for name, block in blocks.items():
         sensor = sensors.get(name)

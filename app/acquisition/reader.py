@@ -7,8 +7,8 @@ from collections import deque
 from collections.abc import Callable, Mapping, Sequence
 from contextlib import suppress
 
-from app.acquisition.heard_sensor import HeardSensor, SensorStatus
-from app.acquisition.source_tape import SourceTape
+from app.acquisition.journal_stream import JournalStream
+from app.acquisition.sensor_stream import SensorStatus, SensorStream
 from app.storage.journal.writer import JournalWriter
 from core.samples import ImuBlock
 from devices.live import LiveSource, SensorDetails, SourceLostError, SourceRefusedError, SourceRestartedError
@@ -32,10 +32,10 @@ class Reader:
         self.source = source
         self._now_ns, self._begin_ns = now_ns, 0
         self._lock = threading.Lock()
-        self._tape: SourceTape | None = None
+        self._tape: JournalStream | None = None
         self._recent: deque[tuple[float, ImuBlock]] = deque()  # when it was read, and what
-        self._sensors: Mapping[str, HeardSensor] = {}
-        self._is_open = self._begins_anew = False
+        self._sensors: Mapping[str, SensorStream] = {}
+        self._is_open = self._begins_again = False
         self._begun_reads = self._done_reads = 0
         self._is_closing = threading.Event()
         self._thread = threading.Thread(target=self._run, name=f"read {source.info.driver}", daemon=True)
@@ -71,10 +71,10 @@ class Reader:
         return tuple(self._sensors)
 
     def status(self, source: int, now_s: float) -> Sequence[SensorStatus]:
-        told = self.source.details()
+        reported = self.source.details()
         with self._lock:
             return [
-                sensor.status(source, told.get(sensor.name, NO_DETAILS), now_s) for sensor in self._sensors.values()
+                sensor.status(source, reported.get(sensor.name, NO_DETAILS), now_s) for sensor in self._sensors.values()
             ]
 
     def since(self, sensor: str, time_s: float) -> ImuBlock:
@@ -85,7 +85,7 @@ class Reader:
     def lost(self) -> Mapping[str, int]:
         """How many samples each sensor lacks so far."""
         with self._lock:
-            return {name: heard.lost for name, heard in self._sensors.items()}
+            return {name: received.lost for name, received in self._sensors.items()}
 
     def totals(self) -> Mapping[str, int]:
         """How many samples each sensor has sent."""
@@ -95,13 +95,13 @@ class Reader:
     def newest(self, sensor: str, after: int, most_s: float) -> tuple[ImuBlock, int, int]:
         """A sensor's samples beyond its first `after` ones, of `most_s` at most; how many it sent, and left out."""
         with self._lock:
-            heard = self._sensors[sensor]
-            block = heard.ring.newest(min(heard.ring.total - after, round(most_s * heard.usual_hz)))
-            return block, heard.ring.total, heard.ring.total - after - len(block)
+            received = self._sensors[sensor]
+            block = received.ring.newest(min(received.ring.total - after, round(most_s * received.usual_hz)))
+            return block, received.ring.total, received.ring.total - after - len(block)
 
     def record(self, writer: JournalWriter) -> None:
         """Keep what was measured since the journal was opened."""
-        tape = SourceTape(writer, self.source)
+        tape = JournalStream(writer, self.source)
         with self._lock:
             if not self.source.has_bytes:
                 for _, block in self._recent:
@@ -110,8 +110,8 @@ class Reader:
 
     def finish_read(self) -> None:
         """Wait until what already lies at the source has been read, if it answers."""
-        wanted, until_s = self._begun_reads + 1, time.monotonic() + LAST_READ_S
-        while self._is_open and self._done_reads < wanted and time.monotonic() < until_s:
+        required, until_s = self._begun_reads + 1, time.monotonic() + LAST_READ_S
+        while self._is_open and self._done_reads < required and time.monotonic() < until_s:
             time.sleep(0.005)
 
     def stop_recording(self) -> None:
@@ -140,15 +140,15 @@ class Reader:
             self._is_open = True
             for name, sensor in self._sensors.items():
                 sensor.rate_hz = self._rate_hz(name)
-                if self._begins_anew:
-                    sensor.begin_anew()
-            self._begins_anew = False
+                if self._begins_again:
+                    sensor.begin_again()
+            self._begins_again = False
             if self._tape:
                 self._tape.come_back()
 
     def _note_lost(self, error: Exception) -> None:
         is_expected = isinstance(error, SourceLostError | SourceRefusedError)
-        self._begins_anew |= isinstance(error, SourceRestartedError)
+        self._begins_again |= isinstance(error, SourceRestartedError)
         details = None if is_expected else error
         if self._is_open:
             _log.warning("%s was lost", self.source.info.driver, exc_info=details)
@@ -180,10 +180,10 @@ class Reader:
                 self._recent.popleft()
         sensor.hear(block, block.time_s - self._begin_ns / 1e9, (now_ns - self._begin_ns) / 1e9)
 
-    def _known(self, name: str) -> HeardSensor:
+    def _known(self, name: str) -> SensorStream:
         if name not in self._sensors:
             now_s = (self._now_ns() - self._begin_ns) / 1e9
-            sensor = HeardSensor(name, self._rate_hz(name), now_s)
+            sensor = SensorStream(name, self._rate_hz(name), now_s)
             self._sensors = {**self._sensors, name: sensor}  # others are looking at the old one
         return self._sensors[name]
 

@@ -1,7 +1,7 @@
 """How does a recording get into the library, whatever the database is doing, and out of its journal again?
 
 Its row comes first, where the database answers within a second. Where it does not, whatever is the matter with it, the
-journal is begun all the same and says itself which session it is of: the row follows, at the latest on stop; if the
+journal is begun all the same and states itself which session it is of: the row follows, at the latest on stop; if the
 program ends before that, the journal is found at the next start and put into its session.
 
 Where the library's folder itself is gone, the journal is in its shelter; on stop it is brought home first.
@@ -76,17 +76,18 @@ class Recorder:
         opened: OpenedLibrary,
         acquisition: Acquisition,
         session_id: UUID,
-        told: Recording,
+        reported: Recording,
         on_trouble: Callable[[Trouble], None] | None = None,
         turn: "Future[None] | None" = None,
         *,
         room: Room = ROOM,
         fetched: "InMemory | None" = None,
     ) -> "Recorder":
-        """Record from now on, worn as the session's latest placement says; `fetched` was recorded before, in memories.
+        """Record from now on, worn as the session's latest placement states; `fetched` was recorded before, in
+        memories.
 
-        `on_trouble` is called from any thread; `app.storage.journal.disk.TOLD` has the words. One that begins in the
-        shelter already does not call it: `is_away` tells. The row waits for `turn`:
+        `on_trouble` is called from any thread; `journal.disk.REPORTED` has the words. One that begins in the
+        shelter already does not call it: `is_away` reports. The row waits for `turn`:
         until then the session's placement may not be there. The recording waits a second for both, and no longer.
 
         Raises
@@ -100,14 +101,14 @@ class Recorder:
         OSError
             The folder of the recordings cannot be written, nor the shelter.
         """
-        entry = _Entry(opened, session_id, told, acquisition.is_simulated)
+        entry = _Entry(opened, session_id, reported, acquisition.is_simulated)
         entry.start(turn)
         memory: InMemory | None = None
         try:
             if fetched is not None:
                 memory = fetched
             elif acquisition.is_in_memory:
-                memory = acquisition.record_in_memory(round(datetime.fromisoformat(told.started).timestamp()))
+                memory = acquisition.record_in_memory(round(datetime.fromisoformat(reported.started).timestamp()))
             writer = JournalWriter.create(
                 opened.recordings,
                 entry.id,
@@ -123,7 +124,7 @@ class Recorder:
                 memory.give_up()
             entry.withdraw()
             raise
-        writer.mark(Belonging(session_id, told).text())
+        writer.mark(Belonging(session_id, reported).text())
         if memory is None:
             acquisition.record(writer)
         entry.add(writer)
@@ -169,7 +170,7 @@ class Recorder:
         assert self.memory is not None  # else there is nothing to fetch
         failed = self.memory.finish(self._writer, progress, tick)
         if not failed:
-            self._writer.mark(self.memory.told())
+            self._writer.mark(self.memory.reported())
             self.summary = self._writer.stop()
         return failed
 
@@ -224,16 +225,16 @@ class InMemory(Protocol):
     def lacks(self) -> "tuple[Lack, ...]":
         """What could not be had of it."""
 
-    def told(self) -> str:
+    def reported(self) -> str:
         """What was fetched of each sensor, for the journal."""
 
 
 class _Entry:
     """A recording's row, written by a thread of its own: the recording waits a second for it, and no longer."""
 
-    def __init__(self, opened: OpenedLibrary, session_id: UUID, told: Recording, is_simulated: bool) -> None:
+    def __init__(self, opened: OpenedLibrary, session_id: UUID, reported: Recording, is_simulated: bool) -> None:
         self._recordings = opened.library.recordings
-        self._session_id, self._told, self._is_simulated = session_id, told, is_simulated
+        self._session_id, self._reported, self._is_simulated = session_id, reported, is_simulated
         self.id = self._recordings.new_id()
         self._thread = ThreadPoolExecutor(1, "recording's row")
         self._steps: list[Future[object]] = []
@@ -257,7 +258,7 @@ class _Entry:
 
     @property
     def kind(self) -> RecordingKind:
-        return self._told.kind
+        return self._reported.kind
 
     @property
     def has_row(self) -> bool:
@@ -269,10 +270,10 @@ class _Entry:
             turn.result()
         self._recordings.start(
             self._session_id,
-            self._told,
+            self._reported,
             self._is_simulated,
             self.id,
-            is_decided=self._told.kind is not RecordingKind.WALKING,
+            is_decided=self._reported.kind is not RecordingKind.WALKING,
         )
 
     def add(self, writer: JournalWriter) -> None:
@@ -299,7 +300,7 @@ class _Entry:
                 return stored  # an earlier try came as far
             raise LibraryError("This recording is no longer in the library", "Reload the session")
         if interrupted.is_orphan:
-            return adopt(opened, interrupted, self._session_id, self._told, _nobody).stored
+            return adopt(opened, interrupted, self._session_id, self._reported, _nobody).stored
         return recover(opened, interrupted, _nobody).stored
 
     def _find(self, opened: OpenedLibrary) -> Interrupted | None:

@@ -2,13 +2,13 @@
 
     sensors synchronised at the rate of their memories -> begin -> end -> fetch -> is it in the journal? -> erase
 
-When each sensor was told to begin and to end is noted: nothing else tells where its file lies in time.
+When each sensor was given to begin and to end is noted: nothing else gives where its file lies in time.
 """
 
 from collections.abc import Mapping, Sequence
 from pathlib import Path
 
-from app.acquisition.memory_fetching import Lack, MemoryFetching, OrderedFile, Progress, WantedFile
+from app.acquisition.memory_fetching import Lack, MemoryFetching, OrderedFile, Progress, RequiredFile
 from app.storage.data_key import KeyMaterial
 from app.storage.journal.writer import JournalWriter
 from devices.dot.memory import Begun, OwnClockError, record, stop
@@ -16,7 +16,7 @@ from devices.dot.source import DotGroup
 from devices.live import SourceLostError, SourceRefusedError
 from devices.transport.bluetooth import Tick
 
-EARLY_S = 2.0  # a file that is shorter by less ended when it was told to: beginnings and clocks differ so much
+EARLY_S = 2.0  # a file that is shorter by less ended when it was given to: beginnings and clocks differ so much
 
 
 class MemoryRecording:
@@ -28,7 +28,7 @@ class MemoryRecording:
         self._begun: Mapping[str, Begun] = {}
         self._ended_ns: dict[str, int] = {}
         self._clocks: dict[str, str] = {}
-        self._utc_s = self._wanted_ns = 0
+        self._utc_s = self._required_ns = 0
         self.given_up: set[int] = set()  # beginnings where one refused: the others hold a moment that nobody wants
         self.fetching: MemoryFetching | None = None
 
@@ -58,7 +58,7 @@ class MemoryRecording:
 
     def ask_to_end(self) -> None:
         """Note that it is to end now; waits for nothing."""
-        self._wanted_ns = self._wanted_ns or self._group.radio.now_ns()
+        self._required_ns = self._required_ns or self._group.radio.now_ns()
 
     def end(self, tick: Tick | None = None) -> Mapping[str, SourceLostError | SourceRefusedError]:
         """End the recording in each; those that it could not be ended in, and why. May be tried again."""
@@ -74,7 +74,7 @@ class MemoryRecording:
             except (SourceLostError, SourceRefusedError) as problem:
                 failed[sensor.name] = problem
         if not failed:
-            self.fetching = self.fetching or MemoryFetching(radio, [self._wanted(name) for name in self._begun])
+            self.fetching = self.fetching or MemoryFetching(radio, [self._required(name) for name in self._begun])
         return failed
 
     def finish(
@@ -97,30 +97,30 @@ class MemoryRecording:
         return {} if self.fetching is None else self.fetching.look_into(segments, data_key)
 
     def lacks(self) -> tuple[Lack, ...]:
-        """As `MemoryFetching.lacks`; which sensors ended before they were told to is known, too."""
+        """As `MemoryFetching.lacks`; which sensors ended before they were given to is known, too."""
         return () if self.fetching is None else self.fetching.lacks(self.ended_early_s())
 
-    def told(self) -> str:
-        """As `MemoryFetching.told`."""
-        return "" if self.fetching is None else self.fetching.told()
+    def reported(self) -> str:
+        """As `MemoryFetching.reported`."""
+        return "" if self.fetching is None else self.fetching.reported()
 
-    def _wanted(self, name: str) -> WantedFile:
+    def _required(self, name: str) -> RequiredFile:
         begun, ended_ns = self._begun[name], self._ended_ns[name]
         sensor = next(one for one in self._group.sensors if one.name == name)
-        about = round((self._wanted_ns - begun.recording_ns) / 1e9 * self._rate_hz)
-        orders = OrderedFile(begun.told_ns, begun.recording_ns, ended_ns)
+        about = round((self._required_ns - begun.recording_ns) / 1e9 * self._rate_hz)
+        orders = OrderedFile(begun.reported_ns, begun.recording_ns, ended_ns)
         rate_hz = float(self._rate_hz)
-        return WantedFile(sensor, self._utc_s, None, rate_hz, self._clocks[name], orders, max(about, 1))
+        return RequiredFile(sensor, self._utc_s, None, rate_hz, self._clocks[name], orders, max(about, 1))
 
     def ended_early_s(self) -> Mapping[str, float]:
-        """Which sensors ended before they were told to, by their button or a full memory, and how long before, s.
+        """Which sensors ended before they were given to, by their button or a full memory, and how long before, s.
 
         One whose end was not fetched may hold more than came, and is not among them.
         """
         if self.fetching is None:
             return {}
         early_s = {
-            name: (self._wanted_ns - self._begun[name].recording_ns) / 1e9 - (one.samples + one.lost) / self._rate_hz
+            name: (self._required_ns - self._begun[name].recording_ns) / 1e9 - (one.samples + one.lost) / self._rate_hz
             for name, one in self.fetching.results.items()
             if one.is_end_known
         }

@@ -45,10 +45,10 @@ def box(x: float, y: float, width: float, height: float, fill: str, edge: str = 
 
 
 def text(
-    x: float, y: float, said: str, size: float, *, anchor: str = "start", weight: int = 400, fill: str = PAPER.ink
+    x: float, y: float, stated: str, size: float, *, anchor: str = "start", weight: int = 400, fill: str = PAPER.ink
 ) -> str:
     look = f'font-family="Inter" font-size="{size}" font-weight="{weight}" fill="{fill}" text-anchor="{anchor}"'
-    return f'<text x="{x:.2f}" y="{y:.2f}" {look}>{escape(said)}</text>'
+    return f'<text x="{x:.2f}" y="{y:.2f}" {look}>{escape(stated)}</text>'
 
 
 def curve(x: FloatArray, y: FloatArray, colour: str, width: float, dash: str = "") -> str:

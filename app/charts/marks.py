@@ -1,4 +1,4 @@
-"""What stands out on the curves of a stride: two points that differ, and where a curve lies outside a limit."""
+"""What is out on the curves of a stride: two points that differ, and where a curve lies outside a limit."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
@@ -11,7 +11,7 @@ from core.body import Joint, JointKind
 from core.samples import FloatArray
 
 MOST_MARKS = 2  # in one chart; more would hide the curves
-LEAST_GAP_PERCENT = 4  # a shorter one is hardly seen, and says little
+LEAST_GAP_PERCENT = 4  # a shorter one is hardly seen, and states little
 BAND_SDS = 2.0
 
 
@@ -32,7 +32,7 @@ class Deviation:
     """A difference between two points: of two curves, or of the two extremes of an excursion on one.
 
     `words` name it ("L 12° under R"), `more` goes on in grey; `size` is what paper writes beside its bracket ("45°"),
-    `number` that of the sentence that tells it, None where none does.
+    `number` that of the sentence that reports it, None where none does.
 
     Raises
     ------
@@ -63,8 +63,8 @@ class Deviation:
 
     def in_words(self) -> str:
         """The same for who cannot see it, as sentences."""
-        said = tr("{difference}, beyond measurement error") if self.is_larger_than_error else "{difference}"
-        return "; ".join(filter(None, [said.format(difference=self.words), self.more])) + "."
+        stated = tr("{difference}, beyond measurement error") if self.is_larger_than_error else "{difference}"
+        return "; ".join(filter(None, [stated.format(difference=self.words), self.more])) + "."
 
 
 @dataclass(frozen=True, slots=True)
@@ -81,9 +81,9 @@ class Gap:
         return replace(self, limit_deg=self.limit_deg - height_deg)
 
     def in_words(self) -> str:
-        told = tr("{joint}, {first} to {last} %: {what}.")
+        reported = tr("{joint}, {first} to {last} %: {what}.")
         joint = capitalised(name_of(self.joint))
-        return told.format(joint=joint, first=self.first_percent, last=self.last_percent, what=self.words)
+        return reported.format(joint=joint, first=self.first_percent, last=self.last_percent, what=self.words)
 
 
 def extreme_of(joint: Joint, curve_deg: FloatArray, first: float, last: float, *, is_maximum: bool) -> Point:

@@ -90,7 +90,7 @@ def _gap_bar(theme: Theme, frame: Frame, gap: Gap) -> Box:
 
 
 def _gap_letters(theme: Theme, frame: Frame, gaps: Sequence[Gap]) -> list[tuple[Gap, Box]]:
-    """At the longest bar of each leg, right of it where there is room; higher where the other letter stands there."""
+    """At the longest bar of each leg, right of it where there is room; higher where the other letter is there."""
     metrics, height, apart = QFontMetrics(_font(theme, is_first=True)), theme.px(LINE_HEIGHT), theme.px(LETTER_APART)
     letters: list[tuple[Gap, Box]] = []
     for side in Side:

@@ -47,9 +47,9 @@ STRIDE, ONLY_STRIDES = 0.32, 0.8
 BRACKET_WIDTH, BRACKET_CAP, NUMBER_RADIUS = 1.4, 2.5, 4.4
 LETTERS_FROM, LETTERS_APART = 24, 44  # percent of the stride
 NARROWEST = 27 * MM  # narrower, fewer labels fit below it
-NARROW, NARROW_FOOT = 60 * MM, 17.0  # narrower, what the axis is has no room, and stands above the charts
+NARROW, NARROW_FOOT = 60 * MM, 17.0  # narrower, what the axis is has no room, and is above the charts
 HATCH_APART, LINE_OF_WORDS = 6.0, 8.6
-BELOW_MARK = 11.0  # of a plot's top, so that why it is withheld does not run into "SIMULATED"
+BELOW_MARK = 11.0  # of a plot's top, so that why it is not reported does not run into "SIMULATED"
 SIZE_OF_WORDS, PER_LETTER = 7.0, 0.6  # a letter's width on its height; an SVG cannot be asked
 
 
@@ -89,9 +89,9 @@ def draw(chart: StrideChart, plot_width: float) -> Picture:
     is_narrow = plot_width < NARROW
     foot = NARROW_FOOT if is_narrow else FOOT
     parts = [text(0, 8, chart.title, 7.6, weight=600)]
-    if chart.withheld:
-        parts += _hatches(frame) + _axes(frame, chart.axis, is_narrow=is_narrow) + _why_withheld(frame, chart)
-        alt = " ".join(filter(None, [chart.alt, f"{_withheld_word()}. {chart.withheld}"]))
+    if chart.not_reported:
+        parts += _hatches(frame) + _axes(frame, chart.axis, is_narrow=is_narrow) + _why_not_reported(frame, chart)
+        alt = " ".join(filter(None, [chart.alt, f"{_not_reported_word()}. {chart.not_reported}"]))
         return picture(parts, frame.right + RIGHT_MARGIN, frame.bottom + foot, alt)
     if chart.band is not None:
         parts += _band(frame, chart.band)
@@ -178,8 +178,8 @@ def _band(frame: Frame, band: Band) -> list[str]:
     ]
 
 
-def _withheld_word() -> str:
-    return verdict_alone(Verdict.WITHHELD)
+def _not_reported_word() -> str:
+    return verdict_alone(Verdict.NOT_REPORTED)
 
 
 def _hatches(frame: Frame) -> list[str]:
@@ -192,12 +192,12 @@ def _hatches(frame: Frame) -> list[str]:
     return parts
 
 
-def _why_withheld(frame: Frame, chart: StrideChart) -> list[str]:
-    lines = wrap(chart.withheld, int(0.8 * frame.width / (PER_LETTER * SIZE_OF_WORDS)))
+def _why_not_reported(frame: Frame, chart: StrideChart) -> list[str]:
+    lines = wrap(chart.not_reported, int(0.8 * frame.width / (PER_LETTER * SIZE_OF_WORDS)))
     middle, height = (frame.top + frame.bottom) / 2, 16 + LINE_OF_WORDS * len(lines)
     top, x = max(middle - height / 2, frame.top + BELOW_MARK), (frame.left + frame.right) / 2
     parts = [box(frame.left + 0.08 * frame.width, top, 0.84 * frame.width, height, PAPER.paper)]
-    parts.append(text(x, top + 10, _withheld_word(), 8.6, anchor="middle", weight=600))
+    parts.append(text(x, top + 10, _not_reported_word(), 8.6, anchor="middle", weight=600))
     for k, words in enumerate(lines):
         parts.append(text(x, top + 12 + LINE_OF_WORDS * (k + 0.8), words, SIZE_OF_WORDS, anchor="middle"))
     return parts + _simulated(frame, chart)
@@ -212,8 +212,8 @@ def _axes(frame: Frame, axis: Axis, *, is_narrow: bool) -> list[str]:
             parts.append(line(x, frame.top, x, frame.bottom, PAPER.grid, 0.25))
         parts.append(line(x, frame.bottom, x, frame.bottom + (4 if is_labelled else 2.5), PAPER.ink, 0.6))
         if is_labelled:
-            said = f"{percent} %" if is_narrow and percent == 100 else str(percent)
-            parts.append(text(x, frame.bottom + 12, said, 7, anchor="middle"))
+            stated = f"{percent} %" if is_narrow and percent == 100 else str(percent)
+            parts.append(text(x, frame.bottom + 12, stated, 7, anchor="middle"))
     for degrees in np.arange(axis.low, axis.high + 1, axis.tick_every):
         y = float(frame.y(degrees))
         is_labelled = degrees % axis.label_every == 0
@@ -224,11 +224,11 @@ def _axes(frame: Frame, axis: Axis, *, is_narrow: bool) -> list[str]:
         if is_labelled:
             parts.append(text(frame.left - 6, y + 2.5, angle_in_words(float(degrees)), 7, anchor="end"))
     if not is_narrow:
-        middle, said = (
+        middle, stated = (
             (frame.left + frame.right) / 2,
             tr("Gait cycle, % (0 and 100 = initial contact of the same foot)"),
         )
-        parts.append(text(middle, frame.bottom + 22, said, 7, anchor="middle"))
+        parts.append(text(middle, frame.bottom + 22, stated, 7, anchor="middle"))
     parts.append(box(frame.left, frame.top, frame.width, frame.height, "none", PAPER.ink, 0.7))
     return parts
 
@@ -293,8 +293,8 @@ def _words(frame: Frame, chart: StrideChart) -> list[str]:
 
 
 def _simulated(frame: Frame, chart: StrideChart) -> list[str]:
-    said = text(frame.right - 4, frame.top + 9.5, tr("SIMULATED"), 6.6, anchor="end", weight=600)
-    return [said] if chart.is_simulated else []
+    stated = text(frame.right - 4, frame.top + 9.5, tr("SIMULATED"), 6.6, anchor="end", weight=600)
+    return [stated] if chart.is_simulated else []
 
 
 def _badges(frame: Frame, curves: Sequence[StrideCurve], marks: Sequence[tuple[float, float]]) -> list[str]:

@@ -18,9 +18,9 @@ from app.wording.translation import later, tr
 from core.body import Side
 from core.samples import FloatArray
 
-LABEL_HEIGHT = 24  # toe-off stands above the plot
+LABEL_HEIGHT = 24  # toe-off is above the plot
 TICKS_HEIGHT = 24
-RIGHT_MARGIN = 20  # half of "100 %" stands beside the plot
+RIGHT_MARGIN = 20  # half of "100 %" is beside the plot
 TICK, TICK_PERCENT = 4, 20
 SIMULATED = later("SIMULATED")
 MEAN_PX, CASING_PX, STRIDE_PX, TOE_OFF_PX = 2.5, 2.0, 1.0, 1.5
@@ -86,7 +86,7 @@ def paint_cursor(
     font, row = theme.font(12, QFont.Weight.DemiBold), theme.px(CURSOR_ROW)
     painter.setRenderHint(QPainter.RenderHint.Antialiasing)
     painter.setFont(font)
-    for number, curve in enumerate(curve for curve in curves if not curve.is_withheld):
+    for number, curve in enumerate(curve for curve in curves if not curve.is_not_reported):
         percent = readings.get(curve.side)
         if percent is None or not curve.is_known:
             continue
@@ -173,11 +173,11 @@ def _paint_axes(painter: QPainter, theme: Theme, frame: Frame, chart: StrideChar
 
 
 def _paint_strides(painter: QPainter, theme: Theme, frame: Frame, curve: StrideCurve) -> None:
-    """Fine lines; of many, hairlines in the pale colour, a cloud from which the mean stands out."""
+    """Fine lines; of many, hairlines in the pale colour, a cloud from which the mean is out."""
     is_few = len(curve.strides_deg) <= SMOOTH_UP_TO
     painter.setRenderHint(QPainter.RenderHint.Antialiasing, is_few)
     colour = theme.curve(curve.side) if is_few else theme.soft(curve.side)
-    if curve.is_withheld:
+    if curve.is_not_reported:
         colour = QColor(theme.colours.control)  # evidence, not to be read
     colour.setAlphaF(STRIDE_ALPHA if is_few else 1.0)
     painter.setPen(QPen(colour, STRIDE_PX * theme.scale if is_few else 0))

@@ -21,7 +21,7 @@ CANDIDATES_PERCENT = np.arange(2.0, 99.0)
 WORDS_APART = 10.0  # between bar and words
 CLEAR = 3.0  # around words
 LEADER = 0.5  # half of a leader's width
-POINT_APART = 12.0  # between the bar and one at least of the points it stands for, that it may be seen
+POINT_APART = 12.0  # between the bar and one at least of the points it represents, that it may be seen
 # What a length of covered curve costs, an upright line, a crossing; a mark over a mark cannot be read.
 PER_CURVE, PER_SOFT_CURVE, PER_UPRIGHT, PER_CROSSING = 5.0, 0.25, 15.0, 8.0
 UNREADABLE = 1000.0

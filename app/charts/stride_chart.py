@@ -35,8 +35,8 @@ class StrideCurve:
     """One leg in one walk, condition or visit: its mean `angle_deg` (101,), NaN where it is not known or not shown.
 
     `order` is its place among how many are compared, the earliest first. `sd_deg` (101,) is shown where it is given,
-    `strides_deg` (k, 101) are single strides; of a withheld curve they are evidence, not to be read. `is_few`: of too
-    few strides for a mean. `is_bare`: its single strides alone, without mean and letters.
+    `strides_deg` (k, 101) are single strides; of a not reported curve they are evidence, not to be read. `is_few`: of
+    too few strides for a mean. `is_bare`: its single strides alone, without mean and letters.
     """
 
     letter: str
@@ -48,7 +48,7 @@ class StrideCurve:
     order: tuple[int, int] | None = None
     sd_deg: FloatArray | None = None
     strides_deg: FloatArray = field(default_factory=lambda: NO_STRIDES)
-    is_withheld: bool = False
+    is_not_reported: bool = False
     is_few: bool = False
     is_bare: bool = False
 
@@ -61,7 +61,7 @@ class StrideCurve:
 class StrideChart:
     """One joint over 0 to 100 % of the stride.
 
-    `chosen` is one stride (101,) over all others. `withheld` says why nothing of it may be read, and is
+    `chosen` is one stride (101,) over all others. `not_reported` states why nothing of it may be read, and is
     empty where something may. `alt` are the chart's words, for who cannot see it. `beside`: another walk's means, which
     the screen draws thin, without spread and toe-off.
     """
@@ -74,7 +74,7 @@ class StrideChart:
     title: str = ""
     alt: str = ""
     chosen: tuple[Side, FloatArray] | None = None
-    withheld: str = ""
+    not_reported: str = ""
     deviations: tuple[Deviation, ...] = ()
     gaps: tuple[Gap, ...] = ()
 
@@ -95,14 +95,15 @@ def toe_offs_in_order(curves: Sequence[StrideCurve], decimals: int) -> list[Stri
 
 
 def curves_of_walk(
-    cycles: Mapping[Side, SideCycle], withheld: frozenset[Side], *, has_strides: bool
+    cycles: Mapping[Side, SideCycle], not_reported: frozenset[Side], *, has_strides: bool
 ) -> tuple[StrideCurve, ...]:
-    """Each side of one walk, its mean unless that is withheld; strides where they are wanted, or withheld and few."""
+    """Each side of one walk, its mean unless that is not reported; strides where they are required, or not reported
+    and few."""
     curves = []
     for side, cycle in cycles.items():
-        is_withheld, n = side in withheld, cycle.mean.n
-        is_shown = not is_withheld and n > 0
-        are_strides_shown = has_strides or (is_withheld and not is_mean_enough(len(cycle.strides_deg)))
+        is_not_reported, n = side in not_reported, cycle.mean.n
+        is_shown = not is_not_reported and n > 0
+        are_strides_shown = has_strides or (is_not_reported and not is_mean_enough(len(cycle.strides_deg)))
         curves.append(
             StrideCurve(
                 letter=side.letter,
@@ -111,7 +112,7 @@ def curves_of_walk(
                 toe_off_percent=cycle.toe_off_percent if is_shown else float("nan"),
                 sd_deg=cycle.mean.sd if is_shown and is_spread_enough(n) and not has_strides else None,
                 strides_deg=cycle.strides_deg if are_strides_shown else NO_STRIDES,
-                is_withheld=is_withheld,
+                is_not_reported=is_not_reported,
             )
         )
     return tuple(curves)

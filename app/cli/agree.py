@@ -43,13 +43,13 @@ def add_agree_arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("--no-report", action="store_true", help=f"write no {REPORT}")
 
 
-def agree(wanted: argparse.Namespace, report: Report) -> list[str]:
+def agree(args: argparse.Namespace, report: Report) -> list[str]:
     """Write the agreement and give the lines for the terminal.
 
     Raises
     ------
     FileRefusedError
-        The session or a reference cannot be read, nothing can be compared, or something else stands at OUT.
+        The session or a reference cannot be read, nothing can be compared, or something else is at OUT.
     OSError
         The agreement cannot be written.
     """
@@ -60,19 +60,19 @@ def agree(wanted: argparse.Namespace, report: Report) -> list[str]:
     from app.reports.agreement.study import study_of
     from core.analysis import analyse
 
-    check_agreement_place(wanted.out)
+    check_agreement_place(args.out)
     files = []
-    for path in wanted.reference:
+    for path in args.reference:
 
         def waiting(path: Path = path) -> None:
             report(0.0, str(path))
 
         files.append((path.name, read_foreign_reference(path, waiting)))
-    session = read_place(wanted, wanted.session, report)
+    session = read_place(args, args.session, report)
     study = study_of(analyse(session, progress=report), files)
     report(1.0, "writing")
-    with written_beside(wanted.out) as folder:
-        made_at = None if wanted.no_report else datetime.now().astimezone()
+    with written_beside(args.out) as folder:
+        made_at = None if args.no_report else datetime.now().astimezone()
         write_agreement(study, session, folder, made_at, version_of("gaitwright"))
         report(1.0, "writing")
     walks = len(study.walks)
@@ -80,7 +80,7 @@ def agree(wanted: argparse.Namespace, report: Report) -> list[str]:
     return [
         *printed(study, session.patient),
         "",
-        f"{one_line(str(wanted.out))}: {count}. Research use. Not a medical device.",
+        f"{one_line(str(args.out))}: {count}. Research use. Not a medical device.",
     ]
 
 

@@ -66,45 +66,45 @@ def add_batch_arguments(parser: argparse.ArgumentParser) -> None:
     parser.set_defaults(stopped="What is done stays in OUT. Give the same command again to go on.")
 
 
-def batch(wanted: argparse.Namespace, report: Report) -> Iterator[str]:
+def batch(args: argparse.Namespace, report: Report) -> Iterator[str]:
     """Do the batch and give the lines for the terminal.
 
     Raises
     ------
     FileRefusedError
-        There is no session, something else stands at OUT, the library does not open, or no worker answers.
+        There is no session, something else is at OUT, the library does not open, or no worker answers.
     OSError
         OUT cannot be written.
     """
-    if wanted.folder == Path(LIBRARY):
-        _check_apart(wanted)
-    with _workers(wanted) as workers:  # first: they import what takes seconds while this process does
-        result, notes = _done(wanted, workers, report)
-    yield from _told(wanted.out, result)
+    if args.folder == Path(LIBRARY):
+        _check_apart(args)
+    with _workers(args) as workers:  # first: they import what takes seconds while this process does
+        result, notes = _done(args, workers, report)
+    yield from _reported(args.out, result)
     yield from (f"- {one_line(note)}" for note in notes)
     yield from (f"- {one_line(name)}: {one_line(reason)}" for name, reason in sorted(result.failures.items()))
 
 
-def _done(wanted: argparse.Namespace, workers: "Workers", report: Report) -> "tuple[BatchResult, list[str]]":
-    """What came of the batch, and what is to be said of its sessions; raises as `batch`."""
+def _done(args: argparse.Namespace, workers: "Workers", report: Report) -> "tuple[BatchResult, list[str]]":
+    """What came of the batch, and what is to be stated about its sessions; raises as `batch`."""
     from app.cohort.batch.analysed_folder import AnalysisChoices
     from app.cohort.batch.done import batch_at
     from app.cohort.batch.run import Batch
     from app.cohort.batch.spread import ClusterLostError
     from core.results import Method
 
-    choices = AnalysisChoices(Method(wanted.method), wanted.tau, not wanted.no_report, not wanted.no_rrd)
-    with _sessions(wanted) as sessions, batch_at(wanted.out) as folder:
+    choices = AnalysisChoices(Method(args.method), args.tau, not args.no_report, not args.no_rrd)
+    with _sessions(args) as sessions, batch_at(args.out) as folder:
         work = Batch(sessions, folder, choices)
         try:
             work.run(workers, report)
         except ClusterLostError as lost:
             what = "the cluster is out of reach; what was done until then stays in OUT"
-            raise FileRefusedError(wanted.dask, what, "Start it, then run the same command again") from lost
+            raise FileRefusedError(args.dask, what, "Start it, then run the same command again") from lost
         return work.result, list(sessions.notes())
 
 
-def _check_apart(wanted: argparse.Namespace) -> None:
+def _check_apart(args: argparse.Namespace) -> None:
     """See that what leaves a library stays out of it, and is not sent in the clear.
 
     Raises
@@ -112,37 +112,37 @@ def _check_apart(wanted: argparse.Namespace) -> None:
     FileRefusedError
         OUT lies in the library, or the cluster is elsewhere and not reached by TLS.
     """
-    out, library = wanted.out.resolve(), wanted.library.resolve()
+    out, library = args.out.resolve(), args.library.resolve()
     if out == library or library in out.parents:
         raise FileRefusedError(str(out), "this folder is in the library", "Choose a folder outside it for --out")
-    address = urlsplit(wanted.dask or "")
-    if wanted.dask and address.scheme != "tls" and address.hostname not in HERE:
+    address = urlsplit(args.dask or "")
+    if args.dask and address.scheme != "tls" and address.hostname not in HERE:
         what = "sessions of a library would be sent to this cluster as they are, for anybody to read on the way"
-        raise FileRefusedError(one_line(wanted.dask), what, "Use a cluster on this computer, or one with tls://")
+        raise FileRefusedError(one_line(args.dask), what, "Use a cluster on this computer, or one with tls://")
 
 
 @contextmanager
-def _sessions(wanted: argparse.Namespace) -> "Iterator[SessionSource]":
-    if wanted.folder == Path(LIBRARY):
+def _sessions(args: argparse.Namespace) -> "Iterator[SessionSource]":
+    if args.folder == Path(LIBRARY):
         from app.cohort.batch.library_sessions import LibrarySessions
 
-        with opened_library(wanted) as opened:
+        with opened_library(args) as opened:
             yield LibrarySessions(opened)
     else:
         from app.cohort.batch.sources import SessionFolders
 
-        yield SessionFolders(wanted.folder, wanted.out)
+        yield SessionFolders(args.folder, args.out)
 
 
 @contextmanager
-def _workers(wanted: argparse.Namespace) -> "Iterator[Workers]":
+def _workers(args: argparse.Namespace) -> "Iterator[Workers]":
     from app.cohort.batch.executors import of_a_cluster, of_this_computer, processors
 
-    with of_a_cluster(wanted.dask) if wanted.dask else of_this_computer(wanted.workers or processors()) as workers:
+    with of_a_cluster(args.dask) if args.dask else of_this_computer(args.workers or processors()) as workers:
         yield workers
 
 
-def _told(out: Path, result: "BatchResult") -> Iterator[str]:
+def _reported(out: Path, result: "BatchResult") -> Iterator[str]:
     sessions = "1 session" if result.total == 1 else f"{result.total} sessions"
     parts = [f"{result.analysed} analysed"]
     if result.as_before:

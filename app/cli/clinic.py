@@ -53,7 +53,7 @@ def add_clinic_arguments(parser: argparse.ArgumentParser) -> None:
     _add_library(status)
 
 
-def clinic(wanted: argparse.Namespace, progress: Report) -> Iterable[str]:
+def clinic(args: argparse.Namespace, progress: Report) -> Iterable[str]:
     """Do one of these and give the lines for the terminal.
 
     Raises
@@ -61,17 +61,17 @@ def clinic(wanted: argparse.Namespace, progress: Report) -> Iterable[str]:
     FileRefusedError
         The server, the shared place or the library refuses.
     """
-    return {"prepare": _prepare, "move": _move, "join": _join, "back": _back, "status": _status}[wanted.action](
-        wanted, progress
+    return {"prepare": _prepare, "move": _move, "join": _join, "back": _back, "status": _status}[args.action](
+        args, progress
     )
 
 
-def _prepare(wanted: argparse.Namespace, _progress: Report) -> list[str]:
+def _prepare(args: argparse.Namespace, _progress: Report) -> list[str]:
     from app.storage.clinic.joining import prepare_server
     from app.storage.clinic.station import shown_address
 
     with _refusing(DATABASE_VARIABLE):
-        address = _address(wanted)
+        address = _address(args)
         prepare_server(address)
     return [
         f"{shown_address(address)} is ready.",
@@ -80,79 +80,77 @@ def _prepare(wanted: argparse.Namespace, _progress: Report) -> list[str]:
     ]
 
 
-def _move(wanted: argparse.Namespace, progress: Report) -> list[str]:
+def _move(args: argparse.Namespace, progress: Report) -> list[str]:
     from app.storage.clinic.joining import new_station
     from app.storage.clinic.moving import BEFORE, give_up_moving, move_to_server
     from app.storage.clinic.station import shown_address
 
-    if wanted.give_up:
-        with _refusing(str(wanted.library)):
-            give_up_moving(wanted.library)
-        return [f"{wanted.library} is worked with as before. What is on the server of it is never opened."]
-    with _refusing(str(wanted.library)):
-        station = new_station(_address(wanted), _place(wanted))
-    with _held(wanted) as opened:
+    if args.give_up:
+        with _refusing(str(args.library)):
+            give_up_moving(args.library)
+        return [f"{args.library} is worked with as before. What is on the server of it is never opened."]
+    with _refusing(str(args.library)):
+        station = new_station(_address(args), _place(args))
+    with _held(args) as opened:
         moved = move_to_server(opened, station, progress)
     return [
         f"{_counted(moved)} are on {shown_address(station.database)}, compared row by row.",
-        f"{wanted.library} is a station now.",
-        f"{wanted.library / BEFORE} is the database as it was: remove it once you are sure.",
+        f"{args.library} is a station now.",
+        f"{args.library / BEFORE} is the database as it was: remove it once you are sure.",
     ]
 
 
-def _join(wanted: argparse.Namespace, _progress: Report) -> list[str]:
+def _join(args: argparse.Namespace, _progress: Report) -> list[str]:
     from app.storage.clinic.joining import join
     from app.storage.clinic.station import shown_address
 
-    with _refusing(str(wanted.library)):
-        station = join(wanted.library, _address(wanted), wanted.journals)
-    return [
-        f"{wanted.library} is a station of {shown_address(station.database)}. Open Gaitwright and log in as always."
-    ]
+    with _refusing(str(args.library)):
+        station = join(args.library, _address(args), args.journals)
+    return [f"{args.library} is a station of {shown_address(station.database)}. Open Gaitwright and log in as always."]
 
 
-def _back(wanted: argparse.Namespace, progress: Report) -> list[str]:
+def _back(args: argparse.Namespace, progress: Report) -> list[str]:
     from app.storage.clinic.moving import bring_back, give_up_bringing_back
 
-    if wanted.give_up:
-        with _held(wanted) as opened, _refusing(str(wanted.library)):
+    if args.give_up:
+        with _held(args) as opened, _refusing(str(args.library)):
             give_up_bringing_back(opened.library.database)
         return ["The library on the server is open to its stations."]
-    if wanted.out is None:
+    if args.out is None:
         _refuse("--out", "no folder is named for the library", "Name an empty or new one with --out FOLDER")
-    with _held(wanted) as opened:
-        moved = bring_back(opened, wanted.out, progress, is_copy=wanted.copy)
-    said = f"{_counted(moved)} are in {wanted.out}, opened by the same passphrases."
-    if wanted.copy:
-        return [said, "The clinic goes on with the library on the server."]
+    with _held(args) as opened:
+        moved = bring_back(opened, args.out, progress, is_copy=args.copy)
+    stated = f"{_counted(moved)} are in {args.out}, opened by the same passphrases."
+    if args.copy:
+        return [stated, "The clinic goes on with the library on the server."]
     return [
-        said,
+        stated,
         "The one on the server is closed to all stations: remove its database and recordings once you are sure.",
     ]
 
 
-def _status(wanted: argparse.Namespace, _progress: Report) -> list[str]:
+def _status(args: argparse.Namespace, _progress: Report) -> list[str]:
     from app.storage.clinic.handing_over import count_waiting
     from app.storage.clinic.station import shown_address
 
-    with opened_library(wanted) as opened:
+    with opened_library(args) as opened:
         station = opened.library.station
         if station is None or opened.shared is None:
-            return [f"{wanted.library} holds a library of its own."]
+            return [f"{args.library} holds a library of its own."]
         waiting = count_waiting(opened)
         return [
-            f"{wanted.library} is a station of {shown_address(station.database)}.",
+            f"{args.library} is a station of {shown_address(station.database)}.",
             f"Recordings are kept in {opened.shared.place}.",
             f"{waiting} recordings wait here for transfer." if waiting else "All recordings were transferred.",
         ]
 
 
 @contextmanager
-def _held(wanted: argparse.Namespace) -> Iterator["OpenedLibrary"]:
+def _held(args: argparse.Namespace) -> Iterator["OpenedLibrary"]:
     """Open the library for being moved, and nobody else meanwhile."""
     from app.storage.opened import held_alone
 
-    with opened_library(wanted, is_to_be_moved=True) as opened, held_alone(opened.folder):
+    with opened_library(args, is_to_be_moved=True) as opened, held_alone(opened.folder):
         yield opened
 
 
@@ -172,26 +170,26 @@ def _add_database(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("--database", metavar="ADDRESS", default="", help=f"{ADDRESS}, else {DATABASE_VARIABLE}")
 
 
-def _address(wanted: argparse.Namespace) -> str:
+def _address(args: argparse.Namespace) -> str:
     from app.storage.clinic.station import driver_url, shown_address
 
-    address = wanted.database or os.environ.get(DATABASE_VARIABLE, "")
+    address = args.database or os.environ.get(DATABASE_VARIABLE, "")
     if not address:
         _refuse("--database", "no server is named", f"Give --database {ADDRESS}, or set {DATABASE_VARIABLE}")
-    if wanted.database and "***" in shown_address(driver_url(wanted.database)):
+    if args.database and "***" in shown_address(driver_url(args.database)):
         what = "the command line is seen by other programs, and holds a password"
         _refuse("--database", what, f"Put it into {DATABASE_VARIABLE} or into your file of passwords, .pgpass")
     return str(address)
 
 
-def _place(wanted: argparse.Namespace) -> str:
-    if not wanted.journals:
+def _place(args: argparse.Namespace) -> str:
+    if not args.journals:
         _refuse(
             "--journals",
             "no place is named for the recordings",
             "Name a folder that all stations reach, or s3://BUCKET/FOLDER",
         )
-    return wanted.journals if "://" in wanted.journals else str(Path(wanted.journals).resolve())
+    return args.journals if "://" in args.journals else str(Path(args.journals).resolve())
 
 
 def _counted(moved: "Moved") -> str:

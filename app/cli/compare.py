@@ -46,13 +46,13 @@ def add_compare_arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("--out", metavar="OUT", type=Path, required=True, help=f"the folder for {DIFFERENCES}")
 
 
-def compare(wanted: argparse.Namespace, report: Report) -> list[str]:
+def compare(args: argparse.Namespace, report: Report) -> list[str]:
     """Write the table and give the lines for the terminal.
 
     Raises
     ------
     FileRefusedError
-        A session cannot be read, nothing can be compared, or something else stands at OUT.
+        A session cannot be read, nothing can be compared, or something else is at OUT.
     OSError
         The table cannot be written.
     """
@@ -60,25 +60,25 @@ def compare(wanted: argparse.Namespace, report: Report) -> list[str]:
     from app.summary.differences import comparisons_of, rows_of, without_common_condition, write_differences
     from core.analysis import analyse
 
-    _check_place(wanted.out)
+    _check_place(args.out)
     visits = []
-    for number, place in enumerate(wanted.sessions):
+    for number, place in enumerate(args.sessions):
 
-        def told(share: float, what: str, number: int = number) -> None:
-            report((number + share) / len(wanted.sessions), what)
+        def reported(share: float, what: str, number: int = number) -> None:
+            report((number + share) / len(args.sessions), what)
 
-        session = read_place(wanted, place, told)
-        visits.append((session, analyse(session, progress=told)))
+        session = read_place(args, place, reported)
+        visits.append((session, analyse(session, progress=reported)))
     comparisons = comparisons_of(visits)
     rows = [row for comparison in comparisons for row in rows_of(comparison)]
-    alone = [_not_compared(wanted.sessions[number - 1], visits) for number in without_common_condition(visits)]
+    alone = [_not_compared(args.sessions[number - 1], visits) for number in without_common_condition(visits)]
     if not rows:
-        names = ", ".join(one_line(str(place)) for place in wanted.sessions)
+        names = ", ".join(one_line(str(place)) for place in args.sessions)
         if alone:
             raise FileRefusedError(names, " ".join(alone), "Give sessions that share a walking condition")
         what = "there are no two conditions, nor two sessions, with strides in both"
         raise FileRefusedError(names, what, "Give two sessions, or one with two conditions")
-    with written_beside(wanted.out) as folder:
+    with written_beside(args.out) as folder:
         write_differences(rows, folder / DIFFERENCES)
         report(1.0, "writing")
     return [
@@ -86,7 +86,7 @@ def compare(wanted: argparse.Namespace, report: Report) -> list[str]:
         *(["", *alone] if alone else []),
         *(["", DAGGER_MEANS] if any(row.difference.is_unverified for row in rows) else []),
         "",
-        f"{wanted.out / DIFFERENCES}: {len(rows)} differences. Research use. Not a medical device.",
+        f"{args.out / DIFFERENCES}: {len(rows)} differences. Research use. Not a medical device.",
     ]
 
 

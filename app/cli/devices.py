@@ -1,4 +1,4 @@
-"""What does the command line do with sensors? It lists those that are heard, and plays ones that are not there."""
+"""What does the command line do with sensors? It lists those that are received, and plays ones that are not there."""
 
 import os
 import tempfile
@@ -19,7 +19,8 @@ MOVEMENTS = {"f": "free_motion", "w": "walking", "s": "standing"}
 
 
 def list_devices(streams_in: str = "") -> Iterator[str]:
-    """What is heard now, at which port nothing is, how drivers and readers of files were proved; takes a second or two.
+    """What is received now, at which port nothing is, how drivers and readers of files were proved; takes a second or
+    two.
 
     Parameters
     ----------
@@ -65,8 +66,10 @@ def list_devices(streams_in: str = "") -> Iterator[str]:
         yield f"- {PROGRAMS[name]}: {proof}"
 
 
-def emulate(kind: str, count: int, seconds: float, tell: Callable[[str], None], asked: Iterable[str] = ()) -> None:
-    """Play so many sensors at pseudo-terminals until interrupted or `seconds` are over; tells their ports first.
+def emulate(
+    kind: str, count: int, seconds: float, show_message: Callable[[str], None], asked: Iterable[str] = ()
+) -> None:
+    """Play so many sensors at pseudo-terminals until interrupted or `seconds` are over; reports their ports first.
 
     Parameters
     ----------
@@ -85,25 +88,27 @@ def emulate(kind: str, count: int, seconds: float, tell: Callable[[str], None], 
     with _emulations(patient, kind, count) as emulations:
         places = [emulation.place for emulation in emulations]
         for place in places:
-            tell(place)
-        tell(f"Let the application look there: {MORE_PORTS}={os.pathsep.join(places)}")
-        tell("The patient stands. Type f and Enter for a free motion, w for a walk.")
-        threading.Thread(target=_ask, args=(patient, asked, tell), daemon=True).start()  # it waits for the keyboard
+            show_message(place)
+        show_message(f"Let the application look there: {MORE_PORTS}={os.pathsep.join(places)}")
+        show_message("The patient stands. Type f and Enter for a free motion, w for a walk.")
+        threading.Thread(
+            target=_ask, args=(patient, asked, show_message), daemon=True
+        ).start()  # it waits for the keyboard
         until_s = time.monotonic() + seconds
         try:
             while time.monotonic() < until_s:
                 time.sleep(min(0.1, seconds))
         except KeyboardInterrupt:
-            tell("Ended.")
+            show_message("Ended.")
 
 
-def _ask(patient: "EmulatedPatient", asked: Iterable[str], tell: Callable[[str], None]) -> None:
+def _ask(patient: "EmulatedPatient", asked: Iterable[str], show_message: Callable[[str], None]) -> None:
     from core.samples import RecordingKind
 
     for line in asked:
         if (kind := MOVEMENTS.get(line.strip())) is not None:
             clip = patient.ask(RecordingKind(kind))
-            tell(f"{clip.recording.name}: {(clip.end_ns - clip.start_ns) / 1e9:.0f} s")
+            show_message(f"{clip.recording.name}: {(clip.end_ns - clip.start_ns) / 1e9:.0f} s")
 
 
 @contextmanager

@@ -45,13 +45,13 @@ def add_export_arguments(parser: argparse.ArgumentParser) -> None:
     )
 
 
-def export(wanted: argparse.Namespace, report: Report) -> list[str]:
+def export(args: argparse.Namespace, report: Report) -> list[str]:
     """Write the formats asked for and give the lines for the terminal.
 
     Raises
     ------
     FileRefusedError
-        No such format, nothing that could be kept, a session that cannot be read, or something stands at OUT.
+        No such format, nothing that could be kept, a session that cannot be read, or something is at OUT.
     OSError
         The files cannot be written.
     """
@@ -62,33 +62,33 @@ def export(wanted: argparse.Namespace, report: Report) -> list[str]:
     from app.storage.pseudonyms import Typed
     from core.analysis import analyse
 
-    formats = [Format(name) for name in _chosen("--as", wanted.formats, FORMATS, "is no format")]
-    kept = [Typed(name) for name in _chosen("--keep", wanted.keep, TYPED, "is not among what is typed")]
-    if wanted.identified and (kept or wanted.preview):
+    formats = [Format(name) for name in _chosen("--as", args.formats, FORMATS, "is no format")]
+    kept = [Typed(name) for name in _chosen("--keep", args.keep, TYPED, "is not among what is typed")]
+    if args.identified and (kept or args.preview):
         raise FileRefusedError("--identified", "identified data are exported unchanged", "Omit --keep and --preview")
-    if wanted.preview:
-        return _preview(wanted, kept)
-    if wanted.out.exists() and not (wanted.out.is_dir() and not any(wanted.out.iterdir())):
+    if args.preview:
+        return _preview(args, kept)
+    if args.out.exists() and not (args.out.is_dir() and not any(args.out.iterdir())):
         raise FileRefusedError(
-            str(wanted.out), "this already exists and is not an empty folder", "Choose an empty folder or a new one"
+            str(args.out), "this already exists and is not an empty folder", "Choose an empty folder or a new one"
         )
-    with written_beside(wanted.out) as folder:
-        if isinstance(wanted.session, LibrarySession):
-            with opened_library(wanted) as opened:
-                session_id, identified = wanted.session.id, wanted.identified
+    with written_beside(args.out) as folder:
+        if isinstance(args.session, LibrarySession):
+            with opened_library(args) as opened:
+                session_id, identified = args.session.id, args.identified
                 lines = export_from_library(
                     opened, session_id, formats, folder, DECODERS, report, kept=kept, is_identified=identified
                 )
         else:
-            session = read_foreign_session(session_of(wanted.session), lambda: report(0.0, str(wanted.session)))
+            session = read_foreign_session(session_of(args.session), lambda: report(0.0, str(args.session)))
             analysis = analyse(session, progress=report)
-            lines = export_from_folder(session, analysis, formats, folder, kept=kept, is_identified=wanted.identified)
+            lines = export_from_folder(session, analysis, formats, folder, kept=kept, is_identified=args.identified)
         count = sum(path.is_file() for path in folder.rglob("*"))
-    whose = "with identity" if wanted.identified else "pseudonymised"
-    return [f"{wanted.out}: {count} {'file' if count == 1 else 'files'}, {whose}.", *lines]
+    whose = "with identity" if args.identified else "pseudonymised"
+    return [f"{args.out}: {count} {'file' if count == 1 else 'files'}, {whose}.", *lines]
 
 
-def _chosen(option: str, said: str, known: Sequence[str], what: str) -> list[str]:
+def _chosen(option: str, stated: str, known: Sequence[str], what: str) -> list[str]:
     """The words of an option, each once.
 
     Raises
@@ -96,23 +96,23 @@ def _chosen(option: str, said: str, known: Sequence[str], what: str) -> list[str
     FileRefusedError
         One is not known.
     """
-    names = list(dict.fromkeys(filter(None, said.split(","))))
+    names = list(dict.fromkeys(filter(None, stated.split(","))))
     for name in names:
         if name not in known:
             raise FileRefusedError(option, f"{one_line(name)} {what}", f"Choose of: {', '.join(known)}")
     return names
 
 
-def _preview(wanted: argparse.Namespace, kept: "Sequence[Typed]") -> list[str]:
+def _preview(args: argparse.Namespace, kept: "Sequence[Typed]") -> list[str]:
     """Lines with all that would leave beside the figures; raises as `export`."""
     from app.exports.exports import preview_from_folder, preview_from_library
     from app.importing.untrusted_files import read_foreign_session
     from app.reports.patient.report_file import session_of
 
-    if isinstance(wanted.session, LibrarySession):
-        with opened_library(wanted) as opened:
-            rows = preview_from_library(opened, wanted.session.id, kept)
+    if isinstance(args.session, LibrarySession):
+        with opened_library(args) as opened:
+            rows = preview_from_library(opened, args.session.id, kept)
     else:
-        rows = preview_from_folder(read_foreign_session(session_of(wanted.session), lambda: None), kept)
-    told = [f"{name}: {one_line(str(value))}" for name, value in rows]
-    return [*told, "And angles, events, strides and averages of these recordings. Nothing was written."]
+        rows = preview_from_folder(read_foreign_session(session_of(args.session), lambda: None), kept)
+    reported = [f"{name}: {one_line(str(value))}" for name, value in rows]
+    return [*reported, "And angles, events, strides and averages of these recordings. Nothing was written."]

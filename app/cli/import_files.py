@@ -36,7 +36,7 @@ def add_import_arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("--out", metavar="SESSION", type=Path, required=True, help="the session folder, new or not")
 
 
-def import_files(wanted: argparse.Namespace, progress: Report) -> list[str]:
+def import_files(args: argparse.Namespace, progress: Report) -> list[str]:
     """Add the recording and give the lines for the terminal.
 
     Raises
@@ -50,17 +50,17 @@ def import_files(wanted: argparse.Namespace, progress: Report) -> list[str]:
     from core.samples import Recording, RecordingKind, Session
     from devices.files.imports import add_recording, folder_for, free_name, parse_map, place_trial
 
-    kind = RecordingKind(wanted.kind)
-    placement = parse_map(wanted.map)
-    is_new = not wanted.out.exists() or (wanted.out.is_dir() and not any(wanted.out.iterdir()))
-    session = Session(()) if is_new else read_foreign_session(wanted.out, lambda: progress(0.0, str(wanted.out)))
-    name = wanted.recording or free_name(session, kind)
+    kind = RecordingKind(args.kind)
+    placement = parse_map(args.map)
+    is_new = not args.out.exists() or (args.out.is_dir() and not any(args.out.iterdir()))
+    session = Session(()) if is_new else read_foreign_session(args.out, lambda: progress(0.0, str(args.out)))
+    name = args.recording or free_name(session, kind)
     progress(0.0, name)
-    trial = read_foreign_trial(wanted.format or "", wanted.files, wanted.rate, lambda: progress(0.0, name))
+    trial = read_foreign_trial(args.format or "", args.files, args.rate, lambda: progress(0.0, name))
     imported = place_trial(trial, placement, name)
     recording = Recording(name, kind, folder_for(name), imported.imu)
     session = add_recording(session, recording, imported.sensors, imported.findings, imported.is_simulated)
-    progress(0.5, str(wanted.out))
-    write_over_session(session, wanted.out)
-    held = f"{wanted.out} now holds {name}, with {len(imported.imu)} of 6 sites."
+    progress(0.5, str(args.out))
+    write_over_session(session, args.out)
+    held = f"{args.out} now holds {name}, with {len(imported.imu)} of 6 sites."
     return [held, *finding_lines(imported.findings, lowest="info")]

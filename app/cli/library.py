@@ -68,8 +68,8 @@ def add_key_arguments(parser: argparse.ArgumentParser) -> None:
 
 
 @contextmanager
-def opened_library(wanted: argparse.Namespace, *, is_to_be_moved: bool = False) -> Iterator["OpenedLibrary"]:
-    """Open `wanted.library` for as long as is needed; `is_to_be_moved`: to a clinic's server, or back.
+def opened_library(args: argparse.Namespace, *, is_to_be_moved: bool = False) -> Iterator["OpenedLibrary"]:
+    """Open `required.library` for as long as is needed; `is_to_be_moved`: to a clinic's server, or back.
 
     Raises
     ------
@@ -81,11 +81,11 @@ def opened_library(wanted: argparse.Namespace, *, is_to_be_moved: bool = False) 
     from app.storage.opened import open_library
     from app.storage.stored import LibraryError
 
-    folder: Path = wanted.library
+    folder: Path = args.library
     try:
-        passphrase = _passphrase(wanted.passphrase_file, folder)
-        with _counted(folder, wanted.operator):
-            opening = open_library(folder, passphrase, wanted.operator, is_to_be_moved=is_to_be_moved)
+        passphrase = _passphrase(args.passphrase_file, folder)
+        with _counted(folder, args.operator):
+            opening = open_library(folder, passphrase, args.operator, is_to_be_moved=is_to_be_moved)
         with opening as opened:
             yield opened
     except (LibraryError, KeyRefusedError) as refusal:
@@ -98,7 +98,7 @@ def opened_library(wanted: argparse.Namespace, *, is_to_be_moved: bool = False) 
         raise FileRefusedError(str(folder), what, "Check the disk and the permissions of this folder") from problem
 
 
-def read_library_session(wanted: argparse.Namespace, session: LibrarySession, report: Report) -> "Session":
+def read_library_session(args: argparse.Namespace, session: LibrarySession, report: Report) -> "Session":
     """A session with its samples; that it was read is noted in the library's audit.
 
     Raises
@@ -108,7 +108,7 @@ def read_library_session(wanted: argparse.Namespace, session: LibrarySession, re
     """
     from app.storage.exchange import session_with_samples
 
-    with opened_library(wanted) as opened:
+    with opened_library(args) as opened:
         visit = opened.library.sessions.view(session.id)
         read = session_with_samples(opened, visit, DECODERS, report)
     if not read.recordings:
@@ -116,7 +116,7 @@ def read_library_session(wanted: argparse.Namespace, session: LibrarySession, re
     return read
 
 
-def read_place(wanted: argparse.Namespace, place: Path | LibrarySession, report: Report) -> "Session":
+def read_place(args: argparse.Namespace, place: Path | LibrarySession, report: Report) -> "Session":
     """A session of the library, or of a folder: its own, or results with it inside.
 
     Raises
@@ -125,14 +125,14 @@ def read_place(wanted: argparse.Namespace, place: Path | LibrarySession, report:
         There is no such session, or it cannot be read.
     """
     if isinstance(place, LibrarySession):
-        return read_library_session(wanted, place, report)
+        return read_library_session(args, place, report)
     from app.importing.untrusted_files import read_foreign_session
     from app.reports.patient.report_file import session_of
 
     return read_foreign_session(session_of(place), lambda: report(0.0, str(place)))
 
 
-def recover(wanted: argparse.Namespace, report: Report) -> Iterator[str]:
+def recover(args: argparse.Namespace, report: Report) -> Iterator[str]:
     """Close what was not stopped; gives a line for each recording.
 
     Raises
@@ -144,42 +144,42 @@ def recover(wanted: argparse.Namespace, report: Report) -> Iterator[str]:
     from app.storage.opened import held_alone
     from app.storage.recovery import find_interrupted
 
-    with opened_library(wanted) as opened, held_alone(opened.folder):
+    with opened_library(args) as opened, held_alone(opened.folder):
         bring_home(opened)
         interrupted = find_interrupted(opened)
         if not interrupted:
             yield "Every recording was stopped. Nothing had to be recovered."
         for number, one in enumerate(interrupted):
 
-            def told(share: float, what: str, number: int = number) -> None:
+            def reported(share: float, what: str, number: int = number) -> None:
                 report((number + share) / len(interrupted), what)
 
-            yield _recover_one(opened, one, wanted.into, told)
+            yield _recover_one(opened, one, args.into, reported)
 
 
-def verify_audit(wanted: argparse.Namespace) -> Iterator[str]:
+def verify_audit(args: argparse.Namespace) -> Iterator[str]:
     """Follow the audit from its beginning; gives what is wrong, then how far it goes, to be kept elsewhere.
 
     Raises
     ------
     FileRefusedError
-        The library does not open, `wanted.since` is no checkpoint, or an entry is not as it was written.
+        The library does not open, `required.since` is no checkpoint, or an entry is not as it was written.
     """
     from app.storage.stored import BEGINNING, Checkpoint, LibraryError
 
     try:
-        since = Checkpoint.parsed(wanted.since) if wanted.since else BEGINNING
+        since = Checkpoint.parsed(args.since) if args.since else BEGINNING
     except LibraryError:
-        what = f"{one_line(wanted.since)} is no line of an earlier audit"
+        what = f"{one_line(args.since)} is no line of an earlier audit"
         raise FileRefusedError("--since", what, "Give the last line that this command printed") from None
-    with opened_library(wanted) as opened:
+    with opened_library(args) as opened:
         report = opened.library.audit.verify(since)
     for fault in report.faults:
         yield f"- entry {fault.number} {fault.what}."
     yield str(report.end)
     if report.faults:
         what = f"{len(report.faults)} faults in the audit" if len(report.faults) > 1 else "a fault in the audit"
-        raise FileRefusedError(str(wanted.library), what, "Compare the library with a backup")
+        raise FileRefusedError(str(args.library), what, "Compare the library with a backup")
 
 
 def _recover_one(opened: "OpenedLibrary", one: "Interrupted", into: LibrarySession | None, report: Report) -> str:
@@ -191,11 +191,13 @@ def _recover_one(opened: "OpenedLibrary", one: "Interrupted", into: LibrarySessi
     if one.stored is None:
         return _adopt(opened, one, into, report)
     recovered = recover(opened, one, report)
-    told = recovered.stored.details.name
+    reported = recovered.stored.details.name
     if not recovered.recorded_s:
-        return f"{told}: it was ended before anything was recorded."
+        return f"{reported}: it was ended before anything was recorded."
     where = f"{PREFIX}{recovered.stored.session_id}"
-    return f"{told}: {clock(recovered.recorded_s, 2)} was recovered. Review it in {where}, then include or exclude it."
+    return (
+        f"{reported}: {clock(recovered.recorded_s, 2)} was recovered. Review it in {where}, then include or exclude it."
+    )
 
 
 def _adopt(opened: "OpenedLibrary", one: "Interrupted", into: LibrarySession | None, report: Report) -> str:
@@ -206,7 +208,7 @@ def _adopt(opened: "OpenedLibrary", one: "Interrupted", into: LibrarySession | N
 
     when = f"{one.began_at:%Y-%m-%d %H:%M} UTC" if one.began_at else "an unknown time"
     if into is None and one.belonging is not None:
-        with suppress(LibraryError):  # the session that it says it is of is gone
+        with suppress(LibraryError):  # the session that it states it is of is gone
             recovered = adopt_home(opened, one, report)
             where = f"{PREFIX}{recovered.stored.session_id}"
             return f"{recovered.stored.details.name}: {clock(recovered.recorded_s, 2)} was recovered into {where}."
@@ -215,8 +217,8 @@ def _adopt(opened: "OpenedLibrary", one: "Interrupted", into: LibrarySession | N
         return f"- {length} recorded at {when} belongs to no session. Say to which with --into {PREFIX}ID."
     visit = opened.library.sessions.get(into.id)
     name = free_name(visit.details, RecordingKind.WALKING)
-    told = Recording(name, RecordingKind.WALKING, folder_for(name), {})
-    recovered = adopt(opened, one, into.id, told, report)
+    reported = Recording(name, RecordingKind.WALKING, folder_for(name), {})
+    recovered = adopt(opened, one, into.id, reported, report)
     return f"{name}: {clock(recovered.recorded_s, 2)} recorded at {when} was recovered into {into}."
 
 
@@ -229,7 +231,7 @@ def _counted(folder: Path, code: str) -> Iterator[None]:
 
     slots, delay = KeySlots(folder / KEYS), LoginDelay(folder, time.monotonic)
     if not slots.exists or not (code or len(slots.codes) == 1):
-        yield  # which is refused, and says nothing of a passphrase
+        yield  # which is refused, and gives nothing of a passphrase
         return
     code = code or slots.codes[0]
     delay.read()

@@ -1,6 +1,6 @@
 """What can be done without eyes? One subcommand per thing; without any, the window opens.
 
-Exit codes: 0 done, 2 bad usage or a file that is not what it says it is, 3 interrupted. What takes long to import is
+Exit codes: 0 done, 2 bad usage or a file that is not what it states it is, 3 interrupted. What takes long to import is
 imported where it is used, so that `--help` and the window come at once.
 """
 
@@ -47,7 +47,7 @@ OF_LIBRARY = "the folder of the library (your own)"
 
 
 def main(argv: Sequence[str] | None = None) -> int:
-    """Do what the command line says and give the exit code.
+    """Do what the command line states and give the exit code.
 
     Raises
     ------
@@ -67,14 +67,14 @@ def main(argv: Sequence[str] | None = None) -> int:
     if not arguments or (len(arguments) == 1 and _is_folder(arguments[0])):
         return _open_window(arguments, spoken.lang)
     use_language(spoken.lang or "en")
-    wanted = _parser().parse_args(arguments)
+    args = _parser().parse_args(arguments)
     try:
-        return _run(wanted)
+        return _run(args)
     except KeyboardInterrupt:
         # where it fell into the `exec` of a text, as libraries have them, CPython would end this process by the signal
         # whatever code we give; the next `exec` of a text takes that back
         exec("")
-        left = getattr(wanted, "stopped", f"{wanted.out} is as it was before.")
+        left = getattr(args, "stopped", f"{args.out} is as it was before.")
         return _say_last(f"Stopped. {left}", INTERRUPTED)
 
 
@@ -92,16 +92,16 @@ def _begin_program() -> None:
         resource.setrlimit(resource.RLIMIT_CORE, (least, least))
 
 
-def _run(wanted: argparse.Namespace) -> int:
+def _run(args: argparse.Namespace) -> int:
     from devices.files.refusal import FileRefusedError, one_line
 
     try:
-        wanted.run(wanted)
+        args.run(args)
     except FileRefusedError as refusal:
         return _say_last(str(refusal), REFUSED)
     except OSError as problem:  # readers put theirs into words, so this is OUT
         why = one_line(problem.strerror or str(problem))
-        message = f"{one_line(str(wanted.out))}: this cannot be written ({why}). Make room or choose another --out."
+        message = f"{one_line(str(args.out))}: this cannot be written ({why}). Make room or choose another --out."
         return _say_last(message, REFUSED)
     return DONE
 
@@ -255,60 +255,60 @@ def _add_devices(parser: argparse.ArgumentParser) -> None:
     parser.set_defaults(run=_devices, out="The port of an emulated sensor")
 
 
-def _analyse(wanted: argparse.Namespace) -> None:
+def _analyse(args: argparse.Namespace) -> None:
     from app.cohort.batch.analysed_folder import write_analysed
     from app.exports.result_folder import OWN_SESSION, check_place, written_beside
 
-    place = wanted.library if isinstance(wanted.session, LibrarySession) else wanted.session
-    check_place(wanted.out, place)
-    session_is_inside = place.resolve() == wanted.out.resolve() / OWN_SESSION
-    with Progress(sys.stderr) as progress, written_beside(wanted.out, keeps_session=session_is_inside) as folder:
-        progress(0.0, str(wanted.session))
-        session = _read(wanted, progress)
-        analysis = write_analysed(session, folder, _choices(wanted), progress)
-    _tell(analysis, wanted.out)
+    place = args.library if isinstance(args.session, LibrarySession) else args.session
+    check_place(args.out, place)
+    session_is_inside = place.resolve() == args.out.resolve() / OWN_SESSION
+    with Progress(sys.stderr) as progress, written_beside(args.out, keeps_session=session_is_inside) as folder:
+        progress(0.0, str(args.session))
+        session = _read(args, progress)
+        analysis = write_analysed(session, folder, _choices(args), progress)
+    _show_message(analysis, args.out)
 
 
-def _read(wanted: argparse.Namespace, progress: Progress) -> "Session":
-    if isinstance(wanted.session, LibrarySession):
+def _read(args: argparse.Namespace, progress: Progress) -> "Session":
+    if isinstance(args.session, LibrarySession):
         from app.cli.library import read_library_session
 
-        return read_library_session(wanted, wanted.session, progress)
+        return read_library_session(args, args.session, progress)
     from app.importing.untrusted_files import read_foreign_session
 
-    return read_foreign_session(wanted.session, lambda: progress(0.0, str(wanted.session)))
+    return read_foreign_session(args.session, lambda: progress(0.0, str(args.session)))
 
 
-def _recover(wanted: argparse.Namespace) -> None:
+def _recover(args: argparse.Namespace) -> None:
     from app.cli.library import recover
 
     lines: list[str] = []
     try:
         with Progress(sys.stderr) as progress:
-            for line in recover(wanted, progress):
+            for line in recover(args, progress):
                 lines += [line]
     finally:  # also before a refusal
         print(*lines, sep="\n", end="\n" if lines else "")
 
 
-def _verify_audit(wanted: argparse.Namespace) -> None:
+def _verify_audit(args: argparse.Namespace) -> None:
     from app.cli.library import verify_audit
 
-    for line in verify_audit(wanted):
+    for line in verify_audit(args):
         print(line)
 
 
-def _devices(wanted: argparse.Namespace) -> None:
+def _devices(args: argparse.Namespace) -> None:
     from app.cli.devices import emulate, list_devices
 
-    if wanted.emulate:
-        emulate(wanted.emulate, wanted.count, wanted.seconds, lambda line: print(line, flush=True), sys.stdin)
+    if args.emulate:
+        emulate(args.emulate, args.count, args.seconds, lambda line: print(line, flush=True), sys.stdin)
         return
-    for line in list_devices(wanted.streams):
+    for line in list_devices(args.streams):
         print(line)
 
 
-def _demo(wanted: argparse.Namespace) -> None:
+def _demo(args: argparse.Namespace) -> None:
     from app.cohort.batch.analysed_folder import AnalysisChoices, write_analysed
     from app.exports.result_folder import OWN_SESSION, check_demonstration_place, written_beside
     from app.system.tables import write_table
@@ -316,47 +316,47 @@ def _demo(wanted: argparse.Namespace) -> None:
     from devices.files.session_folder import read_session, write_session
     from devices.simulation.walker import DEMONSTRATION, simulate, truth_table
 
-    check_demonstration_place(wanted.out)
-    with Progress(sys.stderr) as progress, written_beside(wanted.out) as folder:
+    check_demonstration_place(args.out)
+    with Progress(sys.stderr) as progress, written_beside(args.out) as folder:
         progress(0.0, "simulated patient")
         simulated = simulate(DEMONSTRATION)
         write_session(simulated.session, folder / OWN_SESSION)
         write_table(*truth_table(simulated.truth), folder / OWN_SESSION / "truth.csv")
         session = read_session(folder / OWN_SESSION)  # so that `analyse` gives the same bytes
         analysis = write_analysed(session, folder, AnalysisChoices(Method(METHODS[0]), DEFAULT_TAU_S), progress)
-    _tell(analysis, wanted.out)
+    _show_message(analysis, args.out)
 
 
 def _telling(work: Callable[[argparse.Namespace, Progress], Iterable[str]]) -> Callable[[argparse.Namespace], None]:
     """Do a subcommand that gives its lines for the terminal."""
 
-    def run(wanted: argparse.Namespace) -> None:
+    def run(args: argparse.Namespace) -> None:
         with Progress(sys.stderr) as progress:
-            lines = list(work(wanted, progress))
+            lines = list(work(args, progress))
         print(*lines, sep="\n")
 
     return run
 
 
-def _query(wanted: argparse.Namespace) -> None:
+def _query(args: argparse.Namespace) -> None:
     """Print an answer while it comes, which may be larger than memory, until nobody reads it any more."""
-    with Progress(sys.stderr):  # for its hold on Ctrl C; there is nothing to be told meanwhile
+    with Progress(sys.stderr):  # for its hold on Ctrl C; there is nothing to be reported meanwhile
         try:
-            for line in query(wanted):
+            for line in query(args):
                 print(line)
             sys.stdout.flush()
         except BrokenPipeError:  # as of `| head`
             os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
 
 
-def _choices(wanted: argparse.Namespace) -> "AnalysisChoices":
+def _choices(args: argparse.Namespace) -> "AnalysisChoices":
     from app.cohort.batch.analysed_folder import AnalysisChoices
     from core.results import Method
 
-    return AnalysisChoices(Method(wanted.method), wanted.tau, not wanted.no_report, not wanted.no_rrd)
+    return AnalysisChoices(Method(args.method), args.tau, not args.no_report, not args.no_rrd)
 
 
-def _tell(analysis: "Analysis", out: Path) -> None:
+def _show_message(analysis: "Analysis", out: Path) -> None:
     """Say where the results are and what needs a look."""
     from app.wording.translation import name_of
 

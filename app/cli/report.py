@@ -38,13 +38,13 @@ def add_report_arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("--paper", type=one_of(PAPERS), default=PAPERS[0], metavar="PAPER", help=" | ".join(PAPERS))
 
 
-def make(wanted: argparse.Namespace, progress: Report) -> list[str]:
+def make(args: argparse.Namespace, progress: Report) -> list[str]:
     """Write the report and give the line for the terminal.
 
     Raises
     ------
     FileRefusedError
-        A session, walk or comment cannot be read, or something else than a report stands at FILE.pdf.
+        A session, walk or comment cannot be read, or something else than a report is at FILE.pdf.
     OSError
         The report cannot be written.
     """
@@ -54,26 +54,26 @@ def make(wanted: argparse.Namespace, progress: Report) -> list[str]:
     from core.analysis import analyse
     from devices.files.refusal import FileRefusedError
 
-    check_report_place(wanted.out)
-    if len(wanted.walk) > MAX_CONDITIONS:
-        what = f"{len(wanted.walk)} walks are too many for one report"
+    check_report_place(args.out)
+    if len(args.walk) > MAX_CONDITIONS:
+        what = f"{len(args.walk)} walks are too many for one report"
         raise FileRefusedError("--walk", what, f"Choose up to {MAX_CONDITIONS}")
-    progress(0.0, str(wanted.session))
-    comment = _comment(wanted.comment)
-    session = read_place(wanted, wanted.session, progress)
+    progress(0.0, str(args.session))
+    comment = _comment(args.comment)
+    session = read_place(args, args.session, progress)
     visit = AnalysedVisit(session, analyse(session, progress=progress))
-    walks = chosen_walks(visit, wanted.walk, str(wanted.session))
+    walks = chosen_walks(visit, args.walk, str(args.session))
     earlier = None
-    if wanted.earlier is not None:
-        before = read_place(wanted, wanted.earlier, progress)
+    if args.earlier is not None:
+        before = read_place(args, args.earlier, progress)
         earlier = AnalysedVisit(before, analyse(before, progress=progress))
-        chosen_walks(earlier, [], str(wanted.earlier))  # refuses a visit without a walk
-        walks = walks if wanted.walk else walks[-1:]  # a visit is compared with a visit
+        chosen_walks(earlier, [], str(args.earlier))  # refuses a visit without a walk
+        walks = walks if args.walk else walks[-1:]  # a visit is compared with a visit
     now, version = datetime.now().astimezone(), version_of("gaitwright")
     progress(1.0, "report")
-    request = ReportRequest(visit, walks, now, version, comment, paper=wanted.paper, earlier=earlier)
-    replace_report(make_report(request), wanted.out)
-    return [f"{wanted.out}: the report of {', '.join(walks)}."]
+    request = ReportRequest(visit, walks, now, version, comment, paper=args.paper, earlier=earlier)
+    replace_report(make_report(request), args.out)
+    return [f"{args.out}: the report of {', '.join(walks)}."]
 
 
 def _comment(file: Path | None) -> str:

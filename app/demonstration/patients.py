@@ -37,8 +37,8 @@ AT = datetime.time(11, 20)
 
 
 @dataclass(frozen=True, slots=True)
-class ToldOfWalk:
-    """What was said of a walk: under which condition, what was changed before it, and whether it is a test."""
+class ReportedOfWalk:
+    """What was stated about a walk: under which condition, what was changed before it, and whether it is a test."""
 
     condition: str
     alignment: AlignmentChange | None = None
@@ -47,12 +47,12 @@ class ToldOfWalk:
 
 @dataclass(frozen=True, slots=True)
 class SimulatedVisit:
-    """One visit: how its patient moves, and what was `told` of each walk by its name."""
+    """One visit: how its patient moves, and what was `reported` of each walk by its name."""
 
     code: str
     started: datetime.datetime
     settings: WalkerSettings
-    told: Mapping[str, ToldOfWalk]
+    reported: Mapping[str, ReportedOfWalk]
     limits: Limits = field(default_factory=Limits)
     is_reported: bool = True
 
@@ -74,8 +74,8 @@ def simulated_patients(now: datetime.datetime) -> tuple[SimulatedPatient, ...]:
 class _Recovery:
     """How the patient with a new knee walks, so many days ago.
 
-    Seeds are such that all but what is meant to be withheld can be read: of walks drawn at random some would be to be
-    read with care.
+    Seeds are such that all but what is meant to be not reported can be read: of walks drawn at random some would be to
+    be read with care.
     """
 
     seed: int
@@ -127,14 +127,14 @@ def _knee_replaced(now: datetime.datetime) -> SimulatedPatient:
 
 def _visit_of_knee(code: str, now: datetime.datetime, how: _Recovery) -> SimulatedVisit:
     shoes, stick = tr("Shoes"), tr("Shoes, stick")
-    told = {"walk 1": ToldOfWalk(shoes)}
+    reported = {"walk 1": ReportedOfWalk(shoes)}
     walks = [_limping(how, "walk 1")]
     if how.has_stick:
-        told["walk 2"] = ToldOfWalk(stick)
+        reported["walk 2"] = ReportedOfWalk(stick)
         walks.append(_limping(how, "walk 2", speed_m_s=how.speed_m_s + 0.06))
     ten_metres, rises = f"walk {len(walks) + 1}", f"walk {len(walks) + 2}"
-    told[ten_metres] = ToldOfWalk(shoes, test=TimedProtocol.TEN_METRES)
-    told[rises] = ToldOfWalk(shoes, test=TimedProtocol.SIT_TO_STAND)
+    reported[ten_metres] = ReportedOfWalk(shoes, test=TimedProtocol.TEN_METRES)
+    reported[rises] = ReportedOfWalk(shoes, test=TimedProtocol.SIT_TO_STAND)
     tests = (
         TimedCourse(
             CourseKind.TEN_METRES, how.seed, how.speed_m_s, name=ten_metres, change=how.change, changed_side=Side.LEFT
@@ -149,7 +149,7 @@ def _visit_of_knee(code: str, now: datetime.datetime, how: _Recovery) -> Simulat
         site_loss_fractions=how.lost,
         recordings=(Standing(), FreeMotion(), *walks, *tests),
     )
-    return SimulatedVisit(code, _days_ago(now, how.days_ago), settings, told, is_reported=how.is_reported)
+    return SimulatedVisit(code, _days_ago(now, how.days_ago), settings, reported, is_reported=how.is_reported)
 
 
 def _limping(how: _Recovery, name: str, *, speed_m_s: float | None = None) -> Walk:
@@ -211,12 +211,12 @@ def _visit_after_stroke(
             ),
         ),
     )
-    told = {
-        "walk 1": ToldOfWalk(shoes),
-        "walk 2": ToldOfWalk(shoes, test=TimedProtocol.TEN_METRES),
-        "walk 3": ToldOfWalk(shoes, test=TimedProtocol.UP_AND_GO),
+    reported = {
+        "walk 1": ReportedOfWalk(shoes),
+        "walk 2": ReportedOfWalk(shoes, test=TimedProtocol.TEN_METRES),
+        "walk 3": ReportedOfWalk(shoes, test=TimedProtocol.UP_AND_GO),
     }
-    return SimulatedVisit(code, started, settings, told)
+    return SimulatedVisit(code, started, settings, reported)
 
 
 # B: a foot set more plantarflexed and further back; C, from B: the knee's valve out, so that it swings further
@@ -242,14 +242,14 @@ def _above_knee(now: datetime.datetime) -> SimulatedPatient:
     )
     names: list[str] = []
     walks: list[Walk] = []
-    told: dict[str, ToldOfWalk] = {}
+    reported: dict[str, ReportedOfWalk] = {}
     changed: list[PartChange] = []
     for letter, parts in zip("ABC", _CHANGES, strict=True):
         name, condition = f"walk {len(walks) + 1}", tr("Alignment {letter}").format(letter=letter)
         changed += parts
         setting = setting_of({change.part: change for change in net_of(changed)}) if changed else BUILT
         walks.append(Walk(name, speed_m_s=PROSTHESIS_SPEED_M_S, strides=STRIDES + 4, prosthesis=setting))
-        told[name] = ToldOfWalk(condition, AlignmentChange(names[-1], parts) if parts else None)
+        reported[name] = ReportedOfWalk(condition, AlignmentChange(names[-1], parts) if parts else None)
         names.append(condition)
     settings = WalkerSettings(
         seed=61,
@@ -259,7 +259,7 @@ def _above_knee(now: datetime.datetime) -> SimulatedPatient:
         recordings=(Standing(), FreeMotion(), *walks),
     )
     limits = Limits(without_ankle=frozenset({side}))
-    return SimulatedPatient(patient, (SimulatedVisit(code, _days_ago(now, 9), settings, told, limits),))
+    return SimulatedPatient(patient, (SimulatedVisit(code, _days_ago(now, 9), settings, reported, limits),))
 
 
 def _days_ago(now: datetime.datetime, days: int) -> datetime.datetime:

@@ -5,7 +5,7 @@ import os
 from dataclasses import replace
 from uuid import UUID
 
-from app.demonstration.patients import BY, SimulatedPatient, SimulatedVisit, ToldOfWalk
+from app.demonstration.patients import BY, ReportedOfWalk, SimulatedPatient, SimulatedVisit
 from app.storage.audit import REPORT_FORMAT, about
 from app.storage.exchange import import_session
 from app.storage.opened import OpenedLibrary
@@ -19,13 +19,13 @@ BETWEEN_WALKS = datetime.timedelta(minutes=2)
 
 
 def record_visit(visit: SimulatedVisit) -> Session:
-    """Let the patient move, and give what the sensors send, with what was said of it."""
+    """Let the patient move, and give what the sensors send, with what was stated about it."""
     from devices.simulation.replay import labelled  # scipy takes a second that home is not to wait for
     from devices.simulation.walker import simulate
 
     moved = labelled(simulate(visit.settings).session)
     recordings = tuple(
-        _told(recording, visit.told.get(recording.name), visit.started + number * BETWEEN_WALKS)
+        _reported(recording, visit.reported.get(recording.name), visit.started + number * BETWEEN_WALKS)
         for number, recording in enumerate(moved.recordings)
     )
     return replace(
@@ -59,7 +59,7 @@ def add_patients(opened: OpenedLibrary, patients: tuple[SimulatedPatient, ...]) 
 def take_in(opened: OpenedLibrary, visit: SimulatedVisit, session: Session) -> UUID:
     """Write what was recorded into journals of the library, as the next visit of its patient.
 
-    That its report was written is said and not done: nobody is to look for a file.
+    That its report was written is stated and not done: nobody is to look for a file.
 
     Raises
     ------
@@ -67,20 +67,20 @@ def take_in(opened: OpenedLibrary, visit: SimulatedVisit, session: Session) -> U
         As of `import_session`.
     """
     known = opened.library.patients.find(visit.code)
-    told = replace(session, patient=known.details) if known is not None else session
-    session_id = import_session(opened, told, _silent, visit.code, limits=visit.limits).session_id
+    reported = replace(session, patient=known.details) if known is not None else session
+    session_id = import_session(opened, reported, _silent, visit.code, limits=visit.limits).session_id
     if visit.is_reported:
         subject = about("session", session_id)
         opened.library.audit.note(Action.EXPORT, subject, format=REPORT_FORMAT, is_simulated=True)
     return session_id
 
 
-def _told(recording: Recording, told: ToldOfWalk | None, started: datetime.datetime) -> Recording:
+def _reported(recording: Recording, reported: ReportedOfWalk | None, started: datetime.datetime) -> Recording:
     at = replace(recording, started=started.isoformat(timespec="seconds"))
-    if told is None:
+    if reported is None:
         return at
-    test = PlannedTest(told.test) if told.test is not None else None
-    return replace(at, condition=told.condition, alignment=told.alignment, test=test)
+    test = PlannedTest(reported.test) if reported.test is not None else None
+    return replace(at, condition=reported.condition, alignment=reported.alignment, test=test)
 
 
 def _silent(_share: float, _what: str) -> None:

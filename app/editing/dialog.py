@@ -10,7 +10,7 @@ from PySide6.QtWidgets import QBoxLayout, QButtonGroup, QDialog, QFrame, QHBoxLa
 
 from app.editing.question import EditQuestion
 from app.editing.words import by_words, field_word, value_words
-from app.storage.three_way import Contest
+from app.storage.three_way import MergeConflict
 from app.theme.notifier import ThemeNotifier
 from app.widgets.button import Button, ButtonKind
 from app.widgets.text import MEDIUM, SEMIBOLD, Text
@@ -18,7 +18,7 @@ from app.widgets.version_cell import VersionCell
 from app.wording.translation import tr
 
 WIDTH, EDGE = 720, 24
-STACKED_BELOW = 520  # px of the design: below it yours stands over theirs
+STACKED_BELOW = 520  # px of the design: below it yours is over theirs
 LOW_BELOW = 420  # of the window: below it what is asked has the room of what explains it
 MINE, THEIRS = 0, 1
 
@@ -88,7 +88,7 @@ class EditDialog(QDialog):
     def sizeHint(self) -> QSize:
         return self.size()
 
-    def _row(self, contest: Contest, now: datetime.datetime) -> tuple[VersionCell, VersionCell]:
+    def _row(self, contest: MergeConflict, now: datetime.datetime) -> tuple[VersionCell, VersionCell]:
         field = field_word(contest.field)
         whose = tr("Theirs: {who}").format(who=by_words(contest.by, contest.at, now))
         mine = VersionCell(self._look, field, value_words(contest.field, contest.mine), tr("Yours"))

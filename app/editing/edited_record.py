@@ -1,7 +1,7 @@
 """What is edited here and may be edited at another station meanwhile: how it is saved, merged, asked about and settled.
 
 What was typed last holds on the screen at once. The library merges it with what another station changed; where both
-changed the same, theirs stands until somebody has chosen.
+changed the same, theirs is until somebody has chosen.
 """
 
 import datetime
@@ -13,7 +13,7 @@ from PySide6.QtCore import QObject, Signal
 
 from app.editing.question import EditQuestion
 from app.editing.words import others_message
-from app.storage.three_way import Contest, Edited, Values
+from app.storage.three_way import Edited, MergeConflict, Values
 from app.workers.library_controller import LibraryController
 
 if TYPE_CHECKING:
@@ -51,7 +51,7 @@ class EditedRecord(QObject, Generic[T]):
         """What is edited, as a sentence begins with it."""
         raise NotImplementedError
 
-    def _choose(self, stored: T, upon: Values, said: Values) -> None:
+    def _choose(self, stored: T, base: Values, stated: Values) -> None:
         """Save what was chosen in a question: what it showed of the other side, and what is to hold instead."""
         raise NotImplementedError
 
@@ -62,7 +62,7 @@ class EditedRecord(QObject, Generic[T]):
         """Let the library's thread make `call`, which holds values only: no QObject may end in that thread."""
         self._controller.run(call, done, self._on_refused, self)
 
-    def _tell(self, edited: Edited[T]) -> None:
+    def _show_message(self, edited: Edited[T]) -> None:
         if edited.others:
             now = datetime.datetime.now().astimezone()
             self.merged.emit(*others_message(self._called(edited.stored), edited.others, now))
@@ -72,10 +72,10 @@ class EditedRecord(QObject, Generic[T]):
             settle = partial(self._settle, edited.stored, edited.contests)
             self.asked.emit(EditQuestion(self._called(edited.stored), edited.contests, settle))
 
-    def _settle(self, stored: T, contests: Sequence[Contest], fields: frozenset[str]) -> None:
-        """Choose our own value in `fields`; a further change since the question is asked anew."""
-        wanted = [contest for contest in contests if contest.field in fields]
-        if wanted:
-            self._choose(stored, {one.field: one.theirs for one in wanted}, {one.field: one.mine for one in wanted})
+    def _settle(self, stored: T, contests: Sequence[MergeConflict], fields: frozenset[str]) -> None:
+        """Choose our own value in `fields`; a further change since the question is asked again."""
+        required = [contest for contest in contests if contest.field in fields]
+        if required:
+            self._choose(stored, {one.field: one.theirs for one in required}, {one.field: one.mine for one in required})
         else:
             self.changed.emit()

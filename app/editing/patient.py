@@ -28,27 +28,27 @@ class RecordPhase(Enum):
 
 
 class PatientRecord(EditedRecord[StoredPatient]):
-    """`told` is what stands on the screen, `stored` what the library holds; the second follows the first.
+    """`reported` is what is on the screen, `stored` what the library holds; the second follows the first.
 
     A new patient is made by `commit`, when the code has been typed wholly: half a code is nobody's. Whoever types
     another code over that of a patient with sessions means somebody else, and nobody is renamed.
     """
 
-    read_anew = Signal()
-    """What stands on the screen was old."""
+    read_again = Signal()
+    """What is on the screen was old."""
     code_taken = Signal(str)
 
     def __init__(
         self, controller: LibraryController, parent: QObject, refuses: Callable[[str], tuple[str, str]]
     ) -> None:
-        """`refuses` says why a code cannot take the place of the patient's, and what to do; empty where it can."""
+        """`refuses` states why a code cannot take the place of the patient's, and what to do; empty where it can."""
         super().__init__(controller, parent)
         self._refuses = refuses
         self.has_this_session_only = False
         """So another code is a correction of this patient's."""
         self.details = Patient()
         self.stored: StoredPatient | None = None
-        self._upon = patient_fields(self.details)
+        self._base = patient_fields(self.details)
         """What was shown when `details` were typed."""
         self._sent: Values = {}
         self._phase = RecordPhase.SETTLED
@@ -68,7 +68,7 @@ class PatientRecord(EditedRecord[StoredPatient]):
 
     @property
     def is_saving(self) -> bool:
-        """Whether the library is still to answer, or to be told what was typed meanwhile."""
+        """Whether the library is still to answer, or to be given what was typed meanwhile."""
         return self.is_busy or self._pause.isActive()
 
     @property
@@ -80,14 +80,14 @@ class PatientRecord(EditedRecord[StoredPatient]):
         self._show(stored)
 
     def choose_from_list(self, listed: StoredPatient) -> None:
-        """Choose a patient as a list has it: the visit before may have changed what was told since it was read."""
+        """Choose a patient as a list has it: the visit before may have changed what was reported since it was read."""
         self._phase = RecordPhase.READING
         self._show(listed)
         self._read(listed)
 
-    def edit(self, told: Patient) -> None:
+    def edit(self, reported: Patient) -> None:
         """Take what is on the screen; a patient of the library is changed once the typing pauses."""
-        self.details = replace(told, code=told.code.strip(), device=told.device.strip())
+        self.details = replace(reported, code=reported.code.strip(), device=reported.device.strip())
         if self.stored is not None and self.details.code == self.stored.details.code:
             self._pause.start()
 
@@ -106,27 +106,27 @@ class PatientRecord(EditedRecord[StoredPatient]):
                 self.refused.emit(what, remedy)
                 return
         self._phase = RecordPhase.BUSY
-        stored, told = self.stored, self.details
+        stored, reported = self.stored, self.details
         is_renamed = self.has_this_session_only
-        upon = self._upon
-        self._sent = said = patient_fields(told)
+        base = self._base
+        self._sent = stated = patient_fields(reported)
 
         def save(opened: OpenedLibrary) -> Edited[StoredPatient] | None:
             patients, edits = opened.library.patients, opened.library.edits
-            if stored is not None and stored.details.code == told.code:
-                return edits.patient(stored.id, upon, said)
-            found = patients.find(told.code)
+            if stored is not None and stored.details.code == reported.code:
+                return edits.patient(stored.id, base, stated)
+            found = patients.find(reported.code)
             if found is not None and (stored is None or found.id != stored.id):
                 return None
             if found is None and (stored is None or (stored.sessions > 0 and not is_renamed)):
-                return Edited(patients.create(told))
+                return Edited(patients.create(reported))
             assert stored is not None
-            return edits.patient(stored.id, upon, said)
+            return edits.patient(stored.id, base, stated)
 
         self._run(save, self._on_saved)
 
     def _show(self, stored: StoredPatient) -> None:
-        self.stored, self.details, self._upon = stored, stored.details, patient_fields(stored.details)
+        self.stored, self.details, self._base = stored, stored.details, patient_fields(stored.details)
         self.changed.emit()
 
     def _read(self, listed: StoredPatient) -> None:
@@ -136,7 +136,7 @@ class PatientRecord(EditedRecord[StoredPatient]):
     def _on_read(self, stored: StoredPatient) -> None:
         is_awaited, self._phase = self._may_be_old, RecordPhase.SETTLED
         if is_awaited and self.stored is not None:  # else another was chosen meanwhile
-            self._take(stored, self._upon)
+            self._take(stored, self._base)
         else:
             self.changed.emit()
         if not self.is_saved:
@@ -147,7 +147,7 @@ class PatientRecord(EditedRecord[StoredPatient]):
         self._end_work()
         if edited is not None:
             self._ask(edited)  # before anybody goes on
-        if is_overtaken:  # it is saved, and another stands here now
+        if is_overtaken:  # it is saved, and another is here now
             self.changed.emit()
         elif edited is None:
             self.code_taken.emit(self.details.code)
@@ -155,30 +155,30 @@ class PatientRecord(EditedRecord[StoredPatient]):
         else:
             self._take(edited.stored, self._sent)
         if edited is not None:
-            self._tell(edited)
+            self._show_message(edited)
         if not self.is_saved:
             self._pause.start()  # typed on meanwhile
 
-    def _take(self, stored: StoredPatient, upon: Values) -> None:
-        """Go on from what the library holds; what was typed since `upon` stays typed."""
+    def _take(self, stored: StoredPatient, base: Values) -> None:
+        """Go on from what the library holds; what was typed since `base` stays typed."""
         before = patient_fields(self.details)
-        self._upon, said = rebased(upon, before, patient_fields(stored.details))
-        self.stored, self.details = stored, with_patient_fields(stored.details, said)
-        if said != before:
-            self.read_anew.emit()
+        self._base, stated = rebased(base, before, patient_fields(stored.details))
+        self.stored, self.details = stored, with_patient_fields(stored.details, stated)
+        if stated != before:
+            self.read_again.emit()
         self.changed.emit()
 
     def _called(self, stored: StoredPatient) -> str:
         return stored.details.code
 
-    def _choose(self, stored: StoredPatient, upon: Values, said: Values) -> None:
-        self._run(lambda opened: opened.library.edits.patient(stored.id, upon, said), self._on_settled)
+    def _choose(self, stored: StoredPatient, base: Values, stated: Values) -> None:
+        self._run(lambda opened: opened.library.edits.patient(stored.id, base, stated), self._on_settled)
 
     def _on_settled(self, edited: Edited[StoredPatient]) -> None:
         self._ask(edited)
         if self.stored is not None and self.stored.id == edited.stored.id:
-            self._take(edited.stored, self._upon)
-        self._tell(edited)
+            self._take(edited.stored, self._base)
+        self._show_message(edited)
 
     def _end_work(self) -> None:
         """Nothing is saved or read any more: what was to be read still is."""

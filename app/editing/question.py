@@ -3,7 +3,7 @@
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 
-from app.storage.three_way import Contest
+from app.storage.three_way import MergeConflict
 
 Settle = Callable[[frozenset[str]], None]
 
@@ -12,9 +12,9 @@ Settle = Callable[[frozenset[str]], None]
 class EditQuestion:
     """`subject` names what was edited. `settle` takes the fields of which our own value is to hold; none: theirs stay.
 
-    The library holds theirs meanwhile, and ours stands in its history.
+    The library holds theirs meanwhile, and ours is in its history.
     """
 
     subject: str
-    contests: Sequence[Contest]
+    contests: Sequence[MergeConflict]
     settle: Settle

@@ -26,7 +26,7 @@ class RecordingEdits(EditedRecord[StoredRecording]):
     Parameters
     ----------
     find
-        Gives a recording as it stands on the screen, by its id.
+        Gives a recording as it is on the screen, by its id.
     name_of
         Gives what one is called there, by its name.
 
@@ -47,44 +47,46 @@ class RecordingEdits(EditedRecord[StoredRecording]):
     ) -> None:
         super().__init__(controller, parent)
         self._find, self._name_of = find, name_of
-        self._saying: deque[tuple[UUID, Recording | None]] = deque()  # said and not answered yet, oldest first
+        self._saying: deque[tuple[UUID, Recording | None]] = deque()  # stated and not answered yet, oldest first
 
     def is_saving(self, recording_id: UUID) -> bool:
-        """Whether something that was said of a recording is still to be answered."""
-        return any(said == recording_id for said, _ in self._saying)
+        """Whether something that was stated about a recording is still to be answered."""
+        return any(stated == recording_id for stated, _ in self._saying)
 
-    def said(self, recording: SessionRecording) -> Recording:
-        """What is told of a recording: what is to be saved last, or what is saved."""
-        saying = (told for said, told in reversed(self._saying) if told is not None and said == recording.id)
+    def stated(self, recording: SessionRecording) -> Recording:
+        """What is given of a recording: what is to be saved last, or what is saved."""
+        saying = (
+            reported for stated, reported in reversed(self._saying) if reported is not None and stated == recording.id
+        )
         return next(saying, recording.details)
 
-    def save(self, recording_id: UUID, upon: Values, said: Values) -> None:
-        """Save what is `said` upon the values that stood on the screen."""
-        self._say(recording_id, said, lambda opened: opened.library.edits.recording(recording_id, upon, said))
+    def save(self, recording_id: UUID, base: Values, stated: Values) -> None:
+        """Save what is `stated` on the values that stood on the screen."""
+        self._say(recording_id, stated, lambda opened: opened.library.edits.recording(recording_id, base, stated))
 
     def decide(self, recording_id: UUID, is_kept: bool) -> None:
         """Give the answer that was asked for: nobody is asked again, at the next start either."""
         self._say(recording_id, {KEPT: is_kept}, lambda opened: opened.library.edits.decision(recording_id, is_kept))
 
     def _say(
-        self, recording_id: UUID, said: Values, call: "Callable[[OpenedLibrary], Edited[StoredRecording]]"
+        self, recording_id: UUID, stated: Values, call: "Callable[[OpenedLibrary], Edited[StoredRecording]]"
     ) -> None:
         recording = self._find(recording_id)
-        told = with_recording_fields(self.said(recording), said) if recording is not None else None
-        self._saying.append((recording_id, told))
+        reported = with_recording_fields(self.stated(recording), stated) if recording is not None else None
+        self._saying.append((recording_id, reported))
         self._run(call, self._on_saved)
 
     def _called(self, stored: StoredRecording) -> str:
         return capitalised(self._name_of(stored.details.name))
 
-    def _choose(self, stored: StoredRecording, upon: Values, said: Values) -> None:
-        self.save(stored.id, upon, said)
+    def _choose(self, stored: StoredRecording, base: Values, stated: Values) -> None:
+        self.save(stored.id, base, stated)
         self.changed.emit()
 
     def _on_saved(self, edited: Edited[StoredRecording]) -> None:
         self._saying.popleft()
         self.saved.emit(edited.stored)
-        self._tell(edited)
+        self._show_message(edited)
         self._ask(edited)
 
     def _on_refused(self, what: str, remedy: str) -> None:

@@ -1,4 +1,4 @@
-"""What is said of the session of a visit, kept as it is said."""
+"""What is stated about the session of a visit, kept as it is stated."""
 
 import datetime
 from dataclasses import replace
@@ -18,14 +18,14 @@ from core.samples import Session
 
 
 class SessionRecord(EditedRecord[StoredSession]):
-    """`told` is what stands on the screen, `stored` what the library holds; the second follows the first.
+    """`reported` is what is on the screen, `stored` what the library holds; the second follows the first.
 
-    There is no session before `begin` or `resume`; what is said before waits for it.
+    There is no session before `begin` or `resume`; what is stated before waits for it.
 
     Signals
     -------
     held
-        The library holds all that is said; `changed` follows.
+        The library holds all that is stated; `changed` follows.
     """
 
     held = Signal()
@@ -34,9 +34,9 @@ class SessionRecord(EditedRecord[StoredSession]):
         super().__init__(controller, parent)
         self._patient = patient
         self.stored: StoredSession | None = None
-        self._say(_said_fields(Session(recordings=()), "", Limits()))
-        self._sent = self._said
-        """What was said of the session when the library was asked last."""
+        self._say(_stated_fields(Session(recordings=()), "", Limits()))
+        self._sent = self._stated
+        """What was stated about the session when the library was asked last."""
         self._is_busy = False
 
     @property
@@ -45,9 +45,9 @@ class SessionRecord(EditedRecord[StoredSession]):
         return self._is_busy
 
     @property
-    def told(self) -> Session:
-        """What was said about the session, the last word of it on the screen; without recordings."""
-        return replace(self._told, recordings=(), patient=self._patient.details)
+    def reported(self) -> Session:
+        """What was stated about the session, the last word of it on the screen; without recordings."""
+        return replace(self._reported, recordings=(), patient=self._patient.details)
 
     def begin(self) -> None:
         """Make the session's row, once the patient has one; `changed` follows."""
@@ -57,28 +57,28 @@ class SessionRecord(EditedRecord[StoredSession]):
         self._is_busy = True
         self._patient.has_this_session_only = patient.sessions == 0
         state = self._controller.state
-        told = Session(
+        reported = Session(
             recordings=(),
             started=current_time(),
             operator=state.operator.name if state is not None else "",
             software=f"gaitwright {version_of('gaitwright')}",
         )
         limits = self.limits
-        self._sent = _said_fields(told, "", limits)
-        self._run(lambda opened: Edited(opened.library.sessions.create(patient.id, told, limits)), self._on_saved)
+        self._sent = _stated_fields(reported, "", limits)
+        self._run(lambda opened: Edited(opened.library.sessions.create(patient.id, reported, limits)), self._on_saved)
 
     def resume(self, stored: StoredSession) -> None:
-        """Go on with a session of the library, of which nothing has been said here."""
+        """Go on with a session of the library, of which nothing has been stated here."""
         self.stored = stored
         self._say(_fields_of(stored))
 
     def take(self, stored: StoredSession) -> None:
-        """Go on from what the library holds; what was said since it was read last stays said, and is saved."""
+        """Go on from what the library holds; what was stated since it was read last stays stated, and is saved."""
         self._take(stored, _fields_of(self.stored or stored))
 
     def take_instead(self, stored: StoredSession) -> None:
-        """Go on from what the library holds, in place of all that is said here."""
-        self._take(stored, self._said)
+        """Go on from what the library holds, in place of all that is stated here."""
+        self._take(stored, self._stated)
 
     def set_zero(self, joint: Joint, zero_rad: float | None) -> None:
         """Take the goniometer's value while standing, radians in the clinical sign; None: the standing itself is 0."""
@@ -87,7 +87,7 @@ class SessionRecord(EditedRecord[StoredSession]):
     def set_limits(self, limits: Limits) -> None:
         """Take what the patient's body does not allow; before there is a session, it waits for that."""
         if limits != self.limits:
-            self._change(_said_fields(self.told, self.comment, limits))
+            self._change(_stated_fields(self.reported, self.comment, limits))
 
     def set_comment(self, comment: str, shown: str) -> None:
         """Take the clinician's words, which were typed where `shown` stood.
@@ -100,48 +100,48 @@ class SessionRecord(EditedRecord[StoredSession]):
         """Turn (-1) or confirm (1) the sign that was found of a joint; None: as found. `held` follows."""
         self._change({f"turned_sign.{joint}": sign})
 
-    def _say(self, said: Values) -> None:
-        """Put what is said on the screen."""
+    def _say(self, stated: Values) -> None:
+        """Put what is stated on the screen."""
         details, comment, limits = _whole(self.stored)
-        self._said = said
-        self._told, self.comment, self.limits = with_session_fields(details, comment, limits, said)
+        self._stated = stated
+        self._reported, self.comment, self.limits = with_session_fields(details, comment, limits, stated)
 
-    def _change(self, said: Values, upon: Values | None = None) -> None:
-        """Save what is said of the session; `upon`: where it was said upon something else than the library has."""
-        self._say({field: said.get(field, before) for field, before in self._said.items()})
+    def _change(self, stated: Values, base: Values | None = None) -> None:
+        """Save what is stated about the session; `base`: where it was stated on something else than the library has."""
+        self._say({field: stated.get(field, before) for field, before in self._stated.items()})
         if self.stored is not None and not self._is_busy:
-            self._save(self.stored, upon or {})
+            self._save(self.stored, base or {})
 
-    def _save(self, stored: StoredSession, upon: Values) -> None:
-        self._is_busy, self._sent = True, self._said
+    def _save(self, stored: StoredSession, base: Values) -> None:
+        self._is_busy, self._sent = True, self._stated
         held = session_fields(*_whole(stored))
-        shown, said = {**held, **upon}, {**held, **self._sent}
-        self._run(lambda opened: opened.library.edits.session(stored.id, shown, said), self._on_saved)
+        shown, stated = {**held, **base}, {**held, **self._sent}
+        self._run(lambda opened: opened.library.edits.session(stored.id, shown, stated), self._on_saved)
 
     def _called(self, stored: StoredSession) -> str:
         return tr("The session")
 
-    def _choose(self, stored: StoredSession, upon: Values, said: Values) -> None:
-        self._run(lambda opened: opened.library.edits.session(stored.id, upon, said), self._on_settled)
+    def _choose(self, stored: StoredSession, base: Values, stated: Values) -> None:
+        self._run(lambda opened: opened.library.edits.session(stored.id, base, stated), self._on_settled)
 
     def _on_saved(self, edited: Edited[StoredSession]) -> None:
         self._is_busy = False
         self._take(edited.stored, self._sent)
-        self._tell(edited)
+        self._show_message(edited)
         self._ask(edited)
 
     def _on_settled(self, edited: Edited[StoredSession]) -> None:
         self.take(edited.stored)
-        self._tell(edited)
+        self._show_message(edited)
         self._ask(edited)
 
-    def _take(self, session: StoredSession, upon: Values) -> None:
-        """Go on from what the library holds; what was said since `upon` stays said, and is saved."""
+    def _take(self, session: StoredSession, base: Values) -> None:
+        """Go on from what the library holds; what was stated since `base` stays stated, and is saved."""
         held = _fields_of(session)
-        shown, said = rebased(upon, self._said, held)
+        shown, stated = rebased(base, self._stated, held)
         self.stored = session
-        self._say(said)
-        if said == held:
+        self._say(stated)
+        if stated == held:
             self.held.emit()
         elif not self._is_busy:
             self._save(session, shown)
@@ -151,7 +151,7 @@ class SessionRecord(EditedRecord[StoredSession]):
         """Words stay as they were typed, and are saved with the next; so do limits before there is a session."""
         self._is_busy = False
         details, _, limits = _whole(self.stored)
-        self._say(_said_fields(details, self.comment, limits if self.stored is not None else self.limits))
+        self._say(_stated_fields(details, self.comment, limits if self.stored is not None else self.limits))
         super()._on_refused(what, remedy)
         self.changed.emit()
 
@@ -168,10 +168,10 @@ def _whole(session: StoredSession | None) -> tuple[Session, str, Limits]:
 
 
 def _fields_of(session: StoredSession) -> dict[str, Value]:
-    return _said_fields(*_whole(session))
+    return _stated_fields(*_whole(session))
 
 
-def _said_fields(told: Session, comment: str, limits: Limits) -> dict[str, Value]:
-    """What is said of a session while it goes on; the rest is said once, by whatever made it."""
-    every = session_fields(told, comment, limits)
+def _stated_fields(reported: Session, comment: str, limits: Limits) -> dict[str, Value]:
+    """What is stated about a session while it goes on; the rest is stated once, by whatever made it."""
+    every = session_fields(reported, comment, limits)
     return {name: value for name, value in every.items() if name not in SESSION_CORRECTABLE}

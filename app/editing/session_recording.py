@@ -1,4 +1,4 @@
-"""One recording of a visit as it stands: the one that goes on, those that have ended, and which of them count."""
+"""One recording of a visit as it is: the one that goes on, those that have ended, and which of them count."""
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
@@ -26,7 +26,7 @@ class Ongoing:
 class SessionRecording:
     """A recording that has ended. `read_back` holds what its journal holds; None until it has been read.
 
-    `strides` are those counted live. `is_decided`: somebody has said whether it is kept; until then it is. `lacks`:
+    `strides` are those counted live. `is_decided`: somebody has stated whether it is kept; until then it is. `lacks`:
     what could not be fetched from the sensors' memories.
     """
 
@@ -48,20 +48,20 @@ class SessionRecording:
 def counted(recordings: Sequence[SessionRecording]) -> tuple[Recording, ...]:
     """Those of one session's recordings that count and have been read, in order of time, as an analysis takes them.
 
-    That sensors were strapped anew before one that does not count is told of the next.
+    That sensors were strapped again before one that does not count is given of the next.
     """
     found = []
     is_restrapped = False
     for recording in recordings:
         is_restrapped |= recording.details.is_restrapped_before
         if recording.details.is_kept and recording.read_back is not None:
-            told = replace(recording.details, imu=recording.read_back.imu, is_restrapped_before=is_restrapped)
-            found.append(replace(told, test=_with_its_keys(told.test, recording.read_back.test)))
+            reported = replace(recording.details, imu=recording.read_back.imu, is_restrapped_before=is_restrapped)
+            found.append(replace(reported, test=_with_its_keys(reported.test, recording.read_back.test)))
             is_restrapped = False
     return tuple(found)
 
 
-def _with_its_keys(told: "PlannedTest | None", read: "PlannedTest | None") -> "PlannedTest | None":
-    """The test as it is told; a recovered recording's keys are in its journal alone."""
-    has_keys = told is not None and (told.start_key_s, told.end_key_s) != (None, None)
-    return told if told is None or read is None or has_keys or read.protocol is not told.protocol else read
+def _with_its_keys(reported: "PlannedTest | None", read: "PlannedTest | None") -> "PlannedTest | None":
+    """The test as it is reported; a recovered recording's keys are in its journal alone."""
+    has_keys = reported is not None and (reported.start_key_s, reported.end_key_s) != (None, None)
+    return reported if reported is None or read is None or has_keys or read.protocol is not reported.protocol else read

@@ -1,4 +1,4 @@
-"""What two stations said of the same thing, in words: the fields, their values, and who said them when."""
+"""What two stations stated of the same thing, in words: the fields, their values, and who stated them when."""
 
 import datetime
 import json
@@ -96,15 +96,15 @@ def by_words(by: str, at: datetime.datetime | None, now: datetime.datetime) -> s
 
 
 def others_message(subject: str, others: Sequence[OtherChange], now: datetime.datetime) -> tuple[str, str]:
-    """Tell what another station changed of `subject` while it was edited here: what happened, and the values."""
+    """Report what another station changed of `subject` while it was edited here: what happened, and the values."""
     what = tr("Saved. {subject} was also changed at another workstation.").format(subject=subject)
-    said = [
+    stated = [
         tr("{field}: {value} ({who}).").format(
             field=field_word(one.field), value=value_words(one.field, one.value), who=by_words(one.by, one.at, now)
         )
         for one in others
     ]
-    return what, " ".join(said)
+    return what, " ".join(stated)
 
 
 def _text(name: str, value: str) -> str:

@@ -3,7 +3,7 @@
 As the Brain Imaging Data Structure has it for motion: one table without heads for each tracking system, which is all
 sensors of one time base, with the latencies from the start of the recording in its first column. Samples and times are
 those of the recording to their last digit; what is missing is n/a. Two columns of ours say what BIDS has no word for,
-the sensor's number and what its rates are, and a setting says what is simulated: `gaitwright import` gives back the
+the sensor's number and what its rates are, and a setting states what is simulated: `gaitwright import` gives back the
 same recording.
 """
 
@@ -106,12 +106,12 @@ def write_bids(session: Session, folder: Path) -> str:
             "GeneratedBy": [{"Name": software()}],
         },
     )
-    said = [SIMULATED] if session.is_simulated else []
-    said += [
+    stated = [SIMULATED] if session.is_simulated else []
+    stated += [
         f"What inertial sensors on thighs, shanks and feet measured in one session. Made by {software()}. {PURPOSE}",
         "Accelerations hold gravity. Axes are those of the sensors, whose alignment to the body is not known.",
     ]
-    (folder / "README").write_text("\n".join([*said, ""]), encoding="utf-8")
+    (folder / "README").write_text("\n".join([*stated, ""]), encoding="utf-8")
     return ""
 
 
@@ -183,15 +183,15 @@ def _settings(
     time_s = recording.imu[sites[0]].time_s
     length_s = float(time_s[-1] - time_s[0])
     effective_hz = (len(time_s) - 1) / length_s if length_s > 0 else 0.0
-    told = [session.sensors.get(site, SensorInfo()) for site in sites]
-    rates_hz, models = {info.rate_hz for info in told}, {info.model for info in told}
-    said_hz = next(iter(rates_hz)) if len(rates_hz) == 1 else None
+    reported = [session.sensors.get(site, SensorInfo()) for site in sites]
+    rates_hz, models = {info.rate_hz for info in reported}, {info.model for info in reported}
+    stated_hz = next(iter(rates_hz)) if len(rates_hz) == 1 else None
     kinds = [one.row["type"] for one in channels]
     settings: dict[str, object] = {
         "TaskName": TASKS[recording.kind],
         "TaskDescription": ", ".join(filter(None, [recording.name, recording.condition])),
         "TrackingSystemName": system,
-        "SamplingFrequency": said_hz or round(effective_hz, 3),
+        "SamplingFrequency": stated_hz or round(effective_hz, 3),
         "SamplingFrequencyEffective": effective_hz,
         "RecordingDuration": length_s,
         "MissingValues": MISSING,

@@ -1,13 +1,14 @@
 """Angles and events for programs of motion laboratories: a C3D file per recording, angles as points.
 
 Angles stand where such programs look for them: as points of the kind ANGLES, LKneeAngles and so on, of which the first
-component bends; the two others were not measured and are 0. Of a hip the second one is adduction, where that is told.
-A C3D has one rate and no stamps, so each frame holds the row of angles.csv nearest to it, at most half a frame away; a
-frame without one, or in a gap, has residual -1. The format counts frames in 16 bits, and programs differ in how they
-count beyond (the one used here to write reads 65 535 of them back), so a longer recording goes on in another file.
+component bends; the two others were not measured and are 0. Of a hip the second one is adduction, where that is
+reported. A C3D has one rate and no stamps, so each frame holds the row of angles.csv nearest to it, at most half a
+frame away; a frame without one, or in a gap, has residual -1. The format counts frames in 16 bits, and programs differ
+in how they count beyond (the one used here to write reads 65 535 of them back), so a longer recording goes on in
+another file.
 
-A joint that is withheld, or whose sign is not known, is left out. One without a zero is named as its shape, such as
-LKneeAngles_SHAPE, and its mean is taken away, so that nothing reads a height from it. PROCESSING:STATUS says why.
+A joint that is not reported, or whose sign is not known, is left out. One without a zero is named as its shape, such as
+LKneeAngles_SHAPE, and its mean is taken away, so that nothing reads a height from it. PROCESSING:STATUS states why.
 """
 
 from collections.abc import Sequence
@@ -17,7 +18,7 @@ from textwrap import shorten
 import ezc3d
 import numpy as np
 
-from app.exports.figures import SIMULATED, status_in_ascii, told_abduction_deg, told_deg
+from app.exports.figures import SIMULATED, reported_abduction_deg, reported_deg, status_in_ascii
 from app.exports.parts import part_paths
 from app.summary.events import events_of
 from app.summary.status import NO_ZERO, WITH_HEIGHT, joint_status, why_status
@@ -44,7 +45,7 @@ EVENTS = {
     "heel_rise": "Heel Rise",
 }
 SHAPE = "_SHAPE"  # behind the name of an angle whose mean was taken away
-TOLD = (*WITH_HEIGHT, NO_ZERO)
+REPORTED = (*WITH_HEIGHT, NO_ZERO)
 LONGEST_TEXT = 250  # the format counts a text's letters in 8 bits
 MOST_FRAMES = 65535  # the format counts them in 16 bits
 MOST_ENTRIES = 255  # and the entries of a list in 8, so a longer one goes on in LABELS2 and so on
@@ -65,17 +66,17 @@ def write_c3d(recording: RecordingAnalysis, is_simulated: bool, path: Path) -> s
         The file cannot be written.
     """
     status = {joint: joint_status(recording, joint) for joint in POINTS if joint in recording.measured}
-    joints = [joint for joint, said in status.items() if said in TOLD]
+    joints = [joint for joint, stated in status.items() if stated in REPORTED]
     if not joints and not events_of(recording):
         reasons = [why_status(recording, joint) for joint in status]
         return " ".join([tr("It has neither angles nor events to export."), *dict.fromkeys(filter(None, reasons))])
-    found = {joint: told_abduction_deg(recording, joint) for joint in joints if joint.is_hip}
+    found = {joint: reported_abduction_deg(recording, joint) for joint in joints if joint.is_hip}
     abductions = {joint: abduction_deg for joint, abduction_deg in found.items() if abduction_deg is not None}
     rows, step_s = _rows_of_frames(recording)
     values = np.zeros((4, len(joints), len(rows)))
     values[3] = 1.0
     for k, joint in enumerate(joints):
-        angle_deg = told_deg(recording, joint)
+        angle_deg = reported_deg(recording, joint)
         if status[joint] == NO_ZERO and np.isfinite(angle_deg).any():
             angle_deg = angle_deg - np.nanmean(angle_deg)
         values[0, k] = np.append(angle_deg, np.nan)[rows]  # a frame without a row is the last, which is missing
@@ -89,8 +90,8 @@ def write_c3d(recording: RecordingAnalysis, is_simulated: bool, path: Path) -> s
     part_of = [min(max(int((one[0] - start_s) / (step_s * MOST_FRAMES)), 0), len(firsts) - 1) for one in events]
     for first, place in zip(firsts, part_paths(path, len(firsts)), strict=True):
         c3d = _angles_in_c3d(values[:, :, first : first + MOST_FRAMES], step_s, labels, descriptions)
-        said = [f"{joint}: {status_in_ascii(recording, joint)}" for joint in status]
-        c3d.add_parameter("PROCESSING", "STATUS", [shorten(text, LONGEST_TEXT, placeholder=" ...") for text in said])
+        stated = [f"{joint}: {status_in_ascii(recording, joint)}" for joint in status]
+        c3d.add_parameter("PROCESSING", "STATUS", [shorten(text, LONGEST_TEXT, placeholder=" ...") for text in stated])
         c3d.add_parameter("PROCESSING", "USE", [PURPOSE])
         c3d.add_parameter("SUBJECTS", "IS_SIMULATED", [int(is_simulated)])
         if is_simulated:

@@ -7,7 +7,7 @@ import numpy as np
 import pyarrow as pa
 import pyarrow.csv
 
-from app.summary.status import WITHHELD, is_slipped, joint_status
+from app.summary.status import NOT_REPORTED, is_slipped, joint_status
 from core.body import LEG_JOINTS, Joint, Side
 from core.gait.phases import PHASES
 from core.results import JointAngle, RecordingAnalysis
@@ -21,7 +21,7 @@ DIGITS = 18  # what fits into the 64 bits below; an angle of a million turns nee
 def write_angles(recording: RecordingAnalysis, path: Path) -> None:
     """Write one recording's angles in degrees, gaps as empty cells, and the phase of each foot in words.
 
-    The samples of an angle that is withheld stay, as evidence; its status says so in every row.
+    The samples of an angle that is not reported stay, as evidence; its status reports it in every row.
 
     Raises
     ------
@@ -79,8 +79,8 @@ def _phases(recording: RecordingAnalysis, side: Side, rows: slice, n: int) -> pa
 
 
 def _status(recording: RecordingAnalysis, joint: Joint, rows: slice) -> pa.Array:
-    """Give the joint's status in each row, withheld after a strap of its leg slipped."""
-    words = pa.array([joint_status(recording, joint) or None, WITHHELD])
+    """Give the joint's status in each row, not reported after a strap of its leg slipped."""
+    words = pa.array([joint_status(recording, joint) or None, NOT_REPORTED])
     return words.take(pa.array(is_slipped(recording, joint.side, rows).astype(np.int64)))
 
 

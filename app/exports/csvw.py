@@ -1,6 +1,6 @@
 """What are the tables of an analysis to a program? `csv-metadata.json`: CSV on the Web, every table and its columns.
 
-W3C, Metadata Vocabulary for Tabular Data, 2015. It says what `columns.csv` says, with the type of each cell.
+W3C, Metadata Vocabulary for Tabular Data, 2015. It states what `columns.csv` states, with the type of each cell.
 """
 
 import json
@@ -48,8 +48,8 @@ def _tables(folder: Path, recordings: Sequence[str]) -> Iterator[dict[str, Any]]
 
 def _column(file: str, name: str) -> dict[str, Any]:
     meaning = column_of(file, name)
-    said = ", ".join(filter(None, [meaning.definition, meaning.sign]))
-    found = {"name": name, "titles": name, "dc:description": said, "datatype": _type(file, name)}
+    stated = ", ".join(filter(None, [meaning.definition, meaning.sign]))
+    found = {"name": name, "titles": name, "dc:description": stated, "datatype": _type(file, name)}
     if unit := unit_of(file, name):
         found["schema:unitText"] = unit
     return found

@@ -47,13 +47,13 @@ def check_formats(formats: Sequence[Format]) -> None:
     FileRefusedError
         One is not installed.
     """
-    for wanted in formats:
-        if wanted in NEEDED and find_spec(NEEDED[wanted]) is None:
+    for required in formats:
+        if required in NEEDED and find_spec(NEEDED[required]) is None:
             raise FileRefusedError(
-                wanted,
+                required,
                 "this format needs {library}, which is not installed",
                 "Install gaitwright[exports]",
-                library=NEEDED[wanted],
+                library=NEEDED[required],
             )
 
 
@@ -100,7 +100,7 @@ def export_from_library(
     kept: Collection[Typed] = (),
     is_identified: bool = False,
 ) -> list[str]:
-    """Analyse a session of a library and write it; the audit says which formats before anything is written.
+    """Analyse a session of a library and write it; the audit states which formats before anything is written.
 
     Without identity, of what was typed freely only what is `kept` leaves, and the audit names it.
 
@@ -120,10 +120,10 @@ def export_from_library(
     """
     check_formats(formats)
     visit = opened.library.sessions.get(session_id)
-    for wanted in formats:
+    for required in formats:
         typed = "all" if is_identified else ", ".join(sorted(kept))
         opened.library.audit.note(
-            Action.EXPORT, about("session", session_id), format=str(wanted), is_identified=is_identified, typed=typed
+            Action.EXPORT, about("session", session_id), format=str(required), is_identified=is_identified, typed=typed
         )
     session = session_with_samples(opened, visit, decoders, report)
     report(0.5, "analysing")
@@ -136,13 +136,13 @@ def export_from_library(
 
 
 def preview_from_folder(session: Session, kept: Collection[Typed] = ()) -> list[Row]:
-    """All that `export_from_folder` would tell beside the figures."""
+    """All that `export_from_folder` would report beside the figures."""
     pseudonyms, patient_id = pseudonyms_of_folder(session)
     return what_leaves(pseudonyms.session(patient_id, session, kept))
 
 
 def preview_from_library(opened: OpenedLibrary, session_id: UUID, kept: Collection[Typed] = ()) -> list[Row]:
-    """All that `export_from_library` would tell beside the figures.
+    """All that `export_from_library` would report beside the figures.
 
     Raises
     ------
@@ -150,24 +150,26 @@ def preview_from_library(opened: OpenedLibrary, session_id: UUID, kept: Collecti
         There is no such session.
     """
     visit = opened.library.sessions.get(session_id)
-    told = replace(visit.details, recordings=tuple(one.details for one in visit.recordings if one.state in READ_BACK))
-    return what_leaves(Pseudonyms(opened.library.pseudonyms_key).session(visit.patient_id, told, kept))
+    reported = replace(
+        visit.details, recordings=tuple(one.details for one in visit.recordings if one.state in READ_BACK)
+    )
+    return what_leaves(Pseudonyms(opened.library.pseudonyms_key).session(visit.patient_id, reported, kept))
 
 
 def _write(session: Session, analysis: Analysis, formats: Sequence[Format], folder: Path) -> list[str]:
     """Write each format beside, then move its files into their places, so that none is half there."""
     lines, failed = list[str](), list[FileRefusedError]()
-    for wanted in formats:
+    for required in formats:
         with tempfile.TemporaryDirectory(prefix=".export-", dir=folder) as beside:
             try:
-                lines += _write_format(session, analysis, wanted, Path(beside))
+                lines += _write_format(session, analysis, required, Path(beside))
             except (OSError, MemoryError):
                 raise
             except Exception as error:  # a format's edge: whatever its library raises, the other formats are written
                 _log.warning("an export failed", exc_info=error)
                 failed.append(
                     FileRefusedError(
-                        wanted,
+                        required,
                         "this format could not be written ({why})",
                         "Choose another format. The log has the details.",
                         why=error,
@@ -183,33 +185,33 @@ def _write(session: Session, analysis: Analysis, formats: Sequence[Format], fold
     return [*(f"{one.where}: {filled(one.what, one.values)}" for one in failed), *lines]
 
 
-def _write_format(session: Session, analysis: Analysis, wanted: Format, folder: Path) -> list[str]:
+def _write_format(session: Session, analysis: Analysis, required: Format, folder: Path) -> list[str]:
     """Write one format, and give a line for each file that is not written."""
     # here, not above: two of them need libraries that may be missing
-    if wanted is Format.XLSX:
+    if required is Format.XLSX:
         from app.exports.spreadsheet import write_spreadsheet
 
         write_spreadsheet(session, analysis, folder / SPREADSHEET)
-    elif wanted is Format.FHIR:
+    elif required is Format.FHIR:
         from app.exports.fhir_bundle import write_bundle
 
         write_bundle(session, analysis, folder / BUNDLE)
-    elif wanted is Format.BIDS:
+    elif required is Format.BIDS:
         from app.exports.bids_motion import FOLDER, write_bids
 
         why = write_bids(session, folder / FOLDER)
-        return [f"{wanted}: {why}"] if why else []
+        return [f"{required}: {why}"] if why else []
     else:
-        if wanted is Format.C3D:
+        if required is Format.C3D:
             from app.exports.c3d_angles import write_c3d as write
         else:
             from app.exports.opensim_motion import write_motion as write
 
         found = {
-            one.name: write(one, analysis.is_simulated, _place(one, folder, f"angles.{wanted}"))
+            one.name: write(one, analysis.is_simulated, _place(one, folder, f"angles.{required}"))
             for one in analysis.recordings
         }
-        return [f"{name}, {wanted}: {why}" for name, why in found.items() if why]
+        return [f"{name}, {required}: {why}" for name, why in found.items() if why]
     return []
 
 

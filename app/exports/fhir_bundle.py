@@ -1,7 +1,7 @@
 """How does a hospital's system read the averages? A FHIR R4 Bundle of Observations, one per figure of summary.json.
 
-A figure that is to be read with care, or that fewer than ten strides made, is preliminary and says why. One that is
-withheld has no value and its reason in place of it; nothing is ever called high, low or normal. Goals are Goals.
+A figure that is to be read with care, or that fewer than ten strides made, is preliminary and states why. One that is
+not reported has no value and its reason in place of it; nothing is ever called high, low or normal. Goals are Goals.
 Our figures have no codes of their own in LOINC or SNOMED CT that say how they were measured, so each is coded by its
 column's name; sides are coded. Simulated figures carry the label that HL7 gives to test data.
 """
@@ -43,11 +43,11 @@ TEST_DATA = {
     "display": "test health data",
 }
 ABSENT = "http://terminology.hl7.org/CodeSystem/data-absent-reason"
-WITHHELD = {"system": ABSENT, "code": "error", "display": "Error"}
+NOT_REPORTED = {"system": ABSENT, "code": "error", "display": "Error"}
 NOT_PERFORMED = {"system": ABSENT, "code": "not-performed", "display": "Not Performed"}
 ERROR = "half of what the difference of two walks with the sensors left on has to exceed (95 %)"
 YEARS_OLD = {"system": "http://loinc.org", "code": "30525-0", "display": "Age"}
-AGE_TOLD = re.compile(r"(\d{1,3})(\+?)")
+AGE_REPORTED = re.compile(r"(\d{1,3})(\+?)")
 GENDERS = ("male", "female", "other")
 
 
@@ -64,7 +64,8 @@ def write_bundle(session: Session, analysis: Analysis, path: Path) -> None:
 
 
 def bundle(session: Session, analysis: Analysis) -> dict[str, Any]:
-    """A Bundle of kind collection: the patient, as far as is told, what was agreed, and an Observation per figure."""
+    """A Bundle of kind collection: the patient, as far as is reported, what was agreed, and an Observation per
+    figure."""
     patient_url = _url(session, "patient")
     resources = [(patient_url, _patient(session)), *_age(session, patient_url)]
     resources += [(_url(session, "goal", *goal.key), _goal(goal, patient_url)) for goal in agreed_with(session).held]
@@ -86,20 +87,20 @@ def bundle(session: Session, analysis: Analysis) -> dict[str, Any]:
 
 def _patient(session: Session) -> dict[str, Any]:
     patient = session.patient
-    told: dict[str, Any] = {"resourceType": "Patient"}
+    reported: dict[str, Any] = {"resourceType": "Patient"}
     if patient.code.strip():
-        told["identifier"] = [{"system": CODES, "value": patient.code.strip()}]
+        reported["identifier"] = [{"system": CODES, "value": patient.code.strip()}]
     if patient.sex in GENDERS:
-        told["gender"] = patient.sex
+        reported["gender"] = patient.sex
     if patient.birth_year is not None:
-        told["birthDate"] = f"{patient.birth_year:04d}"
-    return told
+        reported["birthDate"] = f"{patient.birth_year:04d}"
+    return reported
 
 
 def _age(session: Session, patient_url: str) -> Iterator[tuple[str, dict[str, Any]]]:
-    """The age at the visit, where it stands in place of the year of birth."""
-    told = str(session.patient.unknown.get(AGE, ""))
-    if (found := AGE_TOLD.fullmatch(told)) is None:
+    """The age at the visit, where it is in place of the year of birth."""
+    reported = str(session.patient.unknown.get(AGE, ""))
+    if (found := AGE_REPORTED.fullmatch(reported)) is None:
         return
     value: dict[str, Any] = {"value": int(found[1]), "unit": "years", "system": UCUM, "code": "a"}
     if found[2]:
@@ -116,7 +117,7 @@ def _goal(goal: Goal, patient_url: str) -> dict[str, Any]:
     target: dict[str, Any] = {"measure": code, "detailQuantity": limit}
     if goal.until is not None:
         target["dueDate"] = goal.until.isoformat()
-    told: dict[str, Any] = {
+    reported: dict[str, Any] = {
         "resourceType": "Goal",
         "lifecycleStatus": "active",
         "description": {"text": goal_in_words(goal)},
@@ -125,10 +126,10 @@ def _goal(goal: Goal, patient_url: str) -> dict[str, Any]:
         "target": [target],
     }
     if goal.by:
-        told["expressedBy"] = {"display": goal.by}
+        reported["expressedBy"] = {"display": goal.by}
     if goal.note:
-        told["note"] = [{"text": goal.note}]
-    return told
+        reported["note"] = [{"text": goal.note}]
+    return reported
 
 
 def _observation(one: WalkFigure, patient_url: str, when: str, notes: list[str]) -> Iterator[tuple[str, Any]]:
@@ -140,8 +141,8 @@ def _observation(one: WalkFigure, patient_url: str, when: str, notes: list[str])
     if when:
         yield "effectiveDateTime", when
     if one.mean is None:
-        is_worn = one.assessment.verdict is Verdict.WITHHELD
-        why_not = {"coding": [WITHHELD if is_worn else NOT_PERFORMED], "text": reason_of(one.assessment)}
+        is_worn = one.assessment.verdict is Verdict.NOT_REPORTED
+        why_not = {"coding": [NOT_REPORTED if is_worn else NOT_PERFORMED], "text": reason_of(one.assessment)}
         yield "dataAbsentReason", why_not
     else:
         yield "valueQuantity", _quantity(one.mean, unit_of(one.name))
@@ -186,7 +187,7 @@ def _quantity(value: float, unit: str) -> Mapping[str, Any]:
 
 
 def _when(started: str) -> str:
-    """An instant as FHIR takes it: with a time only where its zone is told."""
+    """An instant as FHIR takes it: with a time only where its zone is reported."""
     try:
         instant = datetime.datetime.fromisoformat(started)
     except ValueError:

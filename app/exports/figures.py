@@ -38,7 +38,7 @@ class WalkFigure:
 
     @property
     def mean(self) -> float | None:
-        """None where it is withheld or was not measured."""
+        """None where it is not reported or was not measured."""
         return finite(self.average.mean)
 
 
@@ -57,13 +57,13 @@ def unit_of(name: str) -> str:
 
 
 def walk_figures(analysis: Analysis) -> Iterator[WalkFigure]:
-    """Every average over strides, walk by walk: those that are known, withheld, or were not measured.
+    """Every average over strides, walk by walk: those that are known, not reported, or were not measured.
 
     What can be read and has no figure all the same, as a peak that no stride has, is no figure.
     """
     for recording in analysis.recordings:
         if recording.kind is RecordingKind.WALKING:
-            yield from (one for one in _of_walk(recording) if one.mean is not None or not one.assessment.is_told)
+            yield from (one for one in _of_walk(recording) if one.mean is not None or not one.assessment.is_reported)
 
 
 def finite(value: float) -> float | None:
@@ -97,15 +97,15 @@ def as_in_csv_deg(angle_rad: FloatArray) -> FloatArray:
     return np.round(np.rad2deg(angle_rad), DECIMALS) + 0.0  # no minus before zero
 
 
-def told_deg(recording: RecordingAnalysis, joint: Joint) -> FloatArray:
+def reported_deg(recording: RecordingAnalysis, joint: Joint) -> FloatArray:
     """The joint's angle as in angles.csv (n,), for formats whose samples have no status: NaN once a strap slipped."""
     found = as_in_csv_deg(recording.measured[joint].angle_rad)
     return np.where(is_slipped(recording, joint.side), np.nan, found)
 
 
-def told_abduction_deg(recording: RecordingAnalysis, joint: Joint) -> FloatArray | None:
-    """A hip's abduction as in angles.csv (n,), NaN once a strap slipped; None where it may not be told."""
-    if not assessment_of(recording.verdicts, joint.side, "hip_abduction_peak_deg").is_told:
+def reported_abduction_deg(recording: RecordingAnalysis, joint: Joint) -> FloatArray | None:
+    """A hip's abduction as in angles.csv (n,), NaN once a strap slipped; None where it may not be reported."""
+    if not assessment_of(recording.verdicts, joint.side, "hip_abduction_peak_deg").is_reported:
         return None
     found = as_in_csv_deg(recording.hips[joint].abduction_rad)
     return np.where(is_slipped(recording, joint.side), np.nan, found)
@@ -114,6 +114,6 @@ def told_abduction_deg(recording: RecordingAnalysis, joint: Joint) -> FloatArray
 def status_in_ascii(recording: RecordingAnalysis, joint: Joint) -> str:
     """A joint's status and why, in letters that every format takes."""
     status, reasons = joint_status(recording, joint) or "not_measured", why_status(recording, joint)
-    told = f"{status}: {reasons}" if reasons else status
-    plain = unicodedata.normalize("NFKD", told.translate(IN_ASCII))
+    reported = f"{status}: {reasons}" if reasons else status
+    plain = unicodedata.normalize("NFKD", reported.translate(IN_ASCII))
     return plain.encode("ascii", "ignore").decode("ascii")

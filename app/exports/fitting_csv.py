@@ -1,6 +1,6 @@
 """What does a prosthetist read of a walk? The measures for fitting per stride, and their means with error and limits.
 
-As in the other tables the cells of what is withheld are empty, and its status says so.
+As in the other tables the cells of what is not reported are empty, and its status reports it.
 """
 
 import math
@@ -18,7 +18,7 @@ from core.verdicts.quantities import FITTING, assessment_of, joint_of, values_of
 from core.verdicts.stride_means import mean_of_strides
 
 PER_STRIDE, MEANS = "fitting.csv", "fitting_means.csv"
-STATUS_OF = {  # a column that stands for all of its kind
+STATUS_OF = {  # a column that represents all of its kind
     "knee_height_status": "knee_terminal_extension_deg",
     "knee_timing_status": "knee_extended_before_contact_percent",
     "foot_timing_status": "foot_flat_percent",
@@ -63,8 +63,8 @@ def fitting_of_side(recording: RecordingAnalysis, side: Side) -> dict[str, dict[
             "sd": mean.sd,
             "error": whisker(name, ComparisonKind.ATTACHED, mean),
         }
-        told: dict[str, Any] = {key: value if math.isfinite(value) else None for key, value in figures.items()}
-        found[name] = {**told, "n": mean.n, "status": str(assessment_of(recording.verdicts, side, name).verdict)}
+        reported: dict[str, Any] = {key: value if math.isfinite(value) else None for key, value in figures.items()}
+        found[name] = {**reported, "n": mean.n, "status": str(assessment_of(recording.verdicts, side, name).verdict)}
     return found
 
 

@@ -1,7 +1,7 @@
 """Which strides stand behind the averages? Events, strides and mean cycles of one recording, and when strides peak.
 
-What may be said of each figure stands beside it, in the columns of status; the cells of what is withheld are empty. A
-curve without a zero keeps its shape: the column of its shape is the curve less its mean.
+What may be stated about each figure is beside it, in the columns of status; the cells of what is not reported are
+empty. A curve without a zero keeps its shape: the column of its shape is the curve less its mean.
 """
 
 import math
@@ -32,7 +32,7 @@ from core.verdicts.quantities import (
 
 TIMES = ("start_s", "full_contact_s", "heel_rise_s", "toe_off_s", "end_s")
 PEAK_TIMES = tuple(f"{window.name}_percent" for window in WINDOWS.values())
-STRIDE_STATUS = (  # of the columns that each stands for
+STRIDE_STATUS = (  # of the columns that each represents
     *("timing_status", "between_status", "distance_status"),
     *("knee_shape_status", "knee_height_status", "ankle_shape_status", "ankle_height_status"),
 )
@@ -84,7 +84,7 @@ def _peak_status(recording: RecordingAnalysis, joint: Joint) -> str:
 
 
 def gait_tables(recording: RecordingAnalysis) -> dict[str, tuple[list[str], Iterator[list[str]]]]:
-    """Give headings and rows of `events`, `strides` and `cycles`, every cell as it stands in the file."""
+    """Give headings and rows of `events`, `strides` and `cycles`, every cell as it is in the file."""
     joints = [joint for joint in Joint if joint.side in recording.gait and joint in recording.gait[joint.side].cycles]
     of_cycles = ["percent"]
     for joint in joints:
@@ -142,7 +142,7 @@ def _assessments(recording: RecordingAnalysis, side: Side) -> list[Assessment]:
 def _cycles(recording: RecordingAnalysis, joints: list[Joint]) -> Iterator[list[str]]:
     curves = []
     for joint in joints:
-        found, has_height = mean_curve(recording, joint), recording.verdicts.joint(joint).height.is_told
+        found, has_height = mean_curve(recording, joint), recording.verdicts.joint(joint).height.is_reported
         mean = np.rad2deg(found.mean)
         shape = mean - mean.mean()
         height = mean if has_height else np.full(POINTS, np.nan)
@@ -159,9 +159,9 @@ def _cycles(recording: RecordingAnalysis, joints: list[Joint]) -> Iterator[list[
 
 def _abduction_cells(recording: RecordingAnalysis, side: Side) -> list[list[str]]:
     """Of each percent of the stride mean, spread, count and status."""
-    found, said = abduction_curve(recording, side), assessment_of(recording.verdicts, side, "hip_abduction_peak_deg")
+    found, stated = abduction_curve(recording, side), assessment_of(recording.verdicts, side, "hip_abduction_peak_deg")
     mean_deg, sd_deg = np.rad2deg(found.mean), np.rad2deg(found.sd)
-    tail = [str(found.n), str(said.verdict)]
+    tail = [str(found.n), str(stated.verdict)]
     return [[_cell(float(mean_deg[k])), _cell(float(sd_deg[k])), *tail] for k in range(POINTS)]
 
 

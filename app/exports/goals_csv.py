@@ -1,6 +1,6 @@
-"""What had been agreed by the day of each walk, and how the walk stands to it: `goals.csv`, and in `summary.json`.
+"""What had been agreed by the day of each walk, and how the walk is to it: `goals.csv`, and in `summary.json`.
 
-Who agreed on a goal and what was typed of it stands in the library and in an identified export alone.
+Who agreed on a goal and what was typed of it is in the library and in an identified export alone.
 """
 
 import math
@@ -28,22 +28,22 @@ def goal_rows(analysis: Analysis, recordings: Sequence[Recording], agreed: Agree
     for walk in analysis.recordings:
         if walk.kind is RecordingKind.WALKING and walk.gait:
             for one in goals_of_walk(analysis, walk, agreed):
-                told = goal_figures(one, agreed)
-                cells = (_cell(told[name]) for name in HEADER[2:])
+                reported = goal_figures(one, agreed)
+                cells = (_cell(reported[name]) for name in HEADER[2:])
                 yield typed_cell(walk.folder), typed_cell(conditions.get(walk.name, "")), *cells
 
 
 def goals_of_walk(analysis: Analysis, walk: RecordingAnalysis, agreed: AgreedGoals) -> tuple[GoalFigure, ...]:
-    """How one walk stands to what had been agreed by its day."""
+    """How one walk is to what had been agreed by its day."""
     return of_part(Part("", walk.name, (walk,), analysis.calibrated_for(walk), agreed=agreed))
 
 
 def goal_figures(found: GoalFigure, agreed: AgreedGoals) -> dict[str, str | float | bool | None]:
     """A goal and what was measured of it, by the names of the table; None where there is none.
 
-    Of a goal that was not agreed before the day nothing is said but the value.
+    Of a goal that was not agreed before the day nothing is stated but the value.
     """
-    goal, is_before = found.goal, found.goal in agreed.told
+    goal, is_before = found.goal, found.goal in agreed.reported
     return {
         "measure": goal.column,
         "side": str(goal.of),

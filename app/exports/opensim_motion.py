@@ -4,7 +4,7 @@ The names and signs are those of models whose knee flexion is positive, as Rajag
 10.1109/TBME.2016.2586891; in gait2392 the knee has the other sign, hips and pelvis the same one. There x points
 forward, y up and z to the right: `pelvis_tilt` turns about z and is negative forward, `pelvis_list` about x and is
 positive where the left side is the higher one. A model takes a coordinate for a pose, so one whose height or sign is
-not known is left out, and a comment says why.
+not known is left out, and a comment states why.
 """
 
 from collections.abc import Mapping, Sequence
@@ -14,7 +14,7 @@ from pathlib import Path
 
 import numpy as np
 
-from app.exports.figures import SIMULATED, as_in_csv_deg, status_in_ascii, told_abduction_deg, told_deg
+from app.exports.figures import SIMULATED, as_in_csv_deg, reported_abduction_deg, reported_deg, status_in_ascii
 from app.exports.parts import part_paths
 from app.summary.status import WITH_HEIGHT, joint_status, why_status
 from app.wording.translation import PURPOSE, tr
@@ -67,7 +67,7 @@ def write_motion(recording: RecordingAnalysis, is_simulated: bool, path: Path) -
     """
     measured = [joint for joint in COORDINATES if joint in recording.measured]
     joints = [joint for joint in measured if joint_status(recording, joint) in WITH_HEIGHT]
-    bending = {COORDINATES[joint]: told_deg(recording, joint) for joint in joints}
+    bending = {COORDINATES[joint]: reported_deg(recording, joint) for joint in joints}
     found = {**bending, **_of_hips_and_pelvis(recording)}
     columns = {name: _bridged(recording.time_s, values) for name, values in found.items()}
     parts = _parts(recording.time_s, columns)
@@ -80,7 +80,7 @@ def write_motion(recording: RecordingAnalysis, is_simulated: bool, path: Path) -
         f"Made by gaitwright. {PURPOSE}",
         "Knee flexion and ankle dorsiflexion are positive. What is named nowhere in this file was not measured.",
         *([OF_HIPS] if recording.hips else []),
-        *(f"{COORDINATES[joint]} is {_said(recording, joint, joint in joints)}" for joint in measured),
+        *(f"{COORDINATES[joint]} is {_stated(recording, joint, joint in joints)}" for joint in measured),
     ]
     for number, (part, place) in enumerate(zip(parts, part_paths(path, len(parts)), strict=True), start=1):
         time_s = recording.time_s[part.rows]
@@ -140,16 +140,18 @@ def _parts(time_s: FloatArray, columns: Mapping[str, FloatArray]) -> list[Motion
 
 
 def _of_hips_and_pelvis(recording: RecordingAnalysis) -> Mapping[str, FloatArray]:
-    """What else may be told of hips and pelvis, by the model's names and signs; nothing without a pelvis sensor."""
-    found = {name: told_abduction_deg(recording, joint) for joint, name in ADDUCTION.items() if joint in recording.hips}
+    """What else may be given of hips and pelvis, by the model's names and signs; nothing without a pelvis sensor."""
+    found = {
+        name: reported_abduction_deg(recording, joint) for joint, name in ADDUCTION.items() if joint in recording.hips
+    }
     columns = {name: 0.0 - abduction_deg for name, abduction_deg in found.items() if abduction_deg is not None}
-    if recording.pelvis is not None and recording.verdicts.pelvis.is_told:
+    if recording.pelvis is not None and recording.verdicts.pelvis.is_reported:
         columns["pelvis_tilt"] = 0.0 - as_in_csv_deg(recording.pelvis.tilt_rad)
         columns["pelvis_list"] = as_in_csv_deg(recording.pelvis.obliquity_rad)
     return columns
 
 
-def _said(recording: RecordingAnalysis, joint: Joint, is_told: bool) -> str:
+def _stated(recording: RecordingAnalysis, joint: Joint, is_reported: bool) -> str:
     """Whether a coordinate is here, what holds of it and why."""
-    said = status_in_ascii(recording, joint)
-    return f"here, {said}" if is_told else f"left out, {said}"
+    stated = status_in_ascii(recording, joint)
+    return f"here, {stated}" if is_reported else f"left out, {stated}"

@@ -11,21 +11,21 @@ from core.results import RecordingAnalysis
 
 def summarise_pelvis(recording: RecordingAnalysis) -> dict[str, Any]:
     """Give the hips' identification, the clock of both legs, turns, and the pelvis's lean; nothing without a pelvis."""
-    told: dict[str, Any] = {}
+    reported: dict[str, Any] = {}
     if recording.leg_clock is not None:
         clock = recording.leg_clock
-        told["leg_clock_offset_s"], told["leg_clock_sd_s"] = _number(clock.offset_s), _number(clock.sd_s)
-        told["leg_clock_status"] = str(clock.status)
+        reported["leg_clock_offset_s"], reported["leg_clock_sd_s"] = _number(clock.offset_s), _number(clock.sd_s)
+        reported["leg_clock_status"] = str(clock.status)
     if recording.pelvis is not None:
-        tilt, is_told = recording.pelvis.tilt_rad, recording.verdicts.pelvis.is_told
+        tilt, is_reported = recording.pelvis.tilt_rad, recording.verdicts.pelvis.is_reported
         known = tilt[np.isfinite(tilt)]
-        told["pelvis_lean_deg"] = _number(math.degrees(float(known.mean()))) if is_told and len(known) else None
-        told["hips"] = {str(joint): _identification(hip.identification) for joint, hip in recording.hips.items()}
-        told["turns"] = [
+        reported["pelvis_lean_deg"] = _number(math.degrees(float(known.mean()))) if is_reported and len(known) else None
+        reported["hips"] = {str(joint): _identification(hip.identification) for joint, hip in recording.hips.items()}
+        reported["turns"] = [
             {"start_s": turn.start_s, "end_s": turn.end_s, "angle_deg": math.degrees(turn.angle_rad)}
             for turn in recording.turns
         ]
-    return told
+    return reported
 
 
 def _identification(found: HipIdentification) -> dict[str, Any]:

@@ -56,8 +56,8 @@ def pseudonymised(
     return other, replace(analysis, calibrations=spans, recordings=recordings, findings=())
 
 
-def what_is_said(session: Session) -> list[Row]:
-    """Whose a session is, as every format that says any of it does; what is not known is empty."""
+def what_is_stated(session: Session) -> list[Row]:
+    """Whose a session is, as every format that states any of it does; what is not known is empty."""
     patient = session.patient
     return [
         (later("patient"), patient.code),
@@ -79,19 +79,19 @@ def what_is_said(session: Session) -> list[Row]:
 
 
 def what_leaves(session: Session) -> list[Row]:
-    """All that a pseudonymised session says beside its figures: whose it is, and each recording."""
-    said = [row for row in what_is_said(session) if row[1] not in ("", None)]
-    return said + [(recording.name, _about(recording)) for recording in session.recordings]
+    """All that a pseudonymised session states beside its figures: whose it is, and each recording."""
+    stated = [row for row in what_is_stated(session) if row[1] not in ("", None)]
+    return stated + [(recording.name, _about(recording)) for recording in session.recordings]
 
 
 def _goal(goal: Goal) -> str:
-    """What was agreed and since when; by whom and what was typed of it, where that is said."""
-    said = [f"{goal_in_words(goal)} ({goal.agreed.isoformat()})", goal.by, goal.note]
-    return ", ".join(filter(None, said))
+    """What was agreed and since when; by whom and what was typed of it, where that is stated."""
+    stated = [f"{goal_in_words(goal)} ({goal.agreed.isoformat()})", goal.by, goal.note]
+    return ", ".join(filter(None, stated))
 
 
 def _about(recording: Recording) -> str:
     changed = since_in_words(recording.alignment)
     test = planned_words(recording.test) if recording.test is not None else ""
-    said = [recording.kind.replace("_", " "), recording.condition, test, changed, recording.started]
-    return ", ".join(filter(None, said))
+    stated = [recording.kind.replace("_", " "), recording.condition, test, changed, recording.started]
+    return ", ".join(filter(None, stated))

@@ -66,7 +66,7 @@ def write_results(session: Session, analysis: Analysis, folder: Path) -> None:
     Raises
     ------
     FileRefusedError
-        A recording's folder would stand where one of these files or the session stands.
+        A recording's folder would stand where one of these files or the session is.
     OSError
         The disk is full or cannot be written to.
     """

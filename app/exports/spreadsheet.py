@@ -1,8 +1,8 @@
 """What does a spreadsheet say? Summary, strides, mean cycles and events of all recordings, one sheet each.
 
 Rows and numbers are those of summary.json and the CSV files, with the recording before them. The first sheet holds
-every verdict with its reasons, and a figure that is withheld says so where its number would be. What somebody typed is
-text whatever it begins with, so that it is never worked out as a formula.
+every verdict with its reasons, and a figure that is not reported reports it where its number would be. What somebody
+typed is text whatever it begins with, so that it is never worked out as a formula.
 """
 
 import datetime
@@ -21,10 +21,10 @@ from openpyxl.worksheet._write_only import WriteOnlyWorksheet
 
 from app.exports.figures import SIMULATED, finite, reason_of, software, unit_of, walk_figures
 from app.exports.gait_csv import gait_tables
-from app.exports.pseudonymised import what_is_said
+from app.exports.pseudonymised import what_is_stated
 from app.summary.condition_figures import condition_figures
 from app.summary.conditions import conditions_of
-from app.summary.status import WITHHELD, all_that_is_said, why
+from app.summary.status import NOT_REPORTED, all_that_is_stated, why
 from app.wording.alignment import since_in_words
 from app.wording.translation import PURPOSE, sentence
 from core.body import Side, hip_of
@@ -73,20 +73,20 @@ def write_spreadsheet(session: Session, analysis: Analysis, path: Path) -> None:
 
 def _about(session: Session, analysis: Analysis) -> list[list[Value]]:
     rows: list[list[Value]] = [[SIMULATED, None]] if analysis.is_simulated else []
-    rows += [list(row) for row in what_is_said(session)]
+    rows += [list(row) for row in what_is_stated(session)]
     rows += [[f"{one.name}, prosthesis", since_in_words(one.alignment)] for one in session.recordings if one.alignment]
     rows += [
         ["method", str(analysis.method)],
         ["software", software()],
         ["use", PURPOSE],
     ]
-    told = [row for row in rows if row[1] not in ("", None) or row[0] == SIMULATED]
-    return [*told, ["What may be read", None], *_verdicts(analysis)]
+    reported = [row for row in rows if row[1] not in ("", None) or row[0] == SIMULATED]
+    return [*reported, ["What may be read", None], *_verdicts(analysis)]
 
 
 def _verdicts(analysis: Analysis) -> Iterator[list[Value]]:
     """Every verdict of every recording, and why it is no better."""
-    for one in all_that_is_said(analysis):
+    for one in all_that_is_stated(analysis):
         verdict, reasons = one.assessment.verdict.replace("_", " "), why(one.assessment)
         yield [f"{one.recording}, {one.subject}, {one.quantity}", f"{verdict}: {reasons}" if reasons else verdict]
 
@@ -96,7 +96,7 @@ def _summary(session: Session, analysis: Analysis) -> Iterable[list[Value]]:
     for one in walk_figures(analysis):
         side = str(one.side) if one.side else "both"
         condition = conditions.get(one.walk, "")
-        mean = WITHHELD if one.assessment.verdict is Verdict.WITHHELD else one.mean
+        mean = NOT_REPORTED if one.assessment.verdict is Verdict.NOT_REPORTED else one.mean
         status, reasons = str(one.assessment.verdict), reason_of(one.assessment) or None
         figures = [mean, finite(one.average.sd), unit_of(one.name), one.strides, finite(one.average.error)]
         yield [one.walk, condition, side, one.name, *figures, status, reasons]
@@ -107,11 +107,11 @@ def _conditions(session: Session, analysis: Analysis) -> Iterable[list[Value]]:
     for part in conditions_of(analysis, session.recordings):
         walks = ", ".join(walk.name for walk in part.walks)
         for one in condition_figures(part):
-            is_told = one.verdict is not Verdict.WITHHELD
-            mean: Value = one.found.mean if is_told else WITHHELD
+            is_reported = one.verdict is not Verdict.NOT_REPORTED
+            mean: Value = one.found.mean if is_reported else NOT_REPORTED
             figures: list[Value] = [mean, *(_finite(value) for value in (one.found.sd, one.error))]
             side = "both" if one.side is None else str(one.side)
-            strides = one.found.n if is_told else None
+            strides = one.found.n if is_reported else None
             yield [part.name, walks, side, one.column, *figures, unit_of(one.column), strides, str(one.verdict)]
 
 
@@ -127,33 +127,35 @@ def _joined(analysis: Analysis, name: str) -> tuple[list[str], Iterable[list[Val
     def rows() -> Iterable[list[Value]]:
         for recording, columns, cells in tables:
             for row in cells:
-                told = dict(zip(columns, row, strict=True))
-                withheld = _withheld_columns(recording, name, told.get("side", ""))
-                values = [WITHHELD if column in withheld else _value(told.get(column, "")) for column in header]
+                reported = dict(zip(columns, row, strict=True))
+                not_reported = _not_reported_columns(recording, name, reported.get("side", ""))
+                values = [
+                    NOT_REPORTED if column in not_reported else _value(reported.get(column, "")) for column in header
+                ]
                 yield [recording.name, *values]
 
     return ["recording", *header], rows()
 
 
-def _withheld_columns(recording: RecordingAnalysis, table: str, side: str) -> set[str]:
-    """Columns of one row whose cells are empty in the CSV file because nothing may be said of them."""
+def _not_reported_columns(recording: RecordingAnalysis, table: str, side: str) -> set[str]:
+    """Columns of one row whose cells are empty in the CSV file because nothing may be stated about them."""
     if table == "strides":
         names = (*PARAMETERS, *OF_HIPS)
-        return {name for name in names if _is_withheld(assessment_of(recording.verdicts, Side(side), name))}
+        return {name for name in names if _is_not_reported(assessment_of(recording.verdicts, Side(side), name))}
     found = set()
-    for joint, said in recording.verdicts.joints.items() if table == "cycles" else ():
-        curve = together((said.shape, said.sign))
-        found |= {f"{joint}_mean_deg"} if _is_withheld(together((curve, said.height))) else set()
-        found |= {f"{joint}_shape_deg"} if _is_withheld(curve) else set()
-        found |= {f"{joint}_stride_sd_deg"} if _is_withheld(said.shape) else set()
+    for joint, stated in recording.verdicts.joints.items() if table == "cycles" else ():
+        curve = together((stated.shape, stated.sign))
+        found |= {f"{joint}_mean_deg"} if _is_not_reported(together((curve, stated.height))) else set()
+        found |= {f"{joint}_shape_deg"} if _is_not_reported(curve) else set()
+        found |= {f"{joint}_stride_sd_deg"} if _is_not_reported(stated.shape) else set()
     for leg in recording.verdicts.abduction if table == "cycles" else ():
         of_abduction = assessment_of(recording.verdicts, leg, "hip_abduction_peak_deg")
-        found |= {f"{hip_of(leg)}_abduction_mean_deg"} if _is_withheld(of_abduction) else set()
+        found |= {f"{hip_of(leg)}_abduction_mean_deg"} if _is_not_reported(of_abduction) else set()
     return found
 
 
-def _is_withheld(found: Assessment) -> bool:
-    return found.verdict is Verdict.WITHHELD
+def _is_not_reported(found: Assessment) -> bool:
+    return found.verdict is Verdict.NOT_REPORTED
 
 
 def _value(cell: str) -> Value:

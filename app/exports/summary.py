@@ -45,7 +45,7 @@ SYMMETRIC = tuple(quantity.column for quantity in REGISTRY if quantity.has_index
 def write_summary(
     analysis: Analysis, path: Path, recordings: Sequence[Recording] = (), agreed: AgreedGoals = NO_GOALS
 ) -> None:
-    """Write `summary.json`; `recordings` are the session's, whose alignments are told beside their walks.
+    """Write `summary.json`; `recordings` are the session's, whose alignments are reported beside their walks.
 
     Raises
     ------
@@ -111,7 +111,7 @@ def _reference_group() -> dict[str, Any]:
 
 
 def _walk(analysis: Analysis, recording: RecordingAnalysis) -> dict[str, Any]:
-    """Give each side's averages over the strides used, what compares both sides, and what may be said of each."""
+    """Give each side's averages over the strides used, what compares both sides, and what may be stated about each."""
     found = averages_of(recording)
     sides = {str(side): _side(side, recording, found.legs[side]) if side in found.legs else {} for side in Side}
     both: dict[str, Any] = dict.fromkeys(BOTH)
@@ -156,7 +156,7 @@ def _side(side: Side, recording: RecordingAnalysis, found: LegAverages) -> dict[
 
 def _score_deg(recording: RecordingAnalysis, joint: Joint) -> float:
     """Give the distance from the mean curve of a group that walked at one speed, so another speed counts as well."""
-    if not recording.verdicts.joint(joint).height.is_told:
+    if not recording.verdicts.joint(joint).height.is_reported:
         return math.nan
     group = reference_curves()
     group_deg = group.knee_mean_deg if joint.is_knee else group.ankle_mean_deg
@@ -165,8 +165,8 @@ def _score_deg(recording: RecordingAnalysis, joint: Joint) -> float:
 
 def _difference_deg(recording: RecordingAnalysis, kind: str) -> float:
     joints = [Joint(f"{side}_{kind}") for side in Side]
-    if not all(recording.verdicts.joint(joint).height.is_told for joint in joints):
-        return math.nan  # each would be told from a zero of its own
+    if not all(recording.verdicts.joint(joint).height.is_reported for joint in joints):
+        return math.nan  # each would be distinguished from a zero of its own
     means = [mean_curve(recording, joint).mean for joint in joints]
     return math.degrees(curve_difference(means[0], means[1]))
 
@@ -174,7 +174,7 @@ def _difference_deg(recording: RecordingAnalysis, kind: str) -> float:
 def _side_difference(part: Part, name: str, sides: tuple[Side, Side]) -> dict[str, Any] | None:
     """Give by how much an angle differs between the sides, and whether that exceeds the measurement error.
 
-    None where either side has no such angle, or it is withheld.
+    None where either side has no such angle, or it is not reported.
     """
     if not all(part.value(side, name).n for side in sides):
         return None
@@ -188,8 +188,8 @@ def _side_difference(part: Part, name: str, sides: tuple[Side, Side]) -> dict[st
 
 
 def _verdicts(found: Verdicts) -> dict[str, Any]:
-    """Give every verdict of a walk with its reasons in words; a joint or leg that was not worn says so."""
-    joints = {str(joint): _parts(found.joint(joint), ("shape", "height", "sign")) for joint in found.told_joints}
+    """Give every verdict of a walk with its reasons in words; a joint or leg that was not worn reports it."""
+    joints = {str(joint): _parts(found.joint(joint), ("shape", "height", "sign")) for joint in found.reported_joints}
     legs = {str(side): _parts(found.leg(side), ("timing", "distance")) for side in Side}
     more = {}
     if found.pelvis.verdict is not Verdict.NOT_MEASURED:

@@ -1,7 +1,7 @@
 """What came of each timed test of a session, as tables for other programs: `timed_test.csv`, and a part of the summary.
 
 One row for the test itself, then one for every third, lap, turn, pause, rise and silence of a sensor. Times of parts
-count from the start of the test. What was not measured is an empty cell, and the row of the test says why.
+count from the start of the test. What was not measured is an empty cell, and the row of the test states why.
 """
 
 import math
@@ -67,8 +67,8 @@ def _rows(test: TimedTest) -> Iterator[dict[str, str]]:
     for number, rise in enumerate(test.rises, 1):
         yield {"row": "rise", "number": str(number), **_span(rise.left_seat_s, rise.upright_s, test.start_s)}
     for number, stride in enumerate(test.stairs, 1):
-        told = {"side": str(stride.side), "climb_m": figure(stride.climb_m, 3)}
-        yield {"row": "stair", "number": str(number), **_span(stride.start_s, stride.end_s, test.start_s), **told}
+        reported = {"side": str(stride.side), "climb_m": figure(stride.climb_m, 3)}
+        yield {"row": "stair", "number": str(number), **_span(stride.start_s, stride.end_s, test.start_s), **reported}
     for number, one in enumerate(test.silences, 1):
         sensor = {"sensor": str(one.site)}
         yield {"row": "silence", "number": str(number), **_span(one.start_s, one.end_s, test.start_s), **sensor}

@@ -70,7 +70,7 @@ def film_height(width: float, *, is_moving: bool) -> float:
 def paint_frame(painter: QPainter, rect: QRectF, theme: Theme, film: Film, time_s: float, hint: str = "") -> None:
     """Draw what the film shows at `time_s`, the figure at the left, its words at the right, and how far it is.
 
-    `hint` stands below: what stops it.
+    `hint` is below: what stops it.
     """
     px, scenes = theme.px, SCENES[film]
     number = min(int(time_s / SCENE_S), len(scenes) - 1)
@@ -104,9 +104,9 @@ def paint_stills(painter: QPainter, rect: QRectF, theme: Theme, film: Film) -> N
         figure = box.adjusted(theme.px(EDGE), theme.px(EDGE), -theme.px(EDGE), -theme.px(STILL_WORDS))
         PAINTED[film](painter, figure, theme, number, STILL_AT)
         words = QRectF(box.left() + theme.px(8), figure.bottom(), box.width() - theme.px(16), theme.px(STILL_WORDS))
-        said = f"{number + 1}. {tr(scene.title)}"
+        stated = f"{number + 1}. {tr(scene.title)}"
         middle = Qt.AlignmentFlag.AlignHCenter | Qt.AlignmentFlag.AlignVCenter
-        _paint_words(painter, words, theme, said, 16, middle, SEMIBOLD)
+        _paint_words(painter, words, theme, stated, 16, middle, SEMIBOLD)
 
 
 def _paint_ground(painter: QPainter, rect: QRectF, theme: Theme) -> None:
@@ -117,7 +117,7 @@ def _paint_words(
     painter: QPainter,
     rect: QRectF,
     theme: Theme,
-    said: str,
+    stated: str,
     size: float,
     alignment: Qt.AlignmentFlag,
     weight: QFont.Weight = REGULAR,
@@ -127,10 +127,10 @@ def _paint_words(
     room = rect.toRect()
     while True:
         font = theme.font(size, weight)
-        needed = QFontMetrics(font).boundingRect(room, flags, said)
+        needed = QFontMetrics(font).boundingRect(room, flags, stated)
         if size <= SMALLEST or (needed.width() <= room.width() and needed.height() <= room.height()):
             break
         size -= 1
     painter.setFont(font)
     painter.setPen(QColor(theme.colours.ink if weight == SEMIBOLD else theme.colours.ink2))
-    painter.drawText(room, flags, said)
+    painter.drawText(room, flags, stated)

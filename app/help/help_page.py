@@ -55,7 +55,7 @@ class HelpPage(Themed):
         self.back = Button(look, tr("Back"), ButtonKind.SECONDARY, Icon.BACK, tr("Esc"))
         self._build()
         self.topics.chosen.connect(self.show_topic)
-        self.text.page_wanted.connect(self._on_page_wanted)
+        self.text.page_required.connect(self._on_page_required)
         self.choice.currentIndexChanged.connect(self._on_choice_changed)
         self.search.edited.connect(self._on_search_edited)
         self.back.clicked.connect(self.closed)
@@ -136,20 +136,20 @@ class HelpPage(Themed):
         self._row.addWidget(page, 1)
 
     def _mark(self) -> None:
-        """Mark what is searched for, and tell every topic how often it has it."""
+        """Mark what is searched for, and report every topic how often it has it."""
         words = self.search.text.strip()
-        wanted = words if len(words) >= SHORTEST_SEARCH else ""
-        counts = {topic: plain_words_of(topic).count(wanted.casefold()) if wanted else None for topic in Topic}
+        required = words if len(words) >= SHORTEST_SEARCH else ""
+        counts = {topic: plain_words_of(topic).count(required.casefold()) if required else None for topic in Topic}
         self.topics.show_counts(counts)
-        self.text.mark(wanted)
+        self.text.mark(required)
         total = sum(count or 0 for count in counts.values())
-        said = ""
-        if wanted and total:
-            said = tr_n("1 match.", "{count} matches. Enter goes to the next.", total).format(count=total)
-        elif wanted:
-            said = tr("No matches. Try another word.")
-        self.found.setText(said)
-        self.found.setVisible(bool(said))
+        stated = ""
+        if required and total:
+            stated = tr_n("1 match.", "{count} matches. Enter goes to the next.", total).format(count=total)
+        elif required:
+            stated = tr("No matches. Try another word.")
+        self.found.setText(stated)
+        self.found.setVisible(bool(stated))
 
     def _go_on(self) -> None:
         """Go to the next place that is found, in this topic or a later one."""
@@ -158,8 +158,8 @@ class HelpPage(Themed):
         topics = list(Topic)
         here = topics.index(self._topic)
         later = [*topics[here + 1 :], *topics[: here + 1]]
-        wanted = self.search.text.strip().casefold()
-        following = next((topic for topic in later if wanted and wanted in plain_words_of(topic)), None)
+        required = self.search.text.strip().casefold()
+        following = next((topic for topic in later if required and required in plain_words_of(topic)), None)
         if following is not None:
             self.show_topic(following)
             self.text.go_to_next()
@@ -169,7 +169,7 @@ class HelpPage(Themed):
         if self.text.has_marks:
             self.text.go_to_next()
 
-    def _on_page_wanted(self, name: str) -> None:
+    def _on_page_required(self, name: str) -> None:
         """Follow a link of the text, if it leads to a page of the manual: nothing leads out of this computer."""
         if name in set(Topic):
             self.show_topic(Topic(name))
@@ -254,7 +254,7 @@ class _TopicRow(QAbstractButton):
         self.show_count(None)
 
     def show_count(self, count: int | None) -> None:
-        """Tell how often the topic has what is searched for; None while nothing is."""
+        """Report how often the topic has what is searched for; None while nothing is."""
         self._count = count
         found = "" if count is None else tr_n("{count} match", "{count} matches", count).format(count=count)
         self.setAccessibleName(", ".join(filter(None, [self.text(), found])))

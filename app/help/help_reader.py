@@ -51,11 +51,11 @@ class HelpReader(QTextBrowser):
 
     Signals
     -------
-    page_wanted
+    page_required
         The name of another page that a link leads to.
     """
 
-    page_wanted = Signal(str)
+    page_required = Signal(str)
 
     def __init__(self, look: ThemeNotifier) -> None:
         super().__init__()
@@ -64,7 +64,7 @@ class HelpReader(QTextBrowser):
         self._beat = QTimer(self)
         self._beat.setInterval(FRAME_MS)
         self._beat.timeout.connect(self._on_beat)
-        self._wanted = ""
+        self._required = ""
         self._marks: list[QTextCursor] = []
         self._at = -1
         self.setFrameShape(QFrame.Shape.NoFrame)
@@ -156,7 +156,7 @@ class HelpReader(QTextBrowser):
 
     def _on_link(self, url: QUrl) -> None:
         if found := PAGE.fullmatch(url.toString()):
-            self.page_wanted.emit(found[1])
+            self.page_required.emit(found[1])
 
     def _line_width(self) -> int:
         return min(self.viewport().width(), self._look.theme.px(LONGEST_LINE))
@@ -164,12 +164,12 @@ class HelpReader(QTextBrowser):
     def _wrap(self) -> None:
         self.setLineWrapColumnOrWidth(self._line_width())
 
-    def mark(self, wanted: str) -> None:
-        """Mark every place of `wanted`; none when it is empty."""
-        self._wanted, self._marks, self._at = wanted, [], -1
+    def mark(self, required: str) -> None:
+        """Mark every place of `required`; none when it is empty."""
+        self._required, self._marks, self._at = required, [], -1
         cursor = QTextCursor(self.document())
-        while wanted:
-            cursor = self.document().find(wanted, cursor)
+        while required:
+            cursor = self.document().find(required, cursor)
             if cursor.isNull():
                 break
             self._marks.append(QTextCursor(cursor))
@@ -208,7 +208,7 @@ class HelpReader(QTextBrowser):
         document.setMarkdown(self._markdown, QTextDocument.MarkdownFeature.MarkdownDialectGitHub)
         self._set_pictures()
         whole = QTextCursor(document)
-        whole.beginEditBlock()  # else every cell would lay the document out anew
+        whole.beginEditBlock()  # else every cell would lay the document out again
         self._set_blocks()
         self._set_tables()
         whole.endEditBlock()
@@ -238,7 +238,7 @@ class HelpReader(QTextBrowser):
         return max(1.0, self._line_width() - 2 * self.document().documentMargin())
 
     def _film_picture(self) -> QImage:
-        """The film as it stands now, or its scenes side by side."""
+        """The film as it is now, or its scenes side by side."""
         width, is_moving, ratio = self._picture_width(), self._has_moving_film, self.devicePixelRatioF()
         rect = QRectF(0, 0, width, film_height(width, is_moving=is_moving))
         image = QImage(
@@ -326,12 +326,12 @@ class HelpReader(QTextBrowser):
         self._set_playing(is_playing=self.is_playing)  # less motion may be asked for meanwhile
         self._wrap()
         self._set_text()
-        self.mark(self._wanted)
+        self.mark(self._required)
         self.verticalScrollBar().setValue(at)
 
 
 def _has_picture(block: QTextBlock) -> bool:
-    """Whether a picture stands in the block, whose line is as high as it."""
+    """Whether a picture is in the block, whose line is as high as it."""
     parts = block.begin()
     while not parts.atEnd():
         if parts.fragment().charFormat().isImageFormat():

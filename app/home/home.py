@@ -43,12 +43,12 @@ PATIENTS, DEMONSTRATION, IMPORT, QUESTIONS = range(4)
 
 
 class Home(Themed):
-    session_wished = Signal(object)  # the StoredPatient of a new session, or None: a new patient
+    session_requested = Signal(object)  # the StoredPatient of a new session, or None: a new patient
     session_opened = Signal(object)  # UUID
-    demonstration_wished = Signal()
-    own_library_wished = Signal()  # from the demonstration back
-    lock_wished = Signal()
-    help_wished = Signal(str)
+    demonstration_requested = Signal()
+    own_library_requested = Signal()  # from the demonstration back
+    lock_requested = Signal()
+    help_requested = Signal(str)
     settings_left = Signal()
 
     def __init__(self, look: ThemeNotifier, controller: LibraryController, settings: Settings) -> None:
@@ -107,7 +107,7 @@ class Home(Themed):
             made = self._goals = GoalsOfPatient(self._look, self._controller, self)
             self._add_page(made.page)
             made.kept.connect(self.patients.read)
-            made.told.connect(self.banner.tell)
+            made.reported.connect(self.banner.show_message)
             self._fit()
         return self._goals
 
@@ -130,7 +130,7 @@ class Home(Themed):
     def _make_settings(self) -> SettingsController:
         made = self._settings_controller = SettingsController(self._look, self._controller, self._settings, self)
         self._add_page(made.page)
-        made.told.connect(self.banner.tell)
+        made.reported.connect(self.banner.show_message)
         made.restored.connect(self.patients.read)
         made.moved.connect(self._on_moved)
         self.deleting.undone.connect(made.read_deleted)
@@ -142,8 +142,8 @@ class Home(Themed):
         made = self._questions = Questions(self._look, self._settings, self)
         self._add_page(made.page)
         made.changed.connect(self._show)
-        made.told.connect(self.banner.tell)
-        made.again_wished.connect(self._begin_again)
+        made.reported.connect(self.banner.show_message)
+        made.again_requested.connect(self._begin_again)
         self._fit()
         return made
 
@@ -155,7 +155,7 @@ class Home(Themed):
         if self._settings_controller is not None:
             self._settings_controller.show_library(state)
         if state.is_end_lost:
-            self.banner.tell(
+            self.banner.show_message(
                 tr("The library was not closed properly. The data saved last are damaged."),
                 tr("Check the latest session."),
             )
@@ -243,15 +243,15 @@ class Home(Themed):
     def _connect(self) -> None:
         page = self.page
         self.patients.chosen.connect(self._show)
-        self.patients.refused.connect(self.banner.tell)
+        self.patients.refused.connect(self.banner.show_message)
         page.session_opened.connect(self.session_opened)
-        page.new_session_wished.connect(self._begin_session)
-        page.new_patient_wished.connect(self._on_new_patient)
-        page.demonstration_wished.connect(self.demonstration_wished)
-        page.import_wished.connect(self._begin_import)
-        page.computing_wished.connect(self._on_computing_wished)
-        page.panel.analysing_wished.connect(self._begin_again)
-        page.panel.goals_wished.connect(self._begin_goals)
+        page.new_session_requested.connect(self._begin_session)
+        page.new_patient_requested.connect(self._on_new_patient)
+        page.demonstration_requested.connect(self.demonstration_requested)
+        page.import_requested.connect(self._begin_import)
+        page.computing_requested.connect(self._on_computing_requested)
+        page.panel.analysing_requested.connect(self._begin_again)
+        page.panel.goals_requested.connect(self._begin_goals)
         page.patient_deleted.connect(self.deleting.patient)
         page.session_deleted.connect(self.deleting.session)
         self.rail.step_pressed.connect(self._on_rail_pressed)
@@ -265,21 +265,21 @@ class Home(Themed):
         self.importing.asked.connect(self._on_import_asked)
         self.importing.left.connect(self._on_import_left)
         self.importing.imported.connect(self.patients.read)
-        self.importing.told.connect(self.banner.tell)
+        self.importing.reported.connect(self.banner.show_message)
         self.working.stop_pressed.connect(self._on_stop)
         self.recovering.recovered.connect(self.patients.read)
-        self.notices.log_in_wished.connect(self.own_library_wished)
-        self.notices.refused.connect(self.banner.tell)
+        self.notices.log_in_requested.connect(self.own_library_requested)
+        self.notices.refused.connect(self.banner.show_message)
         self.computing.working.connect(self._work)
         self.computing.progressed.connect(self._on_progressed)
         self.computing.left.connect(self._on_computing_left)
-        self.computing.told.connect(self.banner.tell)
+        self.computing.reported.connect(self.banner.show_message)
         self.filling.changed.connect(self.patients.read)
-        self.filling.told.connect(self.banner.tell)
+        self.filling.reported.connect(self.banner.show_message)
         self.toast.undone.connect(self.deleting.undo)
         self.deleting.done.connect(self._on_deleted)
         self.deleting.undone.connect(self.patients.read)
-        self.deleting.refused.connect(self.banner.tell)
+        self.deleting.refused.connect(self.banner.show_message)
         here, in_sight = Qt.ShortcutContext.WidgetWithChildrenShortcut, Qt.ShortcutContext.WindowShortcut
         for keys, slot, context in (
             ("Ctrl+F", self._on_find, here),
@@ -388,7 +388,7 @@ class Home(Themed):
     def _is_asking(self) -> bool:
         return self._questions is not None and self.current is self._questions.page
 
-    def _on_computing_wished(self) -> None:
+    def _on_computing_requested(self) -> None:
         self.computing.begin([visit.id for visit in self.patients.visits if visit.course is None])
 
     def _on_computing_left(self) -> None:
@@ -397,14 +397,14 @@ class Home(Themed):
 
     def _on_new_patient(self) -> None:
         if self.current is self.page:
-            self.session_wished.emit(None)
+            self.session_requested.emit(None)
 
     def _on_bar_pressed(self, action: BarAction) -> None:
         action.run()
 
     def _begin_session(self) -> None:
         if self.current is self.page and self.patients.patient is not None:
-            self.session_wished.emit(self.patients.patient)
+            self.session_requested.emit(self.patients.patient)
 
     def _begin_again(self) -> None:
         """Show which sessions can be analysed again: those of the patient, where home shows one."""
@@ -420,7 +420,7 @@ class Home(Themed):
 
     def _on_analysed_again(self, what: str, then: str) -> None:
         self._go_to(self.again.page)
-        self.banner.tell(what, then)
+        self.banner.show_message(what, then)
 
     def _on_table_made(self, path: Path) -> None:
         self.questions.open(path)
@@ -444,7 +444,7 @@ class Home(Themed):
 
     def _on_help(self) -> None:
         topic = "questions" if self._is_asking else "goals" if self._has_goals else "home"
-        self.help_wished.emit(topic)
+        self.help_requested.emit(topic)
 
     def _on_rail_pressed(self, number: int) -> None:
         if self.current is self.working:
@@ -457,15 +457,15 @@ class Home(Themed):
             self._go_to(self.questions.page)
             self.questions.begin()
         elif self.state is not None and self.state.is_demonstration:
-            self.own_library_wished.emit()
+            self.own_library_requested.emit()
         else:
-            self.demonstration_wished.emit()
+            self.demonstration_requested.emit()
 
     def _on_below_pressed(self, name: str) -> None:
         if name == "look":
             self._settings.scheme = Scheme.LIGHT if self._look.theme.is_dark else Scheme.DARK
         elif name == "lock":
-            self.lock_wished.emit()
+            self.lock_requested.emit()
         elif name == "settings" and self.current is not self.working:
             self.show_settings()
         elif name == "help":

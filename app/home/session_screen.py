@@ -18,7 +18,7 @@ from PySide6.QtWidgets import (
     QWidget,
 )
 
-from app.results.detail_pages import BehindResults
+from app.results.detail_pages import DetailPages
 from app.theme.icons import Icon
 from app.theme.notifier import ThemeNotifier
 from app.widgets.banner import Banner
@@ -60,7 +60,7 @@ class SessionScreen(Themed):
     """A header, a page, an action bar. `set_way_back`: where there is something to go back to."""
 
     left = Signal()
-    demonstration_wished = Signal()
+    demonstration_requested = Signal()
 
     def __init__(self, look: ThemeNotifier) -> None:
         super().__init__()
@@ -76,7 +76,7 @@ class SessionScreen(Themed):
         self.empty = EmptyPage(look)
         self.working = WorkingPage(look)
         self.pages = PageStack()
-        self.behind = BehindResults(look, self.pages, self._looking, self._comparing, self)
+        self.behind = DetailPages(look, self.pages, self._looking, self._comparing, self)
         self.bar = _ActionBar(look)
         self._build()
         self._connect()
@@ -105,7 +105,7 @@ class SessionScreen(Themed):
         if self.is_working:
             self._background.stop()
             self._show_page(self._results or self.empty)
-            self.banner.tell(*map(tr, STOPPED))
+            self.banner.show_message(*map(tr, STOPPED))
 
     def leave(self) -> None:
         """Go back, first to the results where these are looked behind, and end what is running."""
@@ -136,7 +136,9 @@ class SessionScreen(Themed):
         if len(paths) == 1 and paths[0].name == "session.toml":
             paths = [paths[0].parent]
         if len(paths) != 1 or not paths[0].is_dir():
-            self.banner.tell(tr("This is not a single folder."), tr("Drop the folder that contains session.toml."))
+            self.banner.show_message(
+                tr("This is not a single folder."), tr("Drop the folder that contains session.toml.")
+            )
             return
         self.open_folder(paths[0])
 
@@ -171,15 +173,15 @@ class SessionScreen(Themed):
     def _connect(self) -> None:
         for page in (self.empty, self.bar):
             page.open_folder.clicked.connect(self.choose_folder)
-            page.open_demonstration.clicked.connect(self.demonstration_wished)
+            page.open_demonstration.clicked.connect(self.demonstration_requested)
         self.bar.back.clicked.connect(self.leave)
         self.bar.how_found.clicked.connect(self._on_how_found)
         self.working.stop_pressed.connect(self.stop)
         self._background.progressed.connect(self._on_progressed)
         self._background.done.connect(self._on_done)
         self._background.failed.connect(self._on_failed)
-        self.behind.refused.connect(self.banner.tell)
-        self.behind.writing.connect(self._on_figures_wished)
+        self.behind.refused.connect(self.banner.show_message)
+        self.behind.writing.connect(self._on_figures_requested)
         self.behind.closed.connect(self.leave)
         self._saving.done.connect(self._on_figures_saved)
         self._saving.failed.connect(self._on_figures_not_saved)
@@ -202,7 +204,7 @@ class SessionScreen(Themed):
         self._fit()
 
     def _fit(self) -> None:
-        """Tell the pages how much room there is, in px of the design."""
+        """Report the pages how much room there is, in px of the design."""
         scale = self._look.theme.scale
         width, height = self.width() / scale, self.height() / scale
         is_narrow = width < NARROW_BELOW
@@ -229,7 +231,7 @@ class SessionScreen(Themed):
             self.pages.addWidget(self._results)
             self._results.quality.how_found.clicked.connect(self._on_how_found)
             self._results.quality.agreement.clicked.connect(self._on_agreement)
-            self._results.told.connect(self._tell_band)
+            self._results.reported.connect(self._show_band)
             verbs = (self.bar.back, self.bar.open_folder, self.bar.open_demonstration, self.bar.how_found)
             order = [*self._results.tab_order, *verbs]
             for before, after in pairwise(order):
@@ -241,8 +243,8 @@ class SessionScreen(Themed):
         )
         self._show_page(self._results)
 
-    def _tell_band(self) -> None:
-        self.bar.tell(self._results.band_words if self._results is not None else "")
+    def _show_band(self) -> None:
+        self.bar.show_message(self._results.band_words if self._results is not None else "")
 
     def _on_how_found(self) -> None:
         """Look behind the recording that is shown."""
@@ -262,7 +264,7 @@ class SessionScreen(Themed):
         self.behind.focus()
         self._fit()
 
-    def _on_figures_wished(self, _what: str, folder: Path, write: Callable[[], None]) -> None:
+    def _on_figures_requested(self, _what: str, folder: Path, write: Callable[[], None]) -> None:
         self._saved_in = folder
         self._saving.start(lambda _report: write())
 
@@ -274,16 +276,16 @@ class SessionScreen(Themed):
 
         if not isinstance(error, OSError):
             _log.error("the figures were not saved", exc_info=error)
-        self.banner.tell(*(f"{said}." for said in cannot_write(self._saved_in)))
+        self.banner.show_message(*(f"{stated}." for stated in cannot_write(self._saved_in)))
 
     def _on_failed(self, error: Exception) -> None:
         self._show_page(self._results or self.empty)
         if isinstance(error, FileRefusedError):
             what, remedy = filled(error.what, error.values), filled(error.remedy, error.values)
-            self.banner.tell(f"{error.where}: {what}.", f"{remedy}.")
+            self.banner.show_message(f"{error.where}: {what}.", f"{remedy}.")
         else:
             _log.error("the analysis ended early", exc_info=error)
-            self.banner.tell(*map(tr, ENDED_EARLY))
+            self.banner.show_message(*map(tr, ENDED_EARLY))
 
     def _on_look_changed(self) -> None:
         px = self._look.theme.px
@@ -314,7 +316,7 @@ class _ActionBar(Themed):
         self._row.addWidget(self._purpose, 1)
         self._on_look_changed()
 
-    def tell(self, note: str) -> None:
+    def show_message(self, note: str) -> None:
         """Say what must be known of the curves, before what the program is for."""
         self._purpose.setText(" ".join(filter(None, [note, tr(PURPOSE)])))
 

@@ -1,7 +1,7 @@
 """A session as it would be made of the files of another program: what is proposed, for somebody to confirm or change.
 
-What a sensor's name says of its site is proposed; without names, the motion tells which sensors make up a leg and which
-is its thigh, shank and foot, but never which leg is the left one.
+What a sensor's name states of its site is proposed; without names, the motion gives which sensors make up a leg and
+which is its thigh, shank and foot, but never which leg is the left one.
 """
 
 import datetime
@@ -20,7 +20,7 @@ from devices.files.imports import add_recording, folder_for, free_name, place_se
 from devices.files.site_names import site_of_name
 from devices.files.trial import ImportedSensor, ImportedTrial
 
-QUIET_RAD_S = 0.15  # somebody who stands sways less, nine of ten times
+QUIET_RAD_S = 0.15  # somebody who is sways less, nine of ten times
 LONGEST_STANDING_S = 120.0
 KINDS_IN_NAMES = {
     RecordingKind.STANDING: r"stand|static|still|npose|n-pose",
@@ -60,14 +60,14 @@ class DraftRecording:
 
 @dataclass(frozen=True, slots=True)
 class SessionDraft:
-    """Recordings of one patient on one day, in order of time as far as the files tell it, else of their names."""
+    """Recordings of one patient on one day, in order of time as far as the files report it, else of their names."""
 
     recordings: tuple[DraftRecording, ...]
     sensors: tuple[DraftSensor, ...]
 
     @property
     def started(self) -> str:
-        """When the first of them began, as the files tell it; empty where they do not."""
+        """When the first of them began, as the files report it; empty where they do not."""
         return next(filter(None, (_when(one.trial) for one in self.recordings)), "")
 
 
@@ -100,7 +100,7 @@ def session_of(
     sites
         Of each sensor by its key; None: it was not worn on a leg.
     day
-        Of the session, ISO 8601, where its files do not tell it.
+        Of the session, ISO 8601, where its files do not report it.
 
     Raises
     ------
@@ -122,7 +122,7 @@ def session_of(
 
 
 def chains_of_motion(draft: SessionDraft, worn: Sequence[str]) -> Chains | None:
-    """The legs that the liveliest recording tells; None where it tells none.
+    """The legs that the liveliest recording reports; None where it reports none.
 
     Parameters
     ----------
@@ -154,26 +154,28 @@ def chains_of_motion(draft: SessionDraft, worn: Sequence[str]) -> Chains | None:
 
 
 def _draft(trials: Sequence[tuple[str, ImportedTrial]]) -> SessionDraft:
-    in_order = sorted(trials, key=lambda one: _when(one[1]))  # stable: those that tell nothing stay as they were
+    in_order = sorted(trials, key=lambda one: _when(one[1]))  # stable: those that report nothing stay as they were
     recordings = tuple(DraftRecording(title, trial, *_kind(title, trial)) for title, trial in in_order)
     names: dict[str, list[str]] = {}
     for _, trial in in_order:
         for sensor in trial.sensors:
             names.setdefault(key_of(sensor), []).append(sensor.name)
-    proposed = {key: _site(said) for key, said in names.items()}
+    proposed = {key: _site(stated) for key, stated in names.items()}
     taken = [site for site in proposed.values() if site is not None]
     sensors = []
-    for key, said in names.items():
+    for key, stated in names.items():
         site = proposed[key]
         is_free = site is not None and taken.count(site) == 1  # two of one name say nothing
-        sensors.append(DraftSensor(key, said[0], site if is_free else None, Origin.NAME if is_free else Origin.NOTHING))
+        sensors.append(
+            DraftSensor(key, stated[0], site if is_free else None, Origin.NAME if is_free else Origin.NOTHING)
+        )
     return SessionDraft(recordings, tuple(sensors))
 
 
 def _site(names: Sequence[str]) -> Site | None:
     """What all names of a sensor agree on."""
-    said = {site_of_name(name.rsplit(".", 1)[0]) for name in names}
-    return next(iter(said)) if len(said) == 1 else None
+    stated = {site_of_name(name.rsplit(".", 1)[0]) for name in names}
+    return next(iter(stated)) if len(stated) == 1 else None
 
 
 def _kind(title: str, trial: ImportedTrial) -> tuple[RecordingKind, Origin]:
@@ -206,7 +208,7 @@ def _are_of_one_session(one: ImportedTrial, other: ImportedTrial) -> bool:
 
 
 def _when(trial: ImportedTrial) -> str:
-    """When it began, ISO 8601; empty where the files tell nothing that is a time."""
+    """When it began, ISO 8601; empty where the files report nothing that is a time."""
     try:
         return datetime.datetime.fromisoformat(trial.started).isoformat()
     except ValueError:

@@ -62,8 +62,8 @@ class ControlsCard(Card):
         self.measure = Segmented(look, tr("Measure"), [(key, words[key], "") for key in TargetMeasure])
         self.side = Segmented(look, tr("Side"), [(Side.LEFT, tr("Left"), ""), (Side.RIGHT, tr("Right"), "")])
         low, high = TargetMeasure.KNEE_SWING_PEAK.limits
-        self.target = NumberField(look, tr("Target"), low=low, high=high, unit="°", says_wrong=False)
-        self.rate = NumberField(look, tr("Metronome"), low=LEAST, high=MOST, unit=tr("/min"), says_wrong=False)
+        self.target = NumberField(look, tr("Target"), low=low, high=high, unit="°", states_wrong=False)
+        self.rate = NumberField(look, tr("Metronome"), low=LEAST, high=MOST, unit=tr("/min"), states_wrong=False)
         self.tick = Button(look, tr("Start metronome"), ButtonKind.SECONDARY, Icon.SOUND)
         self.full = Button(look, tr("Full screen"), ButtonKind.QUIET, Icon.WHOLE, key="F11")
         self.close_screen = Button(look, tr("Close"), ButtonKind.QUIET, Icon.CLOSE, key="F8")
@@ -126,7 +126,7 @@ class ControlsCard(Card):
             for measure in TargetMeasure:
                 self.measure.set_reason(measure, tr("not available") if measure in gated else "")
         self._show()
-        self._tell()
+        self._show_message()
 
     def show_metronome(self, beats_per_min: int) -> None:
         self._is_ticking = bool(beats_per_min)
@@ -160,7 +160,7 @@ class ControlsCard(Card):
         self.target.set_value(self._typed.get(measure))
         self.target.setEnabled(not self.reason)
         self._reason.setVisible(bool(self.reason))
-        self._reason.tell(Icon.WITHHELD, tr("This measure cannot be a target now."), self.reason)
+        self._reason.show_message(Icon.NOT_REPORTED, tr("This measure cannot be a target now."), self.reason)
         self._show_wrong()
 
     def _show_wrong(self) -> None:
@@ -168,16 +168,16 @@ class ControlsCard(Card):
         wrong = next((field for field in (self.target, self.rate) if field.is_wrong), None)
         self._wrong.setVisible(wrong is not None)
         if wrong is not None:
-            self._wrong.tell(Icon.WARNING, wrong.wrong, "")
+            self._wrong.show_message(Icon.WARNING, wrong.wrong, "")
 
-    def _tell(self) -> None:
+    def _show_message(self) -> None:
         measure, side = self.choice
         value = None if self.reason else self._typed.get(measure)
         self.target_set.emit(None if value is None else Target(measure, side, value))
 
     def _on_chosen(self) -> None:
         self._show()
-        self._tell()
+        self._show_message()
 
     def _on_target_committed(self) -> None:
         value, measure = self.target.value, self.choice[0]
@@ -185,7 +185,7 @@ class ControlsCard(Card):
             self._typed.pop(measure, None)
         else:
             self._typed[measure] = round(value)
-        self._tell()
+        self._show_message()
 
     def _on_tick_clicked(self) -> None:
         if self._is_ticking:

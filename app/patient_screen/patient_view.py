@@ -1,4 +1,4 @@
-"""What the patient is shown at one moment, and its words. No praise: what was reached is said, nothing else."""
+"""What the patient is shown at one moment, and its words. No praise: what was reached is stated, nothing else."""
 
 from dataclasses import dataclass
 
@@ -35,14 +35,14 @@ class PatientView:
         """All of it, for who cannot see it."""
         if self.target is None:
             return tr("One moment") if self.steps is None else f"{self.steps} {so_far_words(self.steps)}"
-        said = [f"{title_of(self.target)}."]
-        said.append(tr("Target {value}.").format(value=figure(self.target.value, self.target.measure)))
+        stated = [f"{title_of(self.target)}."]
+        stated.append(tr("Target {value}.").format(value=figure(self.target.value, self.target.measure)))
         if self.is_waiting:
-            return " ".join([*said, tr("One moment")])
+            return " ".join([*stated, tr("One moment")])
         if self.value is not None:
-            said.append(tr("Now {value}.").format(value=figure(self.value, self.target.measure)))
-            said.append(f"{steps_words(len(self.last))}: {reached_words(self)}.")
-        return " ".join(said)
+            stated.append(tr("Now {value}.").format(value=figure(self.value, self.target.measure)))
+            stated.append(f"{steps_words(len(self.last))}: {reached_words(self)}.")
+        return " ".join(stated)
 
 
 def title_of(target: Target) -> str:
@@ -58,7 +58,7 @@ def title_of(target: Target) -> str:
 
 
 def unit_words(measure: TargetMeasure) -> str:
-    """What the bare figure of a measure is, where that is not said by its sign."""
+    """What the bare figure of a measure is, where that is not stated by its sign."""
     return {
         TargetMeasure.STANCE_RATIO: tr("of the time on the other leg"),
         TargetMeasure.CADENCE: tr("steps per minute"),

@@ -149,7 +149,7 @@ def _paint_bar(painter: QPainter, view: PatientView, target: Target, theme: Them
     for value in range(first, target.value + ABOVE + 1, TICK):
         x, shown = _x(target, value), figure(value, target.measure)
         if abs(x - at) < 24:
-            continue  # the line of the target stands there
+            continue  # the line of the target is there
         width = QFontMetricsF(theme.font(22, MEDIUM)).horizontalAdvance(shown) + 2
         left = min(max(x - width / 2, BAR.left()), BAR.right() - width)
         _text(painter, theme, QRectF(left, 553, width, 32), shown, 22, "ink2", weight=MEDIUM, flags=MIDDLE)
@@ -171,7 +171,7 @@ def _paint_last(painter: QPainter, view: PatientView, target: Target, theme: The
     _text(painter, theme, QRectF(LEFT, 648, 380, 32), steps_words(len(view.last)), 22, weight=MEDIUM)
     if view.last:
         _text(painter, theme, QRectF(LEFT, 682, 380, 52), reached_words(view), 40, fits=True)
-    first = SHOWN_STRIDES - len(view.last)  # the newest stands at the right from the first step on
+    first = SHOWN_STRIDES - len(view.last)  # the newest is at the right from the first step on
     for number, value in enumerate(view.last, start=first):
         is_reached = target.is_reached(value)
         low, high = STEP_HEIGHTS

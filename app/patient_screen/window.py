@@ -17,12 +17,12 @@ class PatientWindow(QWidget):
     -------
     closed
         By whatever way.
-    run_wished
+    run_requested
         Space was pressed here.
     """
 
     closed = Signal()
-    run_wished = Signal()
+    run_requested = Signal()
 
     def __init__(self, look: ThemeNotifier) -> None:
         super().__init__()
@@ -66,7 +66,7 @@ class PatientWindow(QWidget):
             case Qt.Key.Key_F11:
                 self.toggle_full_screen()
             case Qt.Key.Key_Space if not event.isAutoRepeat():
-                self.run_wished.emit()
+                self.run_requested.emit()
             case _:
                 super().keyPressEvent(event)
 

@@ -1,4 +1,4 @@
-"""One joint of one leg in several walks: their mean cycles laid over one another, told apart by letter and width."""
+"""One joint of one leg in several walks: their mean cycles laid over one another, distinguished by letter and width."""
 
 from collections.abc import Sequence
 from dataclasses import replace
@@ -82,25 +82,25 @@ class ComparedFrame(Card):
         self, curves: Sequence[StrideCurve], note: str, is_simulated: bool, *, is_about_mean: bool = False
     ) -> None:
         self.chart.show_curves(curves, is_simulated, is_about_mean)
-        said = [note] if note else []
+        stated = [note] if note else []
         if not self.chart.curves:
-            said = said or [tr("Not measured.")]
+            stated = stated or [tr("Not measured.")]
         elif self.chart.is_widened:
-            said.append(range_in_words(self.chart.range_deg))
-        self._note.setText(" ".join(said))
+            stated.append(range_in_words(self.chart.range_deg))
+        self._note.setText(" ".join(stated))
         for widget in (self._mark, self._note):
-            widget.setVisible(bool(said))
+            widget.setVisible(bool(stated))
         self.chart.setAccessibleName(tr("{joint}, compared").format(joint=part_in_words(self._side, self._kind)))
         self.chart.setAccessibleDescription(self.in_words())
 
     def in_words(self) -> str:
         """Say each curve's highest and lowest angle, for who cannot see them."""
-        said = [tr("Simulated.")] if self.chart.is_simulated else []
+        stated = [tr("Simulated.")] if self.chart.is_simulated else []
         for curve in self.chart.curves:
             mean = curve.angle_deg
-            told = tr("{letter}: {lowest} at {lowest_percent} % to {highest} at {highest_percent} %.")
-            said.append(
-                told.format(
+            reported = tr("{letter}: {lowest} at {lowest_percent} % to {highest} at {highest_percent} %.")
+            stated.append(
+                reported.format(
                     letter=curve.letter,
                     lowest=degrees_in_words(np.min(mean)),
                     lowest_percent=np.argmin(mean),
@@ -108,4 +108,4 @@ class ComparedFrame(Card):
                     highest_percent=np.argmax(mean),
                 )
             )
-        return " ".join([*said, self.note]).strip()
+        return " ".join([*stated, self.note]).strip()

@@ -47,14 +47,14 @@ class CostMap(Themed):
     def show_cost(self, cost: CostOverSphere, side: Side, axis_sd_rad: float | None, name: str) -> None:
         """Draw the map of the sensor on the segment `name`; the circle about the axis is 2 SD wide."""
         self._cost, self._side, self._axis_sd_rad = cost, side, axis_sd_rad
-        said = tr(
+        stated = tr(
             "{sensor}: the axis in use is {apart}° from the best-fitting direction; misfits range from "
             "{low} to {high} °/s."
         )
         low, high = self.limits_deg_s
         apart = figure_text(math.degrees(cost.apart_rad), ".1f")
         self.setAccessibleName(tr("Fit error of all axes, {sensor}").format(sensor=name))
-        self.setAccessibleDescription(said.format(sensor=name, apart=apart, low=f"{low:.0f}", high=f"{high:.0f}"))
+        self.setAccessibleDescription(stated.format(sensor=name, apart=apart, low=f"{low:.0f}", high=f"{high:.0f}"))
         self._on_look_changed()
 
     @property

@@ -17,8 +17,8 @@ from app.summary.course_words import (
     lane_in_words,
     last_in_words,
     nothing_between,
+    reported_goals,
     since_last_in_words,
-    told_goals,
     visit_in_words,
 )
 from app.summary.goals import brief_standing, goal_mark
@@ -49,14 +49,14 @@ class CourseCard(Card):
     -------
     visit_opened
         The id of its session.
-    computing_wished
+    computing_requested
         The visits that have no figures yet are to be evaluated.
     """
 
     accessible_role = QAccessible.Role.Chart
 
     visit_opened = Signal(object)
-    computing_wished = Signal()
+    computing_requested = Signal()
 
     def __init__(self, look: ThemeNotifier) -> None:
         self._grid, self._legend, self._foot = QGridLayout(), QHBoxLayout(), QHBoxLayout()
@@ -80,7 +80,7 @@ class CourseCard(Card):
         self.column.addLayout(self._foot)
         self._join(self.axis)
         self._show_kinds(lane_kinds())
-        self.compute.clicked.connect(self.computing_wished)
+        self.compute.clicked.connect(self.computing_requested)
         self.set_room(NARROW_BELOW)
 
     def show_course(
@@ -116,8 +116,8 @@ class CourseCard(Card):
             last = len(self.visits) - 1
             before = self.number if self.number is not None else (last + 1 if steps[key] < 0 else -1)
             self.point_at(min(max(before + steps[key], 0), last))
-            said = visit_in_words(self.number or 0, self.lanes, self.visits)
-            QAccessible.updateAccessibility(QAccessibleAnnouncementEvent(self, said))
+            stated = visit_in_words(self.number or 0, self.lanes, self.visits)
+            QAccessible.updateAccessibility(QAccessibleAnnouncementEvent(self, stated))
         elif key in (Qt.Key.Key_Return, Qt.Key.Key_Enter) and self.number is not None:
             self._open(self.number)
         else:
@@ -240,15 +240,15 @@ class LaneRow:
             self._add_change(one, visits, has_sides=len(lane.changes) > 1)
 
     def _add_goals(self, lane: CourseLane, one: LaneChange, visits: Sequence[CourseVisit]) -> None:
-        """How the last value stands to goals that were agreed before it."""
-        for found in told_goals(lane, one, visits):
+        """How the last value is to goals that were agreed before it."""
+        for found in reported_goals(lane, one, visits):
             self.changes.add(Text(self._look, brief_standing(found.standing), 12, wraps=True))
 
     def _value(self, one: LaneChange) -> Text:
         """Type follows trust: bold what is read, regular what is to be read with care, small what cannot be."""
         last = one.line.points[-1]
         words = last_in_words(one, self.kind)
-        if not last.is_told:
+        if not last.is_reported:
             return Text(self._look, words, size=12, tone="ink2")
         return Text(self._look, words, size=VALUE, weight=SEMIBOLD if last.verdict is Verdict.READ else REGULAR)
 
@@ -261,10 +261,10 @@ class LaneRow:
         if found is None or one.first is None or not math.isfinite(found.difference):
             return
         who = f"{one.line.side.letter} " if has_sides and one.line.side is not None else ""
-        said = tr("{change} since {day}").format(
+        stated = tr("{change} since {day}").format(
             change=who + change_in_words(found, self.kind), day=day_of(one.first, visits)
         )
-        self.changes.add_marked(said, is_marked=found.exceeds)
+        self.changes.add_marked(stated, is_marked=found.exceeds)
         self.changes.add(Text(self._look, judged_in_words(found, self.kind), 12, tone="ink2", wraps=True))
         if one.since_last is not None and not has_sides:
             self.changes.add(
@@ -302,7 +302,7 @@ class _Words(Themed):
         self._show()
 
     def add_marked(self, words: str, *, is_marked: bool) -> None:
-        """A line with a triangle before it where what it says lies beyond the error."""
+        """A line with a triangle before it where what it states lies beyond the error."""
         line = QWidget()
         row = QHBoxLayout(line)
         row.setContentsMargins(0, 0, 0, 0)

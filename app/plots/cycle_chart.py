@@ -35,7 +35,15 @@ from app.charts.stride_chart import (
     usual_range_deg,
 )
 from app.summary.comparison import Comparison
-from app.summary.walk_figures import MAY_BE_MIRRORED, NO_HEIGHT, NO_ZERO, WITHHELD, doubt_in, verdict_of, why_in_words
+from app.summary.walk_figures import (
+    MAY_BE_MIRRORED,
+    NO_HEIGHT,
+    NO_ZERO,
+    NOT_REPORTED,
+    doubt_in,
+    verdict_of,
+    why_in_words,
+)
 from app.theme.icons import Icon
 from app.theme.notifier import ThemeNotifier
 from app.widgets.card import Card
@@ -43,7 +51,7 @@ from app.widgets.icons import IconMark
 from app.widgets.text import MEDIUM, SEMIBOLD, Text
 from app.widgets.themed import Themed
 from app.widgets.verdict_chip import VerdictChip
-from app.widgets.withheld_panel import WithheldPanel
+from app.widgets.withheld_panel import NotReportedPanel
 from app.wording.translation import capitalised, joined, later, tr
 from core.body import Joint, JointKind, Side
 from core.samples import FloatArray
@@ -115,7 +123,7 @@ class CycleCharts(Themed):
             frame.chart.redraw()
 
     def show_beside(self, found: Comparison | None, words: str = "") -> None:
-        """Draw thin what the walk stands beside, or say why nothing; marks are to be shown anew, and the next walk is
+        """Draw thin what the walk is beside, or say why nothing; marks are to be shown again, and the next walk is
         without."""
         for frame in self._frames:
             frame.show_beside(found, words)
@@ -127,7 +135,7 @@ class CycleCharts(Themed):
             frame.show_stride(found[0] if found else None)
 
     def show_marks(self, deviations: Sequence[Deviation], gaps: Sequence[Gap] = ()) -> None:
-        """Mark on the curves what stands out, degrees as measured; the next walk shown is without."""
+        """Mark on the curves what is out, degrees as measured; the next walk shown is without."""
         for frame in self._frames:
             frame.show_marks(
                 [found for found in deviations if found.kind is frame.kind],
@@ -183,7 +191,7 @@ class CycleFrame(Card):
         self._note = Text(look, size=12, weight=MEDIUM, wraps=True)
         self.beside = Text(look, size=12, tone="ink2", wraps=True)
         self._walk: tuple[Mapping[Side, SideCycle], Mapping[Side, JointVerdicts], bool] = ({}, {}, False)
-        self.withheld = {side: WithheldPanel(look, side) for side in Side}
+        self.not_reported = {side: NotReportedPanel(look, side) for side in Side}
         self.heights_deg: dict[Side, float] = {}
         super().__init__(look, padding=12, spacing=2)
         self.setSizePolicy(QSizePolicy.Policy.Expanding, QSizePolicy.Policy.Expanding)
@@ -210,7 +218,7 @@ class CycleFrame(Card):
         self.column.addLayout(self._head)
         self.column.addLayout(notes)
         self.column.addWidget(self.beside)
-        for panel in self.withheld.values():
+        for panel in self.not_reported.values():
             self.column.addWidget(panel)
         self.column.addWidget(chart, 3)
 
@@ -226,28 +234,30 @@ class CycleFrame(Card):
         self.show_beside(None)
 
     def show_beside(self, found: Comparison | None, words: str = "") -> None:
-        """Draw the walk anew, thin beside it what it is compared with, or say in `words` why nothing is."""
+        """Draw the walk again, thin beside it what it is compared with, or say in `words` why nothing is."""
         cycles, verdicts, is_simulated = self._walk
         doubts = {side: why for side, judged in verdicts.items() if side in cycles and (why := doubt_in(judged))}
         reasons = {side: why_in_words(judged) for side, judged in verdicts.items() if side in cycles}
         joints = [joint for joint in (found.joints if found is not None else ()) if joint.kind is self.kind]
         has_other_zero = found is not None and not all(_has_common_height(found, joint) for joint in joints)
-        is_about_mean = has_other_zero or any(why != WITHHELD for why in doubts.values())
+        is_about_mean = has_other_zero or any(why != NOT_REPORTED for why in doubts.values())
         self.heights_deg = {side: cycle.height_deg for side, cycle in cycles.items()} if is_about_mean else {}
         drawn = {side: cycle.about_mean() for side, cycle in cycles.items()} if is_about_mean else cycles
-        withheld = frozenset(side for side, why in doubts.items() if why == WITHHELD)
+        not_reported = frozenset(side for side, why in doubts.items() if why == NOT_REPORTED)
         beside = {
             joint.side: found.against.curve(joint, is_about_mean=is_about_mean)
             for joint in joints
             if found is not None and all(joint in part.joints and part.is_drawn(joint) for part in found.parts)
         }
-        self.chart.show_cycles(drawn, is_simulated, withheld, is_about_mean, beside)
+        self.chart.show_cycles(drawn, is_simulated, not_reported, is_about_mean, beside)
         self.beside.setText(words if found is None else self._beside_in_words(found, has_other_zero))
         self._show_beside_words()
         for side, chip in self.chips.items():
             chip.setVisible(side in cycles)
-            chip.tell(verdict_of(verdicts[side]) if side in verdicts else Verdict.READ, has_line=side not in withheld)
-            self.withheld[side].tell(reasons[side] if side in withheld else "")
+            chip.show_message(
+                verdict_of(verdicts[side]) if side in verdicts else Verdict.READ, has_line=side not in not_reported
+            )
+            self.not_reported[side].show_message(reasons[side] if side in not_reported else "")
         self._note.setText(" ".join(self._notes(cycles, doubts)))
         for widget in (self._mark, self._note):
             widget.setVisible(bool(self._note.text()))
@@ -302,18 +312,18 @@ class CycleFrame(Card):
     def _beside_in_words(self, found: Comparison, has_other_zero: bool) -> str:
         """Name the thin curves, and say of whom there is none."""
         against = found.against
-        said = [tr("Thin line: {walk}.").format(walk=against.name)] if self.chart.beside else []
+        stated = [tr("Thin line: {walk}.").format(walk=against.name)] if self.chart.beside else []
         worn = {self.kind.of(side) for side in self.chart.cycles}
         for joint in sorted(worn, key=list(Joint).index):
             if joint not in against.joints:
-                said.append(tr("{side}: not measured in {walk}.").format(side=joint.side.letter, walk=against.name))
+                stated.append(tr("{side}: not measured in {walk}.").format(side=joint.side.letter, walk=against.name))
             elif not against.is_drawn(joint):
-                said.append(tr("{side}: not reported in {walk}.").format(side=joint.side.letter, walk=against.name))
+                stated.append(tr("{side}: not reported in {walk}.").format(side=joint.side.letter, walk=against.name))
         if has_other_zero and self.chart.beside:
-            said.append(
+            stated.append(
                 tr("No common standing reference: compare range of motion and curve shape, not absolute angles.")
             )
-        return " ".join(said)
+        return " ".join(stated)
 
     def _show_chart(self) -> None:
         """Leave it away where nothing of it could be seen: the panels then take its place."""
@@ -322,22 +332,22 @@ class CycleFrame(Card):
 
     def in_words(self) -> str:
         """Say each side's mean curve, for who cannot see it."""
-        said = [tr("Simulated.")] if self.chart.is_simulated else []
+        stated = [tr("Simulated.")] if self.chart.is_simulated else []
         for side, cycle in self.chart.cycles.items():
             part = part_in_words(side, self.kind)
-            if side in self.chart.withheld:
-                said.append(f"{part}: {self.withheld[side].text}")
+            if side in self.chart.not_reported:
+                stated.append(f"{part}: {self.not_reported[side].text}")
                 continue
             if not cycle.mean.n:
-                said.append(tr("{part} has no usable stride.").format(part=part))
+                stated.append(tr("{part} has no usable stride.").format(part=part))
                 continue
             lowest, highest = np.min(cycle.mean.mean), np.max(cycle.mean.mean)
-            told = tr(
+            reported = tr(
                 "{part}, mean of {count}: {lowest} at {lowest_percent} % to {highest} at {highest_percent} %, "
                 "toe-off at {toe_off_percent:.0f} %."
             )
-            said.append(
-                told.format(
+            stated.append(
+                reported.format(
                     part=part,
                     count=cycle.mean.n,
                     lowest=degrees_in_words(lowest),
@@ -349,11 +359,11 @@ class CycleFrame(Card):
             )
         for side, chip in self.chips.items():
             if side in self.chart.cycles and chip.verdict is Verdict.CARE:
-                said.append(f"{capitalised(chip.accessibleName())}.")
-        said += [deviation.in_words() for deviation in self.chart.deviations]
-        said += [gap.in_words() for gap in self.chart.gaps]
-        said += [text for text in (self.beside.text(), self.note) if text]
-        return " ".join(said) or nothing_in_words(self.kind)
+                stated.append(f"{capitalised(chip.accessibleName())}.")
+        stated += [deviation.in_words() for deviation in self.chart.deviations]
+        stated += [gap.in_words() for gap in self.chart.gaps]
+        stated += [text for text in (self.beside.text(), self.note) if text]
+        return " ".join(stated) or nothing_in_words(self.kind)
 
     def _notes(self, cycles: Mapping[Side, SideCycle], doubts: Mapping[Side, str]) -> list[str]:
         notes = []
@@ -364,7 +374,7 @@ class CycleFrame(Card):
             notes.append(tr("0° is the mean of the gait cycle."))
         if not cycles:
             notes.append(nothing_in_words(self.kind))
-        empty = [s.letter for s, cycle in cycles.items() if not cycle.mean.n and s not in self.chart.withheld]
+        empty = [s.letter for s, cycle in cycles.items() if not cycle.mean.n and s not in self.chart.not_reported]
         if empty:
             notes.append(tr("{sides}: no usable stride.").format(sides=joined(empty)))
         if self.chart.is_widened:
@@ -376,7 +386,7 @@ def _has_common_height(found: Comparison, joint: Joint) -> bool:
     """Whether the curves of a joint can be laid over one another as high as they were measured."""
     drawn = [part for part in found.parts if joint in part.joints and part.is_drawn(joint)]
     return len(drawn) < 2 or (
-        found.has_one_zero(joint) and all(part.verdicts.joint(joint).height.is_told for part in drawn)
+        found.has_one_zero(joint) and all(part.verdicts.joint(joint).height.is_reported for part in drawn)
     )
 
 
@@ -396,7 +406,7 @@ class CycleChart(Themed):
         self.is_simulated = False
         self.has_band, self.has_strides = True, False
         self.is_about_mean = False
-        self.withheld: frozenset[Side] = frozenset()  # of whom no mean is drawn
+        self.not_reported: frozenset[Side] = frozenset()  # of whom no mean is drawn
         self.beside: tuple[StrideCurve, ...] = ()  # of another walk, of legs whose mean is drawn
         self.stride: tuple[Side, FloatArray] | None = None
         self.readings: Mapping[Side, float] = {}  # percent of each leg's own stride
@@ -429,19 +439,19 @@ class CycleChart(Themed):
         self,
         cycles: Mapping[Side, SideCycle],
         is_simulated: bool,
-        withheld: frozenset[Side] = frozenset(),
+        not_reported: frozenset[Side] = frozenset(),
         is_about_mean: bool = False,
         beside: Mapping[Side, StrideCurve] | None = None,
     ) -> None:
         """Draw each side's strides, `beside` them another walk's means, and widen the axis where a mean leaves it."""
         self.cycles, self.is_simulated = cycles, is_simulated
-        self.withheld, self.is_about_mean = withheld, is_about_mean
+        self.not_reported, self.is_about_mean = not_reported, is_about_mean
         self.deviations, self.gaps = (), ()
         drawn = self.sides_with_mean
         self.beside = tuple(
             replace(curve, order=EARLIER) for side, curve in (beside or {}).items() if side in drawn and curve.is_known
         )
-        means = [cycle.mean.mean for side, cycle in cycles.items() if side not in withheld]
+        means = [cycle.mean.mean for side, cycle in cycles.items() if side not in not_reported]
         means += [curve.angle_deg for curve in self.beside]
         self.range_deg = range_for(self._usual_deg, means)
         self.redraw()
@@ -470,12 +480,12 @@ class CycleChart(Themed):
         return laid_at_height_of(np.mean(means, axis=0), self.band) if means else None
 
     def _curves(self) -> tuple[StrideCurve, ...]:
-        return curves_of_walk(self.cycles, self.withheld, has_strides=self.has_strides)
+        return curves_of_walk(self.cycles, self.not_reported, has_strides=self.has_strides)
 
     @property
     def is_empty(self) -> bool:
-        """Whether all sides are withheld and none has its strides shown."""
-        return all(curve.is_withheld and not len(curve.strides_deg) for curve in self._curves())
+        """Whether all sides are not reported and none has its strides shown."""
+        return all(curve.is_not_reported and not len(curve.strides_deg) for curve in self._curves())
 
     @property
     def sides_with_mean(self) -> frozenset[Side]:
@@ -495,7 +505,7 @@ class CycleChart(Themed):
         return places_of(self._look.theme, self.frame, self.described)
 
     def redraw(self) -> None:
-        """Paint anew, since what is shown has changed."""
+        """Paint again, since what is shown has changed."""
         self._picture = None
         self.update()
 

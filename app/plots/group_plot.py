@@ -26,7 +26,7 @@ HALF_TICK_WORDS = 36
 
 @dataclass(frozen=True, slots=True)
 class GroupLine:
-    """One group: its name, its mean, half of the interval (NaN: none is told), and `count` in words."""
+    """One group: its name, its mean, half of the interval (NaN: none is reported), and `count` in words."""
 
     label: str
     mean: float
@@ -35,7 +35,7 @@ class GroupLine:
 
 
 class GroupPlot(Themed):
-    """As high as its groups. `unit` stands under the axis."""
+    """As high as its groups. `unit` is under the axis."""
 
     accessible_role = QAccessible.Role.Chart
 
@@ -137,7 +137,7 @@ class GroupPlot(Themed):
             text.paint(painter, c)
 
     def event(self, event: QEvent) -> bool:
-        """Tell the whole of a name that is cut, under the mouse."""
+        """Report the whole of a name that is cut, under the mouse."""
         if isinstance(event, QHelpEvent) and event.type() is QEvent.Type.ToolTip:
             row = int(event.pos().y() // self._look.theme.px(ROW))
             is_label = event.pos().x() <= self._label_width() and 0 <= row < len(self.lines)

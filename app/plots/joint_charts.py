@@ -39,7 +39,7 @@ NO_GAIT: Mapping[Side, SideGait] = {}
 class JointCharts(Themed):
     """Charts that act as one control: the mouse or the keys read, move along and zoom in time.
 
-    The hip's is there where a hip was measured. `view_changed` tells whether the whole recording is in sight, and which
+    The hip's is there where a hip was measured. `view_changed` gives whether the whole recording is in sight, and which
     part is.
     """
 
@@ -126,8 +126,8 @@ class JointCharts(Themed):
             tr("Hip, knee and ankle angles of {recording}") if has_hips else tr("Knee and ankle angles of {recording}")
         )
         self.setAccessibleName(what.format(recording=self._name))
-        told = [*(frame.in_words() for frame in self._shown), self.phases.in_words()]
-        self.setAccessibleDescription(" ".join(filter(None, told)))
+        reported = [*(frame.in_words() for frame in self._shown), self.phases.in_words()]
+        self.setAccessibleDescription(" ".join(filter(None, reported)))
         self._read_at(self._cursor_s)
 
     @property
@@ -200,16 +200,16 @@ class JointCharts(Themed):
         self._go_to(min(max(there, 0), len(self._time_s) - 1))
 
     def _go_to(self, row: int) -> None:
-        """Read sample `row`, bring it in sight and say what stands there."""
+        """Read sample `row`, bring it in sight and say what is there."""
         time_s = float(self._time_s[row])
         self._read_at(time_s)
         first, last = self.visible_s
         if not first <= time_s <= last:
             self.go_on((time_s - (first + last) / 2) / (last - first))
-        told = [*(frame.reading_in_words() for frame in self._shown), self.phases.reading_in_words()]
-        said = " ".join(told)
-        said = f"{figure_text(time_s, '.2f')} s. {said}".strip()
-        QAccessible.updateAccessibility(QAccessibleAnnouncementEvent(self, said))
+        reported = [*(frame.reading_in_words() for frame in self._shown), self.phases.reading_in_words()]
+        stated = " ".join(reported)
+        stated = f"{figure_text(time_s, '.2f')} s. {stated}".strip()
+        QAccessible.updateAccessibility(QAccessibleAnnouncementEvent(self, stated))
 
     def _see(self, first_s: float, last_s: float) -> None:
         first, last = self.knee.chart.whole_s
@@ -236,17 +236,17 @@ class JointCharts(Themed):
         first, last = self.visible_s
         self.phases.lanes.see(first, last)
         length = self.knee.chart.whole_s[1] - self.knee.chart.whole_s[0]
-        said = tr("Whole recording, {whole} s") if self.is_whole else tr("{first} to {last} s of {whole} s")
+        stated = tr("Whole recording, {whole} s") if self.is_whole else tr("{first} to {last} s of {whole} s")
         shown = {"first": first, "last": last, "whole": length}
         times = {name: figure_text(time_s, ".1f").replace("-", MINUS) for name, time_s in shown.items()}
-        self.view_changed.emit(self.is_whole, said.format_map(times))
+        self.view_changed.emit(self.is_whole, stated.format_map(times))
 
     def _on_look_changed(self) -> None:
         self._column.setSpacing(self._look.theme.px(12 if self.hip.isHidden() else 6))
 
 
 class ChartFrame(Card):
-    """A chart with its title, its sign in words, and what stands at the reading line."""
+    """A chart with its title, its sign in words, and what is at the reading line."""
 
     def __init__(self, look: ThemeNotifier, chart: AngleChart, kind: JointKind) -> None:
         self.kind = kind
@@ -328,16 +328,16 @@ class ChartFrame(Card):
 
     def in_words(self) -> str:
         """Say each leg's range, for who cannot see the curves."""
-        said = []
+        stated = []
         for side, curve in self.chart.curves.items():
             part = part_in_words(side, self.kind)
             if np.isfinite(curve.angle_deg).any():
                 lowest, highest = (degrees_in_words(find(curve.angle_deg)) for find in (np.nanmin, np.nanmax))
-                told = tr("{part} from {lowest} to {highest}.")
-                said.append(told.format(part=part, lowest=lowest, highest=highest))
+                reported = tr("{part} from {lowest} to {highest}.")
+                stated.append(reported.format(part=part, lowest=lowest, highest=highest))
             else:
-                said.append(tr("{part} has no values.").format(part=part))
-        return " ".join(said) or nothing_in_words(self.kind)
+                stated.append(tr("{part} has no values.").format(part=part))
+        return " ".join(stated) or nothing_in_words(self.kind)
 
     def _place(self) -> None:
         for part in self._head:
@@ -375,7 +375,7 @@ def _reading(curve: Curve, row: int) -> str:
     angle = curve.angle_deg[row]
     if not np.isfinite(angle):
         return tr(NO_VALUE)
-    said = degrees_in_words(angle)
+    stated = degrees_in_words(angle)
     if curve.sd_deg is not None and np.isfinite(curve.sd_deg[row]):
-        said += f" ± {figure_text(2 * curve.sd_deg[row], '.1f')}°"
-    return said
+        stated += f" ± {figure_text(2 * curve.sd_deg[row], '.1f')}°"
+    return stated

@@ -72,7 +72,7 @@ class DatedPlot(Themed):
 
     @property
     def plot(self) -> QRectF:
-        """Where values lie; half a line of figures stands over and under them."""
+        """Where values lie; half a line of figures is over and under them."""
         px = self._look.theme.px
         return QRectF(px(AXIS), px(HALF_LINE), self.width() - px(AXIS), self.height() - 2 * px(HALF_LINE))
 
@@ -83,7 +83,7 @@ class DatedPlot(Themed):
             self.update()
 
     def x_of(self, number: int) -> float:
-        """The place of a visit: by its day, and beside one that is too near to be told from it."""
+        """The place of a visit: by its day, and beside one that is too near to be distinguished from it."""
         seen = (self.visits, self.width(), self._look.theme.scale)
         if self._places_of != seen:
             self._places_of, self._places = seen, self._found_places()
@@ -180,19 +180,19 @@ class LanePlot(DatedPlot):
             text.paint(painter, theme.colours)
 
     def _paint_line(self, painter: QPainter, line: LaneLine) -> None:
-        """Neighbours are joined; what lies beyond a visit that cannot be read is not."""
+        """Adjacent points are joined; what lies beyond a visit that cannot be read is not."""
         theme = self._look.theme
         colour = QColor(theme.colours.ink) if line.side is None else theme.curve(line.side)
         painter.setBrush(Qt.BrushStyle.NoBrush)
         painter.setPen(_line_pen(theme, line.side, colour, self._mark_of(line)))
         for one, other in pairwise(line.points):
-            if one.is_told and other.is_told:
+            if one.is_reported and other.is_reported:
                 painter.drawLine(self._at(one), self._at(other))
         painter.setPen(theme.pen(colour, 1.5))
-        for point in line.told:
+        for point in line.reported:
             if math.isfinite(point.whisker):
                 self._paint_whisker(painter, point)
-        for point in line.told:
+        for point in line.reported:
             paint_mark(painter, theme, self._at(point), self._mark_of(line), colour, line.side)
 
     def _paint_whisker(self, painter: QPainter, point: LanePoint) -> None:

@@ -39,7 +39,7 @@ DRAWN_WITH_PELVIS = later("Drawn from joint angles and the inclination of thighs
 
 
 class MovingLegs(Card):
-    """`moved` tells where in the reference leg's stride the cursor is, percent, whoever moved it."""
+    """`moved` gives where in the reference leg's stride the cursor is, percent, whoever moved it."""
 
     accessible_role = QAccessible.Role.Chart
 
@@ -76,7 +76,7 @@ class MovingLegs(Card):
         self._timer.setInterval(FRAME_MS)
         self._timer.timeout.connect(self._on_beat)
         self.play.clicked.connect(self.turn)
-        self._tell()
+        self._show_message()
 
     @property
     def is_playing(self) -> bool:
@@ -112,10 +112,10 @@ class MovingLegs(Card):
         self.percent = percent % 100.0
         self.picture.show_legs(self._legs, self.percent)
         if self._legs is not None:
-            said = tr("{percent:.0f} % of the {side} gait cycle")
+            stated = tr("{percent:.0f} % of the {side} gait cycle")
             side = side_name(self._legs.reference)
-            self.where.setText(said.format(percent=self.percent, side=side))
-            widest = self.where.fontMetrics().horizontalAdvance(said.format(percent=100.0, side=side))
+            self.where.setText(stated.format(percent=self.percent, side=side))
+            widest = self.where.fontMetrics().horizontalAdvance(stated.format(percent=100.0, side=side))
             self.where.setMinimumWidth(widest)  # else the card would grow while it plays
         self.setAccessibleName(tr("Legs"))
         self.setAccessibleDescription(self.where.text() if self._legs is not None else self.note.text())
@@ -127,11 +127,11 @@ class MovingLegs(Card):
             self.stop()
         elif self._legs is not None:
             self._timer.start()
-            self._tell()
+            self._show_message()
 
     def stop(self) -> None:
         self._timer.stop()
-        self._tell()
+        self._show_message()
 
     def keyPressEvent(self, event: QKeyEvent) -> None:
         steps = {Qt.Key.Key_Left: -1, Qt.Key.Key_Right: 1}
@@ -153,14 +153,14 @@ class MovingLegs(Card):
         stride_s = self._legs.legs[self._legs.reference].stride_s
         self.show_percent(self.percent + 100.0 * FRAME_MS / 1000.0 * factor / stride_s)
 
-    def _tell(self) -> None:
+    def _show_message(self) -> None:
         self.play.setText(tr("Stop") if self.is_playing else tr("Play"))
         self.play.setAccessibleName(self.play.text())
         self.play.set_face(icon=Icon.STOP if self.is_playing else Icon.PLAY)
 
 
 class _LegsPicture(Themed):
-    """The legs over the floor, and below them when each foot stands in one stride of the reference leg."""
+    """The legs over the floor, and below them when each foot is in one stride of the reference leg."""
 
     pointed = Signal(float)
 
@@ -278,8 +278,8 @@ class _LegsPicture(Themed):
         painter.setFont(theme.font(12, MEDIUM))
         painter.setPen(QColor(theme.colours.ink2))
         words = QRectF(lanes.left(), lanes.bottom() - px(20), lanes.width(), px(20))
-        said = tr("one {side} stride, {time:.2f} s").format(side=side_name(legs.reference), time=reference.stride_s)
-        painter.drawText(words, Qt.AlignmentFlag.AlignHCenter | Qt.AlignmentFlag.AlignVCenter, said)
+        stated = tr("one {side} stride, {time:.2f} s").format(side=side_name(legs.reference), time=reference.stride_s)
+        painter.drawText(words, Qt.AlignmentFlag.AlignHCenter | Qt.AlignmentFlag.AlignVCenter, stated)
         painter.drawText(words, Qt.AlignmentFlag.AlignLeft | Qt.AlignmentFlag.AlignVCenter, "0")
         painter.drawText(words, Qt.AlignmentFlag.AlignRight | Qt.AlignmentFlag.AlignVCenter, "100\u00a0%")
         x = lanes.left() + lanes.width() * self._percent / 100

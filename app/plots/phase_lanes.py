@@ -28,7 +28,7 @@ from core.samples import FloatArray, IntArray
 LANE, BETWEEN = 26, 8
 GAP_PX = 1.5  # of surface between two phases
 HATCH_PX = 4.5
-LEAST_PHASE_PX = 5.0  # on the average in sight; narrower, nobody can tell them apart
+LEAST_PHASE_PX = 5.0  # on the average in sight; narrower, nobody can report them apart
 ZOOM_IN = later("Zoom in to see the phases")
 WHEEL_ZOOM = 1.02 ** (-1 / 8)  # per unit of the wheel, as the curves do
 
@@ -80,7 +80,7 @@ class Lane:
 
 
 class PhaseFrame(Card):
-    """Both lanes with their legend, and what stands at the reading line."""
+    """Both lanes with their legend, and what is at the reading line."""
 
     def __init__(self, look: ThemeNotifier) -> None:
         self.lanes = PhaseLanes(look)
@@ -152,7 +152,7 @@ class PhaseFrame(Card):
 
     def in_words(self) -> str:
         """Say how often each foot landed and left, for who cannot see the lanes."""
-        said = []
+        stated = []
         for side, lane in self.lanes.lanes.items():
             events = list(lane.event_rows.values())
             known = lane.run_phase != PHASES.index(Phase.UNKNOWN)
@@ -164,11 +164,11 @@ class PhaseFrame(Card):
                     tr_n("{count} initial contact", "{count} initial contacts", contacts).format(count=contacts),
                     tr_n("{count} toe-off", "{count} toe-offs", toe_offs).format(count=toe_offs),
                 ]
-                told = tr("{part}: {events}, phases from {first:.1f} to {last:.1f} s.")
-                said.append(told.format(part=part, events=joined(counts), first=first, last=last))
+                reported = tr("{part}: {events}, phases from {first:.1f} to {last:.1f} s.")
+                stated.append(reported.format(part=part, events=joined(counts), first=first, last=last))
             else:
-                said.append(tr("{part}: phases not known.").format(part=part))
-        return " ".join(said)
+                stated.append(tr("{part}: phases not known.").format(part=part))
+        return " ".join(stated)
 
     def _reserve_room(self) -> None:
         for side, label in self._readings.items():

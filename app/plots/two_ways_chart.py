@@ -189,8 +189,8 @@ class TwoWaysChart(Themed):
         first, last = self.visible_s
         step = next((s for s in SECONDS if (last - first) / s <= MOST_TICKS), (last - first) / MOST_TICKS)
         ticks = [k * step for k in range(int(np.ceil(first / step - 1e-9)), int(np.floor(last / step + 1e-9)) + 1)]
-        said = [tr("{seconds} s").format(seconds=figure_text(t, ".1f") if step < 1 else f"{t:.0f}") for t in ticks]
-        return [(float(t), words) for t, words in zip(ticks, said, strict=True)]
+        stated = [tr("{seconds} s").format(seconds=figure_text(t, ".1f") if step < 1 else f"{t:.0f}") for t in ticks]
+        return [(float(t), words) for t, words in zip(ticks, stated, strict=True)]
 
     def _redraw(self) -> None:
         self._picture = None

@@ -12,7 +12,7 @@ Block = dict[str, object]
 class Cell:
     """One cell's words, over `span` columns, or a picture in their place."""
 
-    said: str
+    stated: str
     is_bold: bool = False
     is_grey: bool = False
     span: int = 1
@@ -33,20 +33,20 @@ Row = Sequence[Cell | str] | str
 """Cells, or the words over a group of rows."""
 
 
-def heading(said: str, level: int = 1) -> Block:
-    return {"kind": "heading", "said": said, "level": level}
+def heading(stated: str, level: int = 1) -> Block:
+    return {"kind": "heading", "said": stated, "level": level}
 
 
-def note(said: str) -> Block:
-    return {"kind": "note", "said": said}
+def note(stated: str) -> Block:
+    return {"kind": "note", "said": stated}
 
 
-def paragraph(said: str) -> Block:
-    return {"kind": "paragraph", "said": said}
+def paragraph(stated: str) -> Block:
+    return {"kind": "paragraph", "said": stated}
 
 
-def bullets(said: Sequence[str]) -> Block:
-    return {"kind": "bullets", "said": list(said)}
+def bullets(stated: Sequence[str]) -> Block:
+    return {"kind": "bullets", "said": list(stated)}
 
 
 def figures(pictures: Sequence[Picture], columns: int = 1) -> Block:
@@ -54,12 +54,12 @@ def figures(pictures: Sequence[Picture], columns: int = 1) -> Block:
 
 
 def legend(items: Sequence[tuple[Picture, str]], columns: int = 3) -> Block:
-    entries = [{"picture": swatch.as_data(), "said": said} for swatch, said in items]
+    entries = [{"picture": swatch.as_data(), "said": stated} for swatch, stated in items]
     return {"kind": "legend", "items": entries, "columns": columns}
 
 
 def if_room(blocks: Sequence[Block]) -> Block:
-    """What is told only where its page has the room: it explains, and what it explains can be read without it."""
+    """What is reported only where its page has the room: it explains, and what it explains can be read without it."""
     return {"kind": "if_room", "blocks": list(blocks)}
 
 
@@ -75,7 +75,7 @@ def table(columns: Sequence[Column], rows: Sequence[Row], *, is_dense: bool = Fa
 def _cell(cell: Cell | str) -> dict[str, object]:
     one = Cell(cell) if isinstance(cell, str) else cell
     return {
-        "said": one.said,
+        "said": one.stated,
         "bold": one.is_bold,
         "grey": one.is_grey,
         "span": one.span,

@@ -54,7 +54,7 @@ class AgreementController(QObject):
     -------
     writing
         The folder that was chosen, and the call that writes the files into it: whoever shows the page knows on which
-        thread, and who must be told of an export.
+        thread, and who must be given of an export.
     """
 
     writing = Signal(object, object)
@@ -68,9 +68,9 @@ class AgreementController(QObject):
         self._dialog: QFileDialog | None = None
         self._background.done.connect(self._on_done)
         self._background.failed.connect(self._on_failed)
-        page.reference_wished.connect(self._on_reference_wished)
-        page.save_wished.connect(self._on_save_wished)
-        page.sheets.sharper_wanted.connect(self._on_sharper_wanted)
+        page.reference_requested.connect(self._on_reference_requested)
+        page.save_requested.connect(self._on_save_requested)
+        page.sheets.sharper_required.connect(self._on_sharper_required)
 
     def show(self, session: "Session", analysis: Analysis) -> None:
         """Compare this session; what was found of the same analysis stays."""
@@ -91,7 +91,7 @@ class AgreementController(QObject):
         """Nobody looks any more."""
         self._background.stop()
 
-    def _on_reference_wished(self) -> None:
+    def _on_reference_requested(self) -> None:
         title = tr("Choose optical reference files")
         self._dialog = ask_for_files(self._page, title, self._on_files_selected)
 
@@ -105,7 +105,7 @@ class AgreementController(QObject):
         elif isinstance(found, _SharperAgreement):
             self._page.show_sharper(found.pages)
 
-    def _on_sharper_wanted(self) -> None:
+    def _on_sharper_required(self) -> None:
         if self._study is not None and self._session is not None and self._background.is_idle:
             self._background.start(_drawing(self._study, self._session, self._page.sheets.ppi))
 
@@ -117,7 +117,7 @@ class AgreementController(QObject):
         _log.error("a reference was not compared", exc_info=error)
         self._page.show_refused(tr("The reference could not be compared."), tr("See the log for details."))
 
-    def _on_save_wished(self) -> None:
+    def _on_save_requested(self) -> None:
         if self._study is None or self._session is None:
             return
         name = session_name(self._session.patient.code, self._session.started, WHAT)

@@ -28,15 +28,15 @@ class AgreementPage(Themed):
     -------
     closed
         Back to the results.
-    reference_wished
+    reference_requested
         Files of an optical system are to be chosen.
-    save_wished
+    save_requested
         PDF and tables as files.
     """
 
     closed = Signal()
-    reference_wished = Signal()
-    save_wished = Signal()
+    reference_requested = Signal()
+    save_requested = Signal()
 
     def __init__(self, look: ThemeNotifier) -> None:
         super().__init__()
@@ -64,9 +64,9 @@ class AgreementPage(Themed):
         self._column.addLayout(self._head)
         self._column.addWidget(self._stack, 1)
         self.back.clicked.connect(self.closed)
-        self.choose.clicked.connect(self.reference_wished)
-        self.waiting.pressed.connect(self.reference_wished)
-        self.save.clicked.connect(self.save_wished)
+        self.choose.clicked.connect(self.reference_requested)
+        self.waiting.pressed.connect(self.reference_requested)
+        self.save.clicked.connect(self.save_requested)
         self.show_nothing()
         self._on_look_changed()
 
@@ -89,8 +89,8 @@ class AgreementPage(Themed):
 
     def show_pages(self, pages: Sequence[bytes], left_over: Sequence[str]) -> None:
         """Show pages, each a PNG; `left_over` are walks and trials that found no partner."""
-        said = tr("Not compared, no matching recording: {names}.").format(names=", ".join(left_over))
-        self.note.setText(said if left_over else "")
+        stated = tr("Not compared, no matching recording: {names}.").format(names=", ".join(left_over))
+        self.note.setText(stated if left_over else "")
         self.sheets.show_pages([Sheet(page) for page in pages])
         self.choose.show()
         self.save.show()

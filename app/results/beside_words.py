@@ -1,4 +1,4 @@
-"""A walk against what stands beside it, in the answer's table and key figures."""
+"""A walk against what is beside it, in the answer's table and key figures."""
 
 from collections.abc import Sequence
 from dataclasses import replace
@@ -11,7 +11,7 @@ from app.results.compared_words import (
     error_in_figures,
     is_judged,
     largest_sentence,
-    why_not_told,
+    why_not_reported,
 )
 from app.summary.answer import Answer, Outcome
 from app.summary.comparison import Compared, Comparison
@@ -51,40 +51,40 @@ def beside_columns(found: Comparison) -> list[TableColumn]:
 
 
 def beside_rows(found: Comparison) -> list[TableRow]:
-    """What differs by most errors first, then what is not judged, then what may not be told."""
-    ordered = sorted(found.rows, key=lambda row: (not row.is_told, not is_judged(row), -row.difference.ratio))
+    """What differs by most errors first, then what is not judged, then what may not be reported."""
+    ordered = sorted(found.rows, key=lambda row: (not row.is_reported, not is_judged(row), -row.difference.ratio))
     return [_row(row) for row in ordered]
 
 
 def key_figures_beside(figures: Sequence[KeyFigure], found: Comparison) -> list[KeyFigure]:
     """The walk's key figures, each with its change and what that is worth in place of its band."""
-    told = []
+    reported = []
     for figure in figures:
         rows = [row for row in found.rows if row.measure.column == figure.key]
         if figure.value == NOTHING or not rows:
-            told.append(figure)
+            reported.append(figure)
             continue
         note = ", ".join(_in_short(row) for row in rows)
         words = tr("{name}: {value}, {change} versus {walk}.").format(
             name=figure.name, value=f"{figure.value} {figure.unit}".strip(), change=note, walk=found.against.name
         )
-        told.append(replace(figure, note=note, words=words))
-    return told
+        reported.append(replace(figure, note=note, words=words))
+    return reported
 
 
 def answer_beside(found: Comparison) -> Answer:
     """What differs by most errors as a sentence, or that nothing does; the legs' answer is of this walk alone."""
     walk = found.against.name
-    told = [row for row in found.rows if is_judged(row)]
-    worth = [row for row in told if row.difference.is_worth_a_sentence]
+    reported = [row for row in found.rows if is_judged(row)]
+    worth = [row for row in reported if row.difference.is_worth_a_sentence]
     if worth:
         most = max(worth, key=lambda row: row.difference.ratio)
         first = difference_sentence(most, tr("in this walk"), tr("in {part}").format(part=walk))
         return Answer(Outcome.DIFFERS, first, beyond_sentence(most))
-    if not told:
+    if not reported:
         return Answer(Outcome.OPEN, tr("Nothing can be compared with {walk}.").format(walk=walk), "")
-    most = max(told, key=lambda row: row.difference.ratio)
-    if any(row.exceeds for row in told):
+    most = max(reported, key=lambda row: row.difference.ratio)
+    if any(row.exceeds for row in reported):
         first = tr("Some changes from {walk} are beyond measurement error, none clearly.")
         if most.difference.is_borrowed:
             first = tr("Some changes from {walk} are beyond an error borrowed from another joint.")
@@ -96,8 +96,8 @@ def answer_beside(found: Comparison) -> Answer:
 
 def _in_short(row: Compared) -> str:
     """The change of the walk with its verdict; of one leg, which has two beside one another, without it."""
-    if not row.is_told:
-        return why_not_told(row)
+    if not row.is_reported:
+        return why_not_reported(row)
     change = change_in_words(row.difference.difference, row.measure)
     leg = "" if row.measure.is_of_walk else row.side.letter
     return " ".join(filter(None, [leg, change, "" if leg else in_words(row.difference.judgement)]))
@@ -110,7 +110,7 @@ def _row(row: Compared) -> TableRow:
     who = name if measure.is_of_walk else f"{row.side.letter} {name}"
     values = [value_cell(*part.figure(measure, row.side), measure.decimals) for part in (row.part, row.against)]
     heads = (tr("this walk"), row.against.name)
-    change = change_in_words(found.difference, measure) if row.is_told else ""
+    change = change_in_words(found.difference, measure) if row.is_reported else ""
     return TableRow(
         (
             EMPTY if measure.is_of_walk else TextCell(side=row.side, spoken=side_name(row.side)),
@@ -126,7 +126,7 @@ def _row(row: Compared) -> TableRow:
             _strip(row),
             TextCell(_error(row), align=RIGHT, tone="ink2"),
             TextCell(
-                in_words(found.judgement) if row.is_told else why_not_told(row),
+                in_words(found.judgement) if row.is_reported else why_not_reported(row),
                 size=12,
                 weight=weight,
                 tone="ink" if row.exceeds else "ink2",
@@ -137,7 +137,7 @@ def _row(row: Compared) -> TableRow:
 
 def _strip(row: Compared) -> TableCell:
     found = row.difference
-    if not row.is_told:
+    if not row.is_reported:
         return TextCell(tr("difference not reported"), align=CENTRE, size=12, tone="ink2")
     if not is_judged(row):
         word = tr("too few strides") if found.judgement is Judgement.TOO_FEW_STRIDES else tr("no published error")

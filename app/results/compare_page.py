@@ -16,12 +16,12 @@ from app.results.compared_words import (
     conclusion,
     days_of,
     error_in_words,
+    not_reported_in_words,
     part_in_words,
     sentence,
     side_sentence,
     side_weight,
     weight_in,
-    withheld_in_words,
 )
 from app.summary.comparison import Comparison, Contrast, SideRow, compare_sides, first_and_second
 from app.summary.conditions import Part, left_out_of_parts
@@ -68,11 +68,11 @@ class ComparePage(Themed):
 
     Signals
     -------
-    visits_wished
-        The earlier visits are wanted, and not known yet: `show_visits` is to follow.
+    visits_requested
+        The earlier visits are required, and not known yet: `show_visits` is to follow.
     """
 
-    visits_wished = Signal()
+    visits_requested = Signal()
 
     def __init__(self, look: ThemeNotifier) -> None:
         super().__init__()
@@ -124,8 +124,8 @@ class ComparePage(Themed):
         self._affected, self._is_simulated = affected, analysis.is_simulated
         self._affected_words = tr("Left vs right")
         if affected is not None:
-            said = tr("Prosthetic vs sound side") if is_prosthetic else tr("Affected vs sound side")
-            self._affected_words = said
+            stated = tr("Prosthetic vs sound side") if is_prosthetic else tr("Affected vs sound side")
+            self._affected_words = stated
         self._offer_kinds()
 
     @property
@@ -134,7 +134,7 @@ class ComparePage(Themed):
         return self._has_visits
 
     def set_has_visits(self, has_visits: bool) -> None:
-        """Offer earlier visits, which `visits_wished` asks for."""
+        """Offer earlier visits, which `visits_requested` asks for."""
         self._has_visits = has_visits
         self._offer_kinds()
 
@@ -147,10 +147,10 @@ class ComparePage(Themed):
         """Ask for the earlier visits, if nobody did."""
         if self._visits is None and not self._is_reading:
             self._is_reading = True
-            self.visits_wished.emit()
+            self.visits_requested.emit()
 
     def show_visits(self, visits: Sequence[ComparedVisits], walked: str = "", every: Sequence[Part] = ()) -> None:
-        """Show the conditions that visits up to this one share; `walked` says which of them each visit has.
+        """Show the conditions that visits up to this one share; `walked` states which of them each visit has.
 
         `every`: all conditions of all visits, any two or more of which can be chosen.
         """
@@ -214,12 +214,12 @@ class ComparePage(Themed):
         self._words = QWidget()
         self._head = QHBoxLayout(self._words)
         self._head.setContentsMargins(0, 0, 0, 0)
-        self._told = QVBoxLayout()
-        self._told.addWidget(self.conclusion)
-        self._told.addWidget(self.error)
-        self._told.addStretch(1)
+        self._reported = QVBoxLayout()
+        self._reported.addWidget(self.conclusion)
+        self._reported.addWidget(self.error)
+        self._reported.addStretch(1)
         self._head.addWidget(self._mark, 0, Qt.AlignmentFlag.AlignTop)
-        self._head.addLayout(self._told, 1)
+        self._head.addLayout(self._reported, 1)
         self._columns = QHBoxLayout()
         self._columns.addWidget(self._charts, 1)
         self._columns.addWidget(self.card)
@@ -238,7 +238,7 @@ class ComparePage(Themed):
                 shortcut.activated.connect(partial(self.choose_pair, digit - 1, is_second=is_second))
 
     def _place_words(self) -> None:
-        """Put what is said over all of the page, or, where that is low, into the card, which scrolls."""
+        """Put what is stated over all of the page, or, where that is low, into the card, which scrolls."""
         if self._is_compact:
             self.card.begin_with(self._words)
         else:
@@ -282,8 +282,8 @@ class ComparePage(Themed):
         if self._has_visits and not self._visits:
             self.kinds.addItem(tr("Visits"), Contrast.VISITS)
         for number, visits in enumerate(self._visits or ()):  # the first keeps the data of them all
-            said = tr("Visits, {condition}").format(condition=condition_in_words(visits.condition))
-            self.kinds.addItem(said, f"{Contrast.VISITS} {number}" if number else Contrast.VISITS)
+            stated = tr("Visits, {condition}").format(condition=condition_in_words(visits.condition))
+            self.kinds.addItem(stated, f"{Contrast.VISITS} {number}" if number else Contrast.VISITS)
         if len(self._every) > 1:
             self.kinds.addItem(tr("Any visits and conditions"), Contrast.CHOSEN)
         self.kinds.addItem(self._affected_words, Contrast.SIDES)
@@ -354,7 +354,7 @@ class ComparePage(Themed):
     def choose_pair(self, number: int, *, is_second: bool) -> None:
         """Show two alone: the one of this number from 0 against the one it was changed from, or the first.
 
-        `is_second`: it is the one that what is shown stands against.
+        `is_second`: it is the one that what is shown is against.
         """
         parts = self._parts()
         if self.kind is Contrast.SIDES or not 0 <= number < len(parts) or len(parts) < 2:
@@ -402,30 +402,32 @@ class ComparePage(Themed):
         for (side, kind), frame in self.frames.items():
             joint = kind.of(side)
             worn = [part for part in chosen if joint in part.joints]
-            is_about_mean = not all(part.verdicts.joint(joint).height.is_told for part in worn if part.is_drawn(joint))
+            is_about_mean = not all(
+                part.verdicts.joint(joint).height.is_reported for part in worn if part.is_drawn(joint)
+            )
             is_about_mean |= len(worn) > 1 and not found.has_one_zero(joint)
             drawn = [part.curve(joint, is_about_mean=is_about_mean) for part in worn]
             is_beside_band = curves is not None and side in sides
             frame.chart.band = Band(*curves.mean_and_sd_deg(kind)) if curves is not None and is_beside_band else None
             notes = [tr(OTHER_ZERO)] if is_about_mean else []
-            notes += [withheld_in_words(part, joint) for part in worn if not part.is_drawn(joint)]
+            notes += [not_reported_in_words(part, joint) for part in worn if not part.is_drawn(joint)]
             frame.show_curves(drawn, " ".join(notes), self._is_simulated, is_about_mean=is_about_mean)
             frame.setVisible(side in found.sides and (kind is not JointKind.HIP or has_hips))
         visits = self._of_visits
         pattern = tr("Change from {letter}") if visits is None else tr("Change from {letter}, {condition}")
         condition = "" if visits is None else condition_in_words(visits.condition)
         title = pattern.format(letter=found.against.letter, condition=condition)
-        told = [row for row in found.changes if row.is_told]
+        reported = [row for row in found.changes if row.is_reported]
         is_borrowed = any(found.error_kind(part) is not ComparisonKind.ATTACHED for part in found.others)
         is_borrowed &= any(joint.kind is JointKind.ANKLE for joint in found.joints)
-        self.error.setText(error_in_words([row.difference for row in told], is_borrowed=is_borrowed))
-        worth = [sentence(row) for row in sorted(told, key=weight_in(found)) if row.difference.is_worth_a_sentence]
+        self.error.setText(error_in_words([row.difference for row in reported], is_borrowed=is_borrowed))
+        worth = [sentence(row) for row in sorted(reported, key=weight_in(found)) if row.difference.is_worth_a_sentence]
         latest = found.latest if self.kind is Contrast.VISITS else None
-        said = conclusion(worth, told, latest) if found.others else []
+        stated = conclusion(worth, reported, latest) if found.others else []
         if visits is not None and visits.without:
             without = tr("Not compared, no walk in this condition: {visits}.")
-            said.append(without.format(visits=", ".join(visits.without)))
-        self._say(said, chosen, is_marked=bool(worth))
+            stated.append(without.format(visits=", ".join(visits.without)))
+        self._say(stated, chosen, is_marked=bool(worth))
         self.card.show_comparison(found, title, self.conclusion.text())
 
     def _show_sides(self) -> None:
@@ -442,14 +444,14 @@ class ComparePage(Themed):
         verdicts = {joint: part.verdicts.joint(joint) for joint in part.joints}
         self.side_charts.show_cycles(cycles, verdicts, self._is_simulated)
         self._fit_side_charts()
-        told = [row for row in self.side_rows if row.is_told]
-        differences = [row.difference for row in told]
+        reported = [row for row in self.side_rows if row.is_reported]
+        differences = [row.difference for row in reported]
         self.error.setText(
             error_in_words(differences, is_borrowed=any(joint.kind is JointKind.ANKLE for joint in part.joints))
         )
-        worth = [row for row in sorted(told, key=side_weight) if row.difference.is_worth_a_sentence]
-        said = conclusion([side_sentence(row, first, second) for row in worth], told)
-        self._say(said, parts[:1], is_marked=bool(worth))
+        worth = [row for row in sorted(reported, key=side_weight) if row.difference.is_worth_a_sentence]
+        stated = conclusion([side_sentence(row, first, second) for row in worth], reported)
+        self._say(stated, parts[:1], is_marked=bool(worth))
         title = f"{self._affected_words}: {first.letter} {MINUS} {second.letter}"
         self.card.show_sides(self.side_rows, first, second, title, self.conclusion.text())
 
@@ -468,9 +470,9 @@ class ComparePage(Themed):
             return None, frozenset()
         return bands_of(part, self._who).curves, sides_with_band(part)
 
-    def _say(self, said: Sequence[str], parts: Sequence[Part], *, is_marked: bool) -> None:
+    def _say(self, stated: Sequence[str], parts: Sequence[Part], *, is_marked: bool) -> None:
         by_hand = left_out_of_parts(parts)
-        self.conclusion.setText(" ".join([*said, by_hand] if by_hand else said))
+        self.conclusion.setText(" ".join([*stated, by_hand] if by_hand else stated))
         self._mark.setVisible(is_marked)
 
     def _on_look_changed(self) -> None:
@@ -478,5 +480,5 @@ class ComparePage(Themed):
         for layout in (self._page, self._columns, self._left, self._head):
             layout.setSpacing(px(12))
         self._grid.setSpacing(px(12))
-        self._told.setSpacing(px(4))
+        self._reported.setSpacing(px(4))
         self.card.fit(is_alone=self._charts.isHidden())

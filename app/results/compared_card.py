@@ -51,19 +51,19 @@ class ComparedCard(Card):
         self.column.addWidget(self.area, 1)
         self.all_measures.toggled.connect(self._show_table)
 
-    def show_comparison(self, found: Comparison, title: str, told: str) -> None:
-        """Show what changed between parts; `told` are the sentences about it."""
+    def show_comparison(self, found: Comparison, title: str, reported: str) -> None:
+        """Show what changed between parts; `reported` are the sentences about it."""
         self._found = found
         groups = comparison_groups(found, is_brief=not self._is_spacious)
-        self._say(title, told)
-        self.plot.show_groups(groups, title, told)
+        self._say(title, reported)
+        self.plot.show_groups(groups, title, reported)
         self._show_table()
 
-    def show_sides(self, rows: Sequence[SideRow], first: Side, second: Side, title: str, told: str) -> None:
+    def show_sides(self, rows: Sequence[SideRow], first: Side, second: Side, title: str, reported: str) -> None:
         """Show what the legs differ in."""
         self._found = None
-        self._say(title, told)
-        self.plot.show_groups(side_groups(rows, first, is_brief=not self._is_spacious), title, told)
+        self._say(title, reported)
+        self.plot.show_groups(side_groups(rows, first, is_brief=not self._is_spacious), title, reported)
         self.table.show_rows(*side_table(rows, first, second))
 
     def set_room(self, is_compact: bool, is_spacious: bool) -> None:
@@ -90,9 +90,9 @@ class ComparedCard(Card):
         self.setMinimumWidth(0 if is_alone else needed)
         self.setMaximumWidth(WIDEST if is_alone else needed)
 
-    def _say(self, title: str, told: str) -> None:
+    def _say(self, title: str, reported: str) -> None:
         self.title.setText(title)
-        self.table.setAccessibleDescription(told)
+        self.table.setAccessibleDescription(reported)
 
     def _show_table(self) -> None:
         if self._found is not None:

@@ -1,10 +1,10 @@
-"""A comparison as dots over the grey of their error: which measures have a row, and what stands in it."""
+"""A comparison as dots over the grey of their error: which measures have a row, and what is in it."""
 
 import math
 from collections.abc import Sequence
 
 from app.plots.difference_plot import DifferenceGroup, DifferenceRow, Dot
-from app.results.compared_words import BRIEF, change_in_words, why_not_told
+from app.results.compared_words import BRIEF, change_in_words, why_not_reported
 from app.summary.comparison import Compared, Comparison, SideRow
 from app.summary.measures import Measure
 from app.wording.translation import tr
@@ -40,18 +40,18 @@ def _is_drawn(measure: Measure, *, is_brief: bool) -> bool:
 
 
 def _row(side: Side, rows: Sequence[Compared]) -> DifferenceRow:
-    told = [row for row in rows if row.is_told]
-    dots = tuple(Dot(row.part.letter, row.difference.difference, row.exceeds) for row in told)
-    if not told:
-        return DifferenceRow(side, why_not_told(rows[-1]), (), math.nan)
-    last = told[-1]
+    reported = [row for row in rows if row.is_reported]
+    dots = tuple(Dot(row.part.letter, row.difference.difference, row.exceeds) for row in reported)
+    if not reported:
+        return DifferenceRow(side, why_not_reported(rows[-1]), (), math.nan)
+    last = reported[-1]
     words = f"{last.part.letter} {change_in_words(last.difference.difference, last.measure)}"
     return DifferenceRow(side, words, dots, last.difference.error)
 
 
 def _row_of_sides(row: SideRow, first: Side) -> DifferenceRow:
-    if not row.is_told:
-        return DifferenceRow(None, why_not_told(row), (), row.difference.error)
+    if not row.is_reported:
+        return DifferenceRow(None, why_not_reported(row), (), row.difference.error)
     found = row.difference
     dot = Dot(first.letter, found.difference, row.exceeds)
     return DifferenceRow(None, change_in_words(found.difference, row.measure), (dot,), found.error)

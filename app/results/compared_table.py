@@ -36,27 +36,27 @@ def comparison_table(found: Comparison, most_visits: int, *, is_brief: bool = Fa
     Parameters
     ----------
     most_visits
-        As many have a column of their own: that which all are told against, and the latest ones. Trends have all.
+        As many have a column of their own: that which all are reported against, and the latest ones. Trends have all.
     is_brief
         Without the measures that say much the same as others, unless a change of theirs exceeds its error.
     """
     rows: dict[tuple[str, Side], list[Compared]] = {}
     for row in sorted(found.changes, key=lambda row: WALK_FIRST.get(row.measure.column, len(WALK_FIRST))):
         rows.setdefault((row.measure.column, row.side), []).append(row)
-    told = _told_briefly(found)
+    reported = _reported_briefly(found)
     shown = _shown(found, most_visits)
     heads = _heads(found, shown)
     lines = [
         _comparison_row(found, shown, compared, [head.text for head in heads])
         for (column, _), compared in rows.items()
-        if not is_brief or column in told
+        if not is_brief or column in reported
     ]
     return _columns(heads, has_sides=True), lines
 
 
 def has_brief_table(found: Comparison) -> bool:
     """Whether the brief table is without some measures."""
-    return len(_told_briefly(found)) < len({row.measure.column for row in found.changes})
+    return len(_reported_briefly(found)) < len({row.measure.column for row in found.changes})
 
 
 def side_table(rows: Sequence[SideRow], first: Side, second: Side) -> TableOfParts:
@@ -67,11 +67,11 @@ def side_table(rows: Sequence[SideRow], first: Side, second: Side) -> TableOfPar
 
 
 def head_cell(words: str, small: str = "", spoken: str = "") -> TextCell:
-    """What stands over a column of figures."""
+    """What is over a column of figures."""
     return TextCell(words, small, align=RIGHT, size=12, tone="ink2", spoken=spoken)
 
 
-def _told_briefly(found: Comparison) -> set[str]:
+def _reported_briefly(found: Comparison) -> set[str]:
     """The columns of the measures in a brief table."""
     marked = {row.measure.column for row in found.changes if row.exceeds}
     agreed = {goal.column for part in found.parts for goal in part.agreed.held}
@@ -87,7 +87,7 @@ def _shown(found: Comparison, most_visits: int) -> list[Part]:
 
 
 def _heads(found: Comparison, shown: Sequence[Part]) -> list[TextCell]:
-    """Between visits each has its day, and one change is told: that to the latest."""
+    """Between visits each has its day, and one change is reported: that to the latest."""
     is_of_visits = found.kind is Contrast.VISITS
     each = zip(shown, days_of(shown), strict=True)
     heads = [head_cell(part.letter, day if is_of_visits else "") for part, day in each]
@@ -122,18 +122,18 @@ def _goals(row: Compared) -> str:
 
 def _agreed(row: Compared) -> tuple[Goal, ...]:
     """The goals of a leg, or of the walk."""
-    wanted = GoalOf.WALK if row.measure.is_of_walk else GoalOf(row.side.value)
-    return tuple(goal for goal in row.part.agreed.held if goal.key == (row.measure.column, wanted))
+    required = GoalOf.WALK if row.measure.is_of_walk else GoalOf(row.side.value)
+    return tuple(goal for goal in row.part.agreed.held if goal.key == (row.measure.column, required))
 
 
 def _trend_cell(found: Comparison, row: Compared) -> TrendCell:
     trend = trend_of(found, row)
     each = zip(found.parts, trend.values, strict=True)
-    said = ", ".join(f"{part.letter} {fixed(value, row.measure.decimals)}" for part, value in each)
+    stated = ", ".join(f"{part.letter} {fixed(value, row.measure.decimals)}" for part, value in each)
     side = None if row.measure.is_of_walk else row.side
     goals = tuple(goal.value for goal in _agreed(row))
     low, high = (pick((edge, *goals)) for pick, edge in zip((min, max), trend.edges, strict=True))
-    return TrendCell(trend.places, trend.values, (low, high), trend.band, side, said, goals)
+    return TrendCell(trend.places, trend.values, (low, high), trend.band, side, stated, goals)
 
 
 def side_table_row(row: SideRow, heads: Sequence[str]) -> TableRow:
@@ -148,15 +148,15 @@ def side_table_row(row: SideRow, heads: Sequence[str]) -> TableRow:
 def _table_row(
     name: str, side: Side | None, heads: Sequence[str], cells: Sequence[TextCell | TrendCell], small: str = ""
 ) -> TableRow:
-    """A row whose cells say which leg, measure and part they are of, for who hears one cell at a time."""
+    """A row whose cells say which leg, measure and part they are of, for who receives one cell at a time."""
     chip = EMPTY if side is None else TextCell(side=side, spoken=side_name(side))
     who = name if side is None else f"{side.letter} {name}"
-    said = (replace(cell, spoken=f"{who}, {head}: {cell.said}") for head, cell in zip(heads, cells, strict=True))
-    return TableRow((chip, TextCell(name, small), *said))
+    stated = (replace(cell, spoken=f"{who}, {head}: {cell.stated}") for head, cell in zip(heads, cells, strict=True))
+    return TableRow((chip, TextCell(name, small), *stated))
 
 
 def _figure(value: str, small: str = "", *, is_marked: bool = False, is_grey: bool = False) -> TextCell:
-    """A value and what stands smaller behind it; marked: beyond the error; grey: not to be relied on."""
+    """A value and what is smaller behind it; marked: beyond the error; grey: not to be relied on."""
     return TextCell(
         value,
         small,
@@ -169,9 +169,9 @@ def _figure(value: str, small: str = "", *, is_marked: bool = False, is_grey: bo
 
 
 def value_cell(value: MeanAndSd, verdict: Verdict, decimals: int, *, has_spread: bool = True) -> TextCell:
-    """A mean with its spread, grey from few strides; where it may not be told, that alone."""
-    if verdict is Verdict.WITHHELD:
-        return TextCell(small=verdict_word(verdict), align=RIGHT, mark=Icon.WITHHELD)
+    """A mean with its spread, grey from few strides; where it may not be reported, that alone."""
+    if verdict is Verdict.NOT_REPORTED:
+        return TextCell(small=verdict_word(verdict), align=RIGHT, mark=Icon.NOT_REPORTED)
     if not value.n:
         return _figure(NOTHING, is_grey=True)
     spread = f"± {fixed(value.sd, decimals)}" if has_spread and is_spread_enough(value.n) else ""
@@ -180,8 +180,8 @@ def value_cell(value: MeanAndSd, verdict: Verdict, decimals: int, *, has_spread:
 
 
 def _changed(row: Compared | SideRow, against: Part | None = None) -> TextCell:
-    """A difference; where it is not told against the part that the others are, that is said beside it."""
-    if not row.is_told:
+    """A difference; where it is not reported against the part that the others are, that is stated beside it."""
+    if not row.is_reported:
         return _figure(NOTHING, is_grey=True)  # the values beside it say why
     words = change_in_words(row.difference.difference, row.measure)
     doubt = _doubt(row.difference)

@@ -1,11 +1,12 @@
-"""How is a comparison told? Its parts, its figures, a sentence for what lies beyond the error, and what that holds."""
+"""How is a comparison reported? Its parts, its figures, a sentence for what lies beyond the error, and what that
+holds."""
 
 from collections.abc import Callable, Sequence
 
 from app.summary.comparison import Compared, Comparison, Reservation, SideRow
 from app.summary.conditions import Part
 from app.summary.error_sources import sources_in_words
-from app.summary.measure_sentences import Told, change_sentence, legs_sentence, who_in_sentence
+from app.summary.measure_sentences import Reported, change_sentence, legs_sentence, who_in_sentence
 from app.summary.measures import Measure
 from app.summary.numbers_in_words import DAGGER, NOTHING, fixed, signed
 from app.summary.walk_figures import reason_in_words
@@ -20,7 +21,7 @@ from core.verdicts.model import Verdict
 
 BRIEF = ("knee_stance_to_swing_deg", "knee_while_loading_deg", "ankle_push_off_deg", "stance_percent")
 JUDGED = (Judgement.EXCEEDS_ERROR, Judgement.INSIDE_ERROR)
-MOST_SAID = 3  # sentences about differences; the table has all of them
+MOST_STATED = 3  # sentences about differences; the table has all of them
 
 ERROR = later("Grey: measurement error. It includes {sources}.")
 BORROWED = later("The ankle uses the knee's error figure.")
@@ -46,13 +47,13 @@ def change_in_words(value: float, measure: Measure) -> str:
 
 
 def unit_behind(measure: Measure) -> str:
-    """As it stands behind a figure."""
+    """As it is behind a figure."""
     return measure.unit if measure.unit == "°" else f"\N{NO-BREAK SPACE}{tr(measure.unit)}"
 
 
 def is_judged(row: Compared | SideRow) -> bool:
     """Whether it is known to be larger than its error or inside it."""
-    return row.is_told and row.difference.judgement in JUDGED
+    return row.is_reported and row.difference.judgement in JUDGED
 
 
 def error_in_figures(row: Compared | SideRow) -> str:
@@ -67,25 +68,25 @@ def error_in_sentence(row: Compared | SideRow) -> str:
     return figures + (DAGGER if row.difference.is_unverified else "")
 
 
-def why_not_told(row: Compared | SideRow) -> str:
+def why_not_reported(row: Compared | SideRow) -> str:
     """Why a difference has no figure."""
     if isinstance(row, Compared) and row.reservation is Reservation.OTHER_ZERO:
         return tr("no standing reference")
-    withheld = isinstance(row, Compared) and row.reservation is Reservation.WITHHELD
-    is_withheld = withheld or row.difference.judgement is Judgement.WITHHELD
-    if not is_withheld and row.difference.judgement is Judgement.NO_PUBLISHED_FIGURE:
+    not_reported = isinstance(row, Compared) and row.reservation is Reservation.NOT_REPORTED
+    is_not_reported = not_reported or row.difference.judgement is Judgement.NOT_REPORTED
+    if not is_not_reported and row.difference.judgement is Judgement.NO_PUBLISHED_FIGURE:
         return tr("not compared")
-    return verdict_word(Verdict.WITHHELD) if is_withheld else tr("no value")
+    return verdict_word(Verdict.NOT_REPORTED) if is_not_reported else tr("no value")
 
 
-def withheld_in_words(part: Part, joint: Joint) -> str:
+def not_reported_in_words(part: Part, joint: Joint) -> str:
     """Why a part's curve is not drawn."""
     pattern = tr("{letter}: not reported. {reason}")
     return pattern.format(letter=part.letter, reason=reason_in_words(part.verdicts.joint(joint)))
 
 
 def weight_in(found: Comparison) -> Callable[[Compared], tuple[int, float]]:
-    """What is said first: of the latest part what lies furthest beyond the error."""
+    """What is stated first: of the latest part what lies furthest beyond the error."""
     return lambda row: (-found.parts.index(row.part), -row.difference.ratio)
 
 
@@ -101,8 +102,8 @@ def sentence(row: Compared) -> str:
 def difference_sentence(row: Compared, now: str, before: str) -> str:
     """What a measure is in a part, and by how much it differs; `now` and `before` say where, as "in B"."""
     who = who_in_sentence(row.measure.column, row.side)
-    told = Told(now, row.value.mean), Told(before, row.other.mean)
-    return change_sentence(row.measure.column, who, row.difference.difference, *told)
+    reported = Reported(now, row.value.mean), Reported(before, row.other.mean)
+    return change_sentence(row.measure.column, who, row.difference.difference, *reported)
 
 
 def _where(part: Part) -> str:
@@ -122,21 +123,21 @@ def side_sentence(row: SideRow, first: Side, second: Side) -> str:
     return f"{legs_sentence(row.measure.column, row.difference, legs, values)} {beyond_sentence(row)}"
 
 
-def conclusion(worth: Sequence[str], told: Sequence[Compared | SideRow], latest: Part | None = None) -> list[str]:
+def conclusion(worth: Sequence[str], reported: Sequence[Compared | SideRow], latest: Part | None = None) -> list[str]:
     """The sentences that are worth it; without one, whether any difference exceeds its error, and the largest.
 
     Parameters
     ----------
-    told
+    reported
         The rows that the table shows; of no others anything is reported.
     latest
         The visit that all of them lead to; None: they are those of any parts.
     """
-    if len(worth) > MOST_SAID:
-        return [*worth[:MOST_SAID], tr("The table shows all of them.")]
+    if len(worth) > MOST_STATED:
+        return [*worth[:MOST_STATED], tr("The table shows all of them.")]
     if worth:
         return list(worth)
-    judged = [row for row in told if is_judged(row)]
+    judged = [row for row in reported if is_judged(row)]
     most = max(judged, key=lambda row: row.difference.ratio, default=None)
     if most is None:
         none = tr("The differences could not be judged.")
@@ -152,8 +153,8 @@ def conclusion(worth: Sequence[str], told: Sequence[Compared | SideRow], latest:
     else:
         none = tr("Some differences are beyond measurement error, none clearly. The table marks them.")
         of_visit = tr("Some changes to visit {visit} are beyond measurement error, none clearly. The table marks them.")
-    said = none if latest is None else of_visit.format(visit=latest.letter)
-    return [said] if most is None else [said, largest_sentence(most)]
+    stated = none if latest is None else of_visit.format(visit=latest.letter)
+    return [stated] if most is None else [stated, largest_sentence(most)]
 
 
 def largest_sentence(row: Compared | SideRow) -> str:
@@ -162,16 +163,16 @@ def largest_sentence(row: Compared | SideRow) -> str:
     if isinstance(row, Compared) and not row.measure.is_of_walk:
         measure = tr("{side} {measure}").format(side=side_name(row.side), measure=measure)
     change = signed(row.difference.difference, row.measure.decimals) + unit_behind(row.measure)
-    said = tr("Largest: {measure} {change} (±{error}).")
-    return said.format(measure=measure, change=change, error=error_in_sentence(row))
+    stated = tr("Largest: {measure} {change} (±{error}).")
+    return stated.format(measure=measure, change=change, error=error_in_sentence(row))
 
 
-def error_in_words(told: Sequence[Difference], *, is_borrowed: bool) -> str:
+def error_in_words(reported: Sequence[Difference], *, is_borrowed: bool) -> str:
     """What the error contains, and what of it is not to be relied on."""
-    judged = [found for found in told if found.error > 0]
+    judged = [found for found in reported if found.error > 0]
     if not judged:
         return ""
-    said = [tr(ERROR).format(sources=sources_in_words(judged))]
-    said += [tr(BORROWED)] if is_borrowed else []
-    said += [tr(UNVERIFIED)] if any(found.is_unverified for found in judged) else []
-    return " ".join(said)
+    stated = [tr(ERROR).format(sources=sources_in_words(judged))]
+    stated += [tr(BORROWED)] if is_borrowed else []
+    stated += [tr(UNVERIFIED)] if any(found.is_unverified for found in judged) else []
+    return " ".join(stated)

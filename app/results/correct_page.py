@@ -1,4 +1,4 @@
-"""What was said or found wrongly, and is put right after the fact: conditions, what counts, signs and sides."""
+"""What was stated or found wrongly, and is put right after the fact: conditions, what counts, signs and sides."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -21,7 +21,7 @@ from core.body import Joint
 
 @dataclass(frozen=True, slots=True)
 class WalkLine:
-    """One walk; `note` says when it was and what it holds."""
+    """One walk; `note` states when it was and what it holds."""
 
     key: str
     name: str
@@ -32,7 +32,7 @@ class WalkLine:
 
 @dataclass(frozen=True, slots=True)
 class JointLine:
-    """One joint; `note` says what is known of its sign."""
+    """One joint; `note` states what is known of its sign."""
 
     joint: Joint
     is_turned: bool
@@ -40,7 +40,7 @@ class JointLine:
 
 
 class CorrectPage(Themed):
-    """Each correction is told at once; the page is shown what came of it.
+    """Each correction is reported at once; the page is shown what came of it.
 
     Signals
     -------
@@ -113,8 +113,8 @@ class CorrectPage(Themed):
     def show_sides(self, why_not: str) -> None:
         """Offer to swap the sides, or say why that is not possible here."""
         self.swap.setEnabled(not why_not)
-        said = tr("Swaps left and right in all recordings of this visit and analyses them again.")
-        self.swap_note.setText(why_not or said)
+        stated = tr("Swaps left and right in all recordings of this visit and analyses them again.")
+        self.swap_note.setText(why_not or stated)
 
     def set_room(self, width: float, _height: float) -> None:
         is_narrow = width < 940

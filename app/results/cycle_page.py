@@ -95,8 +95,8 @@ class CyclePage(QWidget):
         of_joints = peak_figures(part, curves)
         of_hips = _under_heads({**of_joints, **pelvis_figures(part)}, HIP_KINDS)
         rows = _under_heads(of_joints, LEG_KINDS)
-        told = " ".join(strides_in_words(part, side) for side in part.sides)
-        reasons = [told, few_strides_in_words(part), *_why_withheld(part, joints)]
+        reported = " ".join(strides_in_words(part, side) for side in part.sides)
+        reasons = [reported, few_strides_in_words(part), *_why_not_reported(part, joints)]
         reasons += _care_in_words(rows)
         self.peaks.show_figures(rows, strides, " ".join(filter(None, reasons)))
         self.hips.show_figures(of_hips, strides, " ".join([*pelvis_in_words(part), *_care_in_words(of_hips)]))
@@ -107,8 +107,8 @@ class CyclePage(QWidget):
         self.by_hand.setText(" ".join(filter(None, [of_walks, by_hand])))
         only = _only_for(sides_of_band, part)
         group = _group_in_words(values, bands.why_no_values if sides_of_band else None)
-        said = [by_hand, group, only, *_care_in_words(figures)]
-        self.time_distance.show_figures(figures, strides, " ".join(filter(None, said)))
+        stated = [by_hand, group, only, *_care_in_words(figures)]
+        self.time_distance.show_figures(figures, strides, " ".join(filter(None, stated)))
         if curves is not None and any(joint.is_hip for joint in joints):
             only = " ".join(filter(None, [only, tr(HIP_BAND)]))
         self.band_words = band_in_words(bands, part.of_both("speed_m_s"), sides_of_band, only)
@@ -127,14 +127,14 @@ def _strides_deg(walk: Part, joint: Joint) -> FloatArray:
     return side_cycle(walk, joint).strides_deg if joint.side in walk.sides else np.empty((0, POINTS))
 
 
-def _why_withheld(part: Part, joints: Sequence[Joint]) -> list[str]:
-    """Why figures of the table are withheld, with what to do; what holds alike of several joints once."""
+def _why_not_reported(part: Part, joints: Sequence[Joint]) -> list[str]:
+    """Why figures of the table are not reported, with what to do; what holds alike of several joints once."""
     places: dict[str, list[str]] = {}
     for joint in joints:
         found = part.verdicts.joint(joint)
-        if found.height.verdict is Verdict.WITHHELD:
+        if found.height.verdict is Verdict.NOT_REPORTED:
             places.setdefault(reason_in_words(found), []).append(name_of(joint))
-    return [f"{capitalised(joined(names))}: {said}" for said, names in places.items()]
+    return [f"{capitalised(joined(names))}: {stated}" for stated, names in places.items()]
 
 
 def _care_in_words(rows: Sequence[str | Figure]) -> list[str]:
@@ -186,23 +186,23 @@ def _whose(bands: Bands, only: str) -> str:
         return tr(WHY_NO_BAND[bands.why_no_curves or NoBand.OTHER_SPEED])
     whose = tr("Reference: {count} {group}, {speed_m_s:.2f} m/s, {source}.")
     first, year = _authors(band.source).partition(",")[0], _authors(band.source).rpartition(" ")[2]
-    said = whose.format(count=band.n, group=tr(band.group), speed_m_s=band.speed_m_s, source=f"{first} {year}")
+    stated = whose.format(count=band.n, group=tr(band.group), speed_m_s=band.speed_m_s, source=f"{first} {year}")
     others = tr(OTHER_AGES) if bands.are_curves_of_other_ages else ""
-    return " ".join(filter(None, [said, others, only]))
+    return " ".join(filter(None, [stated, others, only]))
 
 
 def _group_in_words(group: ReferenceValues | None, why_none: NoBand | None) -> str:
     """Whose figures stand in the column of the band, or why there are none."""
     if group is None:
         return tr(WHY_NO_BAND[why_none]) if why_none is not None else tr(NO_SIDE)
-    told = tr("Reference: {count} of {group}; {speed_class} for leg length, {speed_m_s:.2f} m/s.")
-    said = told.format(
+    reported = tr("Reference: {count} of {group}; {speed_class} for leg length, {speed_m_s:.2f} m/s.")
+    stated = reported.format(
         count=group.n,
         group=tr(group.group),
         speed_class=tr(SPEED_WORDS[group.speed_class]),
         speed_m_s=group.speed_m_s,
     )
-    return f"{said} {_authors(group.source)}."
+    return f"{stated} {_authors(group.source)}."
 
 
 def _authors(source: str) -> str:

@@ -1,4 +1,4 @@
-"""What stands behind results: how a joint was found, and what an optical system measured. Each has a page of its own.
+"""What is behind results: how a joint was found, and what an optical system measured. Each has a page of its own.
 
 The pages and whoever fills them are made at the first time: most visits never ask.
 """
@@ -25,7 +25,7 @@ if TYPE_CHECKING:  # their imports take a second
 HOW_FOUND, AGREEMENT = "how-found", "agreement"  # what is exported, as the library's audit calls it
 
 
-class BehindResults(QObject):
+class DetailPages(QObject):
     """Two pages in the stack of whoever shows the results.
 
     Signals
@@ -110,7 +110,7 @@ class BehindResults(QObject):
                 page.focus()
 
     def set_room(self, width: float, height: float) -> None:
-        """Tell how much room there is, in px of the design."""
+        """Report how much room there is, in px of the design."""
         self._room = width, height
         if self.found is not None:
             self.found.set_room(width, height)

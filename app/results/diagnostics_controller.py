@@ -43,7 +43,7 @@ class DiagnosticsController(QObject):
         What could not be shown, and what follows.
     writing
         The folder that was chosen, and the call that writes the files into it: whoever shows the page knows on which
-        thread, and who must be told of an export.
+        thread, and who must be given of an export.
     """
 
     refused = Signal(str, str)
@@ -62,7 +62,7 @@ class DiagnosticsController(QObject):
         self._background.done.connect(self._on_done)
         self._background.failed.connect(self._on_failed)
         page.joint_chosen.connect(self._on_joint_chosen)
-        page.save_wished.connect(self._on_save_wished)
+        page.save_requested.connect(self._on_save_requested)
 
     def show(self, session: "Session", analysis: Analysis, recording: RecordingAnalysis) -> None:
         """Answer for a recording of a session: for the joint that was looked at last, else the first it holds."""
@@ -125,7 +125,7 @@ class DiagnosticsController(QObject):
         self._page.show_nothing(self._joint)
         self.refused.emit(tr("The calibration of this joint cannot be shown."), tr("See the log for details."))
 
-    def _on_save_wished(self) -> None:
+    def _on_save_requested(self) -> None:
         if self._found is None or self._session is None:
             return
         name = session_name("", "", WHAT)  # its files name no patient, so neither does their folder
@@ -161,7 +161,7 @@ def saved_from_library(
 
 
 def cannot_write(folder: Path) -> tuple[str, str]:
-    """What is said of a folder that takes no files."""
+    """What is stated about a folder that takes no files."""
     return tr("{folder} is not writable").format(folder=folder.name), tr(
         "Choose another folder; the recordings are unchanged"
     )

@@ -39,7 +39,7 @@ class DiffersCard(Card):
         self.column.addWidget(self.table)
 
     def show_facts(self, facts: Facts, found: Comparison | None = None) -> None:
-        """What the legs differ in, or else this walk and what it stands beside."""
+        """What the legs differ in, or else this walk and what it is beside."""
         if found is not None:
             self._columns, self._rows = beside_columns(found), beside_rows(found)
         else:
@@ -98,13 +98,13 @@ def _row(facts: Facts, row: LegsRow) -> TableRow:
     found, unit = row.difference, row.unit
     exceeds = found.exceeds
     weight = SEMIBOLD if exceeds else REGULAR
-    shown = signed(found.difference, row.decimals) if found.is_told else ""
-    said = tr("{measure}, difference: {difference}{unit}").format(measure=row.name, difference=shown, unit=unit)
+    shown = signed(found.difference, row.decimals) if found.is_reported else ""
+    stated = tr("{measure}, difference: {difference}{unit}").format(measure=row.name, difference=shown, unit=unit)
     cells: tuple[TableCell, ...] = (
         TextCell(row.name, " · ".join(map(goal_mark, row.goals)), weight=weight),
         *(_value(row, side) for side in Side),
         TextCell(
-            shown, align=RIGHT, weight=weight, mark=Icon.WARNING if exceeds else None, spoken=said if shown else ""
+            shown, align=RIGHT, weight=weight, mark=Icon.WARNING if exceeds else None, spoken=stated if shown else ""
         ),
         _strip(row),
         TextCell(_error(row), align=RIGHT, tone="ink2"),
@@ -117,9 +117,9 @@ def _row(facts: Facts, row: LegsRow) -> TableRow:
 def _value(row: LegsRow, side: Side) -> TextCell:
     """Bold where it can be read, regular where with care; else why there is none, behind a barred circle."""
     if side not in row.values:
-        is_withheld = row.verdicts[side] is Verdict.WITHHELD
+        is_not_reported = row.verdicts[side] is Verdict.NOT_REPORTED
         return TextCell(
-            row.unknown[side], align=RIGHT, size=12, tone="ink2", mark=Icon.WITHHELD if is_withheld else None
+            row.unknown[side], align=RIGHT, size=12, tone="ink2", mark=Icon.NOT_REPORTED if is_not_reported else None
         )
     value, verdict = row.values[side], row.verdicts[side]
     if not is_mean_enough(value.n):
@@ -128,16 +128,16 @@ def _value(row: LegsRow, side: Side) -> TextCell:
     is_care = verdict is Verdict.CARE
     small = f"{spread} {CARE_MARK}".strip() if is_care else spread
     mean = fixed(value.mean, row.decimals)
-    said = tr("{measure}, {side}: {value}{unit}").format(
+    stated = tr("{measure}, {side}: {value}{unit}").format(
         measure=row.name, side=side_name(side), value=f"{mean} {spread}".strip(), unit=row.unit
     )
-    said = tr("{said}, caution").format(said=said) if is_care else said
-    return TextCell(mean, small, align=RIGHT, weight=REGULAR if is_care else SEMIBOLD, spoken=said)
+    stated = tr("{stated}, caution").format(stated=stated) if is_care else stated
+    return TextCell(mean, small, align=RIGHT, weight=REGULAR if is_care else SEMIBOLD, spoken=stated)
 
 
 def _strip(row: LegsRow) -> TableCell:
     found = row.difference
-    if not found.is_told:
+    if not found.is_reported:
         return TextCell(tr("difference not reported"), align=CENTRE, size=12, tone="ink2")
     if not row.is_judged:
         word = tr("too few strides") if found.judgement is Judgement.TOO_FEW_STRIDES else tr("no published error")

@@ -1,4 +1,5 @@
-"""How was this found? The paper's Figures 3, 4 and 6 on this patient's recordings, each with what it says in words."""
+"""How was this found? The paper's Figures 3, 4 and 6 on this patient's recordings, each with what it states in
+words."""
 
 import math
 from collections.abc import Sequence
@@ -44,7 +45,7 @@ SIDE_BY_SIDE_FROM = 940  # what the first two pictures need beside each other
 MAPS_FROM = 500  # what both maps need beside each other
 WHOLE, TEN_SECONDS = "whole", "ten-seconds"
 CLOSE_S = 10.0
-MIN_APART = 0.2  # of how alike the curves are; less apart, this second tells no pairing
+MIN_APART = 0.2  # of how alike the curves are; less apart, this second reports no pairing
 
 
 class FoundPage(Themed):
@@ -56,13 +57,13 @@ class FoundPage(Themed):
         Back to the results.
     joint_chosen
         Another joint is asked for.
-    save_wished
+    save_requested
         The numbers behind the pictures, as files.
     """
 
     closed = Signal()
     joint_chosen = Signal(str)
-    save_wished = Signal()
+    save_requested = Signal()
 
     def __init__(self, look: ThemeNotifier) -> None:
         super().__init__()
@@ -83,7 +84,7 @@ class FoundPage(Themed):
         self._build()
         self.back.clicked.connect(self.closed)
         self.joints.chosen.connect(self.joint_chosen)
-        self.save.clicked.connect(self.save_wished)
+        self.save.clicked.connect(self.save_requested)
         self._on_look_changed()
 
     @property
@@ -273,9 +274,9 @@ class _AxisCard(Card):
             name.setText(sensor)
             chart.show_cost(cost, found.joint.side, calibration.axis_sd_rad, sensor)
         near, far = (figures[f"lowest_{sensor}_apart_deg"].in_words for sensor in ("proximal", "distal"))
-        said = tr("The axis in use lies {near} and {far} from the best fit. Calibration certainty: {axis_sd} (1 SD).")
-        said = said.format(near=near, far=far, axis_sd=figures["axis_sd_deg"].in_words)
-        self._verdict.setText(f"{said} {_why_apart(found)}".strip())
+        stated = tr("The axis in use lies {near} and {far} from the best fit. Calibration certainty: {axis_sd} (1 SD).")
+        stated = stated.format(near=near, far=far, axis_sd=figures["axis_sd_deg"].in_words)
+        self._verdict.setText(f"{stated} {_why_apart(found)}".strip())
 
 
 def _why_apart(found: JointDiagnostics) -> str:
@@ -325,10 +326,10 @@ def _paired(found: JointDiagnostics, figures: dict[str, FoundFigure]) -> str:
         return tr("Both fit: {paired} and {reverse} agreement. This second does not decide the pairing.").format(
             paired=paired, reverse=reverse
         )
-    said = tr("Agreement as paired {paired}, reversed {reverse}: the pairing is confirmed.")
+    stated = tr("Agreement as paired {paired}, reversed {reverse}: the pairing is confirmed.")
     if apart < 0:
-        said = tr("Agreement as paired {paired}, reversed {reverse}: this second contradicts the pairing.")
-    return said.format(paired=paired, reverse=reverse)
+        stated = tr("Agreement as paired {paired}, reversed {reverse}: this second contradicts the pairing.")
+    return stated.format(paired=paired, reverse=reverse)
 
 
 def _decided(found: JointDiagnostics, figures: dict[str, FoundFigure]) -> str:

@@ -1,4 +1,4 @@
-"""How far can a walk be trusted? What can be read, what stands against the rest and what to do, joint by joint."""
+"""How far can a walk be trusted? What can be read, what is against the rest and what to do, joint by joint."""
 
 from collections.abc import Mapping, Sequence
 from functools import partial
@@ -39,9 +39,9 @@ HIP_BELOW = 14  # units of the drawing, from the upper edge of the thigh
 
 
 class QualityPage(Themed):
-    """Signals: `repeat_wished` of a leg's free motion."""
+    """Signals: `repeat_requested` of a leg's free motion."""
 
-    repeat_wished = Signal(object)  # Side
+    repeat_requested = Signal(object)  # Side
 
     def __init__(self, look: ThemeNotifier) -> None:
         super().__init__()
@@ -190,7 +190,7 @@ class QualityPage(Themed):
             self._doors.addWidget(door, *place)
 
     def _fill(self) -> None:
-        """Make a card of each line anew."""
+        """Make a card of each line again."""
         for card in self._line_cards:
             self._list.removeWidget(card)
             card.hide()
@@ -198,7 +198,7 @@ class QualityPage(Themed):
         self._line_cards = [LineCard(self._look, line, can_repeat=self._can_repeat) for line in self.lines]
         for number, card in enumerate(self._line_cards):
             if card.repeat is not None:
-                card.repeat.clicked.connect(partial(self.repeat_wished.emit, card.side))
+                card.repeat.clicked.connect(partial(self.repeat_requested.emit, card.side))
             self._list.insertWidget(number, card)
 
     def _repeats(self) -> list[QWidget]:
@@ -223,7 +223,7 @@ class QualityPage(Themed):
 
 
 class LineCard(Themed):
-    """One thing that stands against a figure: yellow where it withholds one."""
+    """One thing that is against a figure: yellow where it withholds one."""
 
     def __init__(self, look: ThemeNotifier, line: QualityLine, *, can_repeat: bool) -> None:
         super().__init__()
@@ -289,8 +289,8 @@ class JointsFigure(BodyFigure):
         self._joints = dict(joints)
         self._has_pelvis = Site.PELVIS in worn
         self.show_worn(dict.fromkeys((site for site in worn if site is not Site.PELVIS), SensorMark.WORN))
-        said = [f"{name_of(joint)}: {verdict_word(verdict)}" for joint, verdict in joints.items()]
-        self.setAccessibleDescription("; ".join([*said, self.accessibleDescription()]))
+        stated = [f"{name_of(joint)}: {verdict_word(verdict)}" for joint, verdict in joints.items()]
+        self.setAccessibleDescription("; ".join([*stated, self.accessibleDescription()]))
         self.update()
 
     def paintEvent(self, event: QPaintEvent) -> None:
@@ -310,7 +310,7 @@ class JointsFigure(BodyFigure):
             at, is_right = self.joint_anchor(joint), joint.side is Side.RIGHT
             width, height = px(MARK[0]), px(MARK[1])
             box = QRectF(1 if is_right else self.width() - 1 - width, at.y() - height / 2, width, height)
-            is_grave = verdict is Verdict.WITHHELD
+            is_grave = verdict is Verdict.NOT_REPORTED
             painter.setPen(theme.pen(c.control, 1))
             edge = box.right() if is_right else box.left()
             painter.drawLine(

@@ -29,7 +29,7 @@ from app.theme.icons import Icon
 from app.theme.notifier import ThemeNotifier
 from app.widgets.button import Button, ButtonKind
 from app.widgets.choice import Choice
-from app.widgets.door import Door
+from app.widgets.detail_button import DetailButton
 from app.widgets.fact_strip import FactStrip
 from app.widgets.heard_order import hear_as_laid_out
 from app.widgets.notice import Notice
@@ -51,14 +51,18 @@ WALK, RECORDING = later("Whole walk"), later("Whole recording")
 ANSWER_PX = 22
 RECORDINGS = (146, 280)  # px: the narrowest and the widest that their box becomes
 BOTTOM = 44  # px high: the row that closes the answer
-BESIDE_TABLE, WITHHELD, NOTE = 484, 40, 24  # px high: all else on a page, a withheld curve, strides left out by hand
-GAP = 12  # px between what stands in one row
+BESIDE_TABLE, NOT_REPORTED, NOTE = (
+    484,
+    40,
+    24,
+)  # px high: all else on a page, a not reported curve, strides left out by hand
+GAP = 12  # px between what is in one row
 PELVIS = 56  # px high: above the legs
 ANSWER_ICONS = {
     Outcome.DIFFERS: Icon.WARNING,
     Outcome.NOTHING: Icon.READ,
     Outcome.OPEN: Icon.INFO,
-    Outcome.UNREADABLE: Icon.WITHHELD,
+    Outcome.UNREADABLE: Icon.NOT_REPORTED,
 }
 
 
@@ -71,9 +75,9 @@ class Behind(Enum):
 
 
 class ResultPage(Themed):
-    """`parts`: those that were made before. `told`: what is said in the bar beneath the page has changed."""
+    """`parts`: those that were made before. `reported`: what is stated in the bar beneath the page has changed."""
 
-    told = Signal()
+    reported = Signal()
 
     def __init__(self, look: ThemeNotifier, parts: ResultParts | None = None) -> None:
         super().__init__()
@@ -81,7 +85,7 @@ class ResultPage(Themed):
         self._look = look
         self._visit: AnalysedVisit | None = None
         self._facts: Facts | None = None  # of the walk on the screen
-        self._found: Comparison | None = None  # with what it stands beside
+        self._found: Comparison | None = None  # with what it is beside
         self._can_choose = self._is_live = False
         self._course: tuple[CourseVisit, ...] = ()
         self._stride: Mapping[Joint, FloatArray] = {}  # in force
@@ -90,7 +94,7 @@ class ResultPage(Themed):
         self._has_tools = False  # views, recordings and methods in one row
         self._has_choices = False  # views and what else is chosen in one row
         self._behind = Behind.NOTHING
-        self._wanted = ANSWER  # of a walk; kept while recordings without it are looked at
+        self._required = ANSWER  # of a walk; kept while recordings without it are looked at
         self.view = Segmented(
             look,
             tr("View"),
@@ -108,7 +112,7 @@ class ResultPage(Themed):
         self.answer = Notice(look, ANSWER_PX, padding=4)
         self.key_figures = FactStrip(look)
         self.differs = DiffersCard(look)
-        self.door = Door(look, tr("Q"))
+        self.door = DetailButton(look, tr("Q"))
         self.all_figures = Toggle(look, tr("All values"), tr("F"), is_on=False)
         self.show_legs = Toggle(look, tr("Legs"), tr("G"), is_on=False)
         self.cycles = parts.cycles
@@ -137,7 +141,7 @@ class ResultPage(Themed):
         is_live
             Whether the sensors are still worn, so that a free motion can be repeated.
         course
-            The patient's visits in order of time, this one the last: the answer tells the changes since.
+            The patient's visits in order of time, this one the last: the answer reports the changes since.
         """
         self._visit, self._can_choose, self._is_live, self._course = visit, can_choose, is_live, course
         session, analysis = visit.session, visit.analysis
@@ -167,7 +171,7 @@ class ResultPage(Themed):
         self.compare.set_has_visits(has_visits)
 
     def show_visits(self, visits: Sequence[ComparedVisits], walked: str = "", every: Sequence[Part] = ()) -> None:
-        """Show earlier visits, which `compare` wished for, as `ComparePage.show_visits` says."""
+        """Show earlier visits, which `compare` requested, as `ComparePage.show_visits` states."""
         self.compare.show_visits(visits, walked, every)
         if self.beside.currentData() is Beside.LAST_VISIT:
             self._show_beside()
@@ -188,8 +192,8 @@ class ResultPage(Themed):
     def _fit_table(self) -> None:
         """Show as many rows of what differs as leave the charts their room."""
         frames = self.cycles.charts.frames
-        is_withheld = any(panel.text for frame in frames for panel in frame.withheld.values())
-        taken = BESIDE_TABLE + (WITHHELD if is_withheld else 0) + (NOTE if self.cycles.by_hand.text() else 0)
+        is_not_reported = any(panel.text for frame in frames for panel in frame.not_reported.values())
+        taken = BESIDE_TABLE + (NOT_REPORTED if is_not_reported else 0) + (NOTE if self.cycles.by_hand.text() else 0)
         taken += PELVIS if self.show_legs.isChecked() and len(frames) > len(LEG_KINDS) else 0
         self.differs.set_room(self._height - taken)
 
@@ -201,7 +205,7 @@ class ResultPage(Themed):
             (self.whole.methods if self.view.isHidden() else self.view).focus()
 
     def leave_behind(self) -> bool:
-        """Go back to the answer from what stands behind it; whether there was anything to leave."""
+        """Go back to the answer from what is behind it; whether there was anything to leave."""
         if self._behind is Behind.NOTHING:
             return False
         self._show_behind(Behind.NOTHING)
@@ -217,7 +221,7 @@ class ResultPage(Themed):
 
     @property
     def band_words(self) -> str:
-        """Whose band stands behind the curves and how fast this walk was; empty where no curve stands on one."""
+        """Whose band is behind the curves and how fast this walk was; empty where no curve is on one."""
         is_shown = self.view.choice == ANSWER and self._behind is not Behind.QUALITY
         return self.cycles.band_words if is_shown and self.beside.currentData() is Beside.BAND else ""
 
@@ -337,7 +341,7 @@ class ResultPage(Themed):
         self.legs.set_brief(self._room.is_compact)
         hear_as_laid_out(self)
         self._on_look_changed()
-        self._tell_answer()
+        self._show_answer()
         self._offer()
 
     def _fit_parts(self) -> None:
@@ -389,7 +393,7 @@ class ResultPage(Themed):
             self.view.set_offered(view, is_walk)
             self.view.set_reason(view, "" if has_strides else tr("no strides"))
         if self.view.choice in (ANSWER, WHOLE):
-            self.view.choose(self._wanted if is_walk and has_strides else WHOLE)
+            self.view.choose(self._required if is_walk and has_strides else WHOLE)
         self.view.blockSignals(False)
         self._show_parts()
 
@@ -399,7 +403,7 @@ class ResultPage(Themed):
         self._show_parts()
 
     def _show_parts(self) -> None:
-        """Show what belongs to the view, or what stands behind the answer."""
+        """Show what belongs to the view, or what is behind the answer."""
         recording, view = self.recording, self.view.choice
         is_walk = recording is not None and recording.kind is RecordingKind.WALKING
         has_answer = is_walk and view == (ANSWER if self.view.segments[0].isEnabled() else WHOLE)
@@ -442,11 +446,11 @@ class ResultPage(Themed):
         self.door.setVisible(has_door and not is_quality)
         self.all_figures.setVisible(view == ANSWER and not is_quality)
         self._page.activate()  # now, else the charts would be painted once too small and once right
-        self.told.emit()
+        self.reported.emit()
 
     def _on_view_chosen(self) -> None:
         if self.view.choice in (ANSWER, WHOLE) and self.view.segments[0].isEnabled():
-            self._wanted = self.view.choice
+            self._required = self.view.choice
         self._show_parts()
 
     def _on_door(self) -> None:
@@ -472,11 +476,11 @@ class ResultPage(Themed):
         return str(self._visit.shown_names.get(name, name)) if self._visit is not None else name
 
     def _show_beside(self) -> None:
-        """Show the walk with what it stands beside: its curves, what differs and the key figures."""
+        """Show the walk with what it is beside: its curves, what differs and the key figures."""
         recording, visit = self.recording, self._visit
         if recording is None or visit is None or recording.kind is not RecordingKind.WALKING:
             self._facts = self._found = None
-            self._tell_answer()
+            self._show_answer()
             return
         chosen = self.beside.currentData()
         if chosen is Beside.LAST_VISIT:
@@ -495,7 +499,7 @@ class ResultPage(Themed):
             self.key_figures.show_figures(key_figures_beside(key_figures(facts), found))
             charts.show_marks(changes_on_curves(found))
         self.differs.show_facts(facts, found)
-        self._tell_answer()
+        self._show_answer()
         self._fit_table()
         if self.show_legs.isChecked():
             self._show_moving_legs()
@@ -513,7 +517,7 @@ class ResultPage(Themed):
             found, strides, joints = quality_without_walk(visit, recording.name if recording else ""), "", {}
             calibrated = visit.analysis.calibrated_for(recording) if recording is not None else {}
         sites = [site for site in Site if any(site in one.imu for one in visit.session.recordings)]
-        self.door.tell(door_words(found))
+        self.door.show_message(door_words(found))
         self.quality.show_quality(found, joints, sites, strides, can_repeat=self._is_live)
         names = visit.shown_names
         self.quality.show_engineering(
@@ -522,17 +526,17 @@ class ResultPage(Themed):
             recording.hips if recording is not None else {},
         )
 
-    def _tell_answer(self) -> None:
+    def _show_answer(self) -> None:
         """Say what came of the walk; the key figures follow where there is no room for them beside it."""
         facts, found = self._facts, self._found
         if facts is None:
-            self.answer.tell(None, "")
+            self.answer.show_message(None, "")
             return
         answer = answer_of(facts)
         if found is not None and answer.outcome is not Outcome.UNREADABLE:
             answer = answer_beside(found)
         then = [answer.then, figures_in_short(facts) if self._room.is_compact else ""]
-        self.answer.tell(ANSWER_ICONS[answer.outcome], answer.first, " ".join(filter(None, then)))
+        self.answer.show_message(ANSWER_ICONS[answer.outcome], answer.first, " ".join(filter(None, then)))
 
     def _show_strides(self) -> None:
         """Draw single strides where they are chosen from; the one in force only there."""

@@ -22,10 +22,10 @@ from core.verdicts.quantities import values_of
 
 
 class StridesPage(Card):
-    """`turned` and `all_wanted` name a walk; nothing is changed here, but by whoever shows the walk anew."""
+    """`turned` and `all_required` name a walk; nothing is changed here, but by whoever shows the walk again."""
 
     turned = Signal(str, object, bool)  # StrideLine, and whether it is to be left out
-    all_wanted = Signal(str)
+    all_required = Signal(str)
     chosen = Signal(object)  # curves in degrees by joint, of the stride in force
 
     def __init__(self, look: ThemeNotifier) -> None:
@@ -61,11 +61,11 @@ class StridesPage(Card):
         """Show the strides of a walk; `can_choose`: there is a library that keeps what is chosen."""
         self._recording = recording
         self.list.show_lines(stride_lines(recording), can_turn=can_choose)
-        told = [by_hand_in_words(recording)]
+        reported = [by_hand_in_words(recording)]
         if not can_choose:
-            told.append(tr("Strides can be excluded only in the library. Import this session first."))
-        said = " ".join(filter(None, told))
-        self.note.setText(said or tr("Excluded strides stay in the files with the reason."))
+            reported.append(tr("Strides can be excluded only in the library. Import this session first."))
+        stated = " ".join(filter(None, reported))
+        self.note.setText(stated or tr("Excluded strides stay in the files with the reason."))
         self.turn.setVisible(can_choose)
         self.all.setVisible(can_choose and any(line.is_by_hand for line in self.list.lines))
 
@@ -113,7 +113,7 @@ class StridesPage(Card):
     def _on_all(self) -> None:
         if self._recording is not None:
             self.list.setFocus(Qt.FocusReason.OtherFocusReason)  # the button goes
-            self.all_wanted.emit(self._recording.name)
+            self.all_required.emit(self._recording.name)
 
 
 def stride_lines(recording: RecordingAnalysis) -> tuple[StrideLine, ...]:

@@ -1,4 +1,4 @@
-"""What stands round a walk's curves: its key figures, and in one line how far all of it can be trusted."""
+"""What is round a walk's curves: its key figures, and in one line how far all of it can be trusted."""
 
 import math
 from collections.abc import Sequence
@@ -10,7 +10,7 @@ from app.summary.facts import Facts
 from app.summary.goals import goal_mark
 from app.summary.numbers_in_words import NOTHING, fixed
 from app.summary.walk_figures import Figure
-from app.widgets.door import DoorWords
+from app.widgets.detail_button import DetailText
 from app.widgets.fact_strip import KeyFigure
 from app.wording.translation import tr, tr_n
 from app.wording.verdicts import verdict_word
@@ -21,19 +21,19 @@ from core.verdicts.model import Verdict
 KEY_COLUMNS = ("speed_m_s", "cadence_steps_min", "stride_length_m")
 
 
-def door_words(found: DataQuality) -> DoorWords:
+def door_words(found: DataQuality) -> DetailText:
     """The verdict of the gravest remark, where it holds, what to do or why, and how many there are."""
     if not found.lines:
         is_judged = bool(found.in_order)
         first = tr("Good data quality throughout.") if is_judged else found.first
-        return DoorWords(Verdict.READ, first, found.in_order)
+        return DetailText(Verdict.READ, first, found.in_order)
     line = found.lines[0]
     pattern = tr("{where}: {verdict}.") if line.where else tr("Data quality: {verdict}.")
     first = pattern.format(where=line.where, verdict=verdict_word(line.verdict))
     then = line.to_do or line.why if line.is_grave else line.why
     count = len(found.lines)
     remarks = tr_n("{count} finding", "{count} findings", count).format(count=count)
-    return DoorWords(line.verdict, first, then, remarks, is_caution=line.is_grave)
+    return DetailText(line.verdict, first, then, remarks, is_caution=line.is_grave)
 
 
 def key_figures(facts: Facts) -> list[KeyFigure]:
@@ -42,17 +42,17 @@ def key_figures(facts: Facts) -> list[KeyFigure]:
 
 
 def _of_row(row: Figure, goals: Sequence[Goal]) -> KeyFigure:
-    told = {side: value.mean for side, value in row.sides.items() if is_mean_enough(value.n)}
-    value = row.both if row.both is not None else fmean(told.values()) if told else math.nan
+    reported = {side: value.mean for side, value in row.sides.items() if is_mean_enough(value.n)}
+    value = row.both if row.both is not None else fmean(reported.values()) if reported else math.nan
     is_known = math.isfinite(value)
-    withheld = row.unknown_both or next(iter(row.unknown.values()), "")
+    not_reported = row.unknown_both or next(iter(row.unknown.values()), "")
     note = spoken = ""
     if not is_known:
-        note = tr(withheld) if withheld else tr("not measured")
+        note = tr(not_reported) if not_reported else tr("not measured")
     elif row.with_care:
         note = verdict_word(Verdict.CARE)
-    elif told:
-        note = ", ".join(f"{side.letter} {fixed(mean, row.decimals)}" for side, mean in told.items())
+    elif reported:
+        note = ", ".join(f"{side.letter} {fixed(mean, row.decimals)}" for side, mean in reported.items())
     elif row.band is not None:
         low, high = (fixed(edge, row.decimals) for edge in row.band)
         note = tr("ref. {low} to {high}").format(low=low, high=high)
@@ -68,12 +68,12 @@ def _of_row(row: Figure, goals: Sequence[Goal]) -> KeyFigure:
 
 def figures_in_short(facts: Facts) -> str:
     """The same in one line, of those that are known."""
-    told = [
+    reported = [
         f"{one.name} {one.value}\N{NO-BREAK SPACE}{one.unit}".strip()
         for one in key_figures(facts)
         if one.value != NOTHING
     ]
-    return " · ".join(told)
+    return " · ".join(reported)
 
 
 def strides_in_short(facts: Facts) -> str:

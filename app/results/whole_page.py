@@ -116,8 +116,8 @@ class WholePage(Themed):
         curves = {joint: curve for joint, angle in recording.joints.items() if (curve := _curve(angle, method))}
         curves |= {joint: curve for joint, hip in recording.hips.items() if (curve := _hip_curve(hip, method))}
         self.charts.show_joints(curves)
-        said = [tr(HINTS[method]), tr(KEYS), tr(EVENT_KEYS) if recording.gait else ""]
-        self.hint.setText(" ".join(filter(None, said)))
+        stated = [tr(HINTS[method]), tr(KEYS), tr(EVENT_KEYS) if recording.gait else ""]
+        self.hint.setText(" ".join(filter(None, stated)))
 
     def _on_view_changed(self, is_whole: bool, words: str) -> None:
         self.shown.setText(words)

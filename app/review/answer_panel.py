@@ -29,7 +29,7 @@ def panel(session: Session, analysis: Analysis, recording: RecordingAnalysis, dr
     joints = [joint for joint in Joint if joint in recording.measured]
     lines += [_line(recording, joint, is_drawn=joint.side in drawn) for joint in joints]
     for side in Side:
-        lines += [f"- {said}" for said in _slipped(recording, side)]
+        lines += [f"- {stated}" for stated in _slipped(recording, side)]
     return "\n".join([*lines, "", *([tr(KEY)] if joints else [])])
 
 
@@ -41,19 +41,19 @@ def _line(recording: RecordingAnalysis, joint: Joint, is_drawn: bool) -> str:
     reason = why(found.sign) if doubt == MAY_BE_MIRRORED else reason_in_words(found)
     grey = ""
     if is_drawn and not joint.is_hip and joint_status(recording, joint) not in WITH_HEIGHT:
-        said = (
+        stated = (
             tr("The {side} leg and foot are shown in grey.")
             if joint.is_knee
             else tr("The {side} foot is shown in grey.")
         )
-        grey = said.format(side=side_name(joint.side))
+        grey = stated.format(side=side_name(joint.side))
     pattern = tr("{part}: {verdict}.")
-    said = pattern.format(part=capitalised(name_of(joint)), verdict=verdict)
-    return " ".join(filter(None, [f"- **{said}**", grey, reason]))
+    stated = pattern.format(part=capitalised(name_of(joint)), verdict=verdict)
+    return " ".join(filter(None, [f"- **{stated}**", grey, reason]))
 
 
 def _slipped(recording: RecordingAnalysis, side: Side) -> Iterator[str]:
     from_s = recording.slipped_from_s.get(side)
     if from_s is not None and len(recording.time_s) and from_s <= recording.time_s[-1]:
-        said = tr("Strap moved on the {side} leg. From {time:.1f} s its curves are not reported; the leg is grey.")
-        yield said.format(side=side_name(side), time=from_s)
+        stated = tr("Strap moved on the {side} leg. From {time:.1f} s its curves are not reported; the leg is grey.")
+        yield stated.format(side=side_name(side), time=from_s)

@@ -1,8 +1,8 @@
-"""Which curves of a log may be looked at, and what do they say? Where each lies, by what may be said of its joint.
+"""Which curves of a log may be looked at, and what do they say? Where each lies, by what may be stated about its joint.
 
-A curve with a height lies at `/angles`. One without a zero is told as its shape, its mean taken away. One that is
-withheld, or whose sign is not known, lies at `/withheld`, which no view of the layout shows: it is there to be looked
-for. The same holds of every angle once a strap of its leg has slipped.
+A curve with a height lies at `/angles`. One without a zero is reported as its shape, its mean taken away. One that is
+not reported, or whose sign is not known, lies at `/withheld`, which no view of the layout shows: it is there to be
+looked for. The same holds of every angle once a strap of its leg has slipped.
 """
 
 from collections.abc import Iterator, Mapping
@@ -12,7 +12,7 @@ from itertools import groupby
 
 import numpy as np
 
-from app.summary.status import NO_ZERO, WITH_HEIGHT, all_that_is_said, is_slipped, joint_status, why
+from app.summary.status import NO_ZERO, WITH_HEIGHT, all_that_is_stated, is_slipped, joint_status, why
 from app.wording.translation import PURPOSE
 from core.body import Joint, JointKind, Side
 from core.results import Analysis, RecordingAnalysis
@@ -20,14 +20,14 @@ from core.samples import BoolArray, FloatArray, RecordingKind
 
 
 class Place(StrEnum):
-    """Where a curve lies, and what its name says of it."""
+    """Where a curve lies, and what its name states of it."""
 
     HEIGHT = ""
     SHAPE = ", shape"
-    WITHHELD = ", withheld"
+    NOT_REPORTED = ", withheld"
 
     def entity(self, joint: Joint, curve: str) -> str:
-        if self is Place.WITHHELD:
+        if self is Place.NOT_REPORTED:
             return f"/withheld/{joint}/{curve}"
         return f"/angles/{joint}/{curve}_shape" if self is Place.SHAPE else f"/angles/{joint}/{curve}"
 
@@ -37,7 +37,7 @@ def place_of(recording: RecordingAnalysis, joint: Joint) -> Place:
     status = joint_status(recording, joint)
     if status in WITH_HEIGHT:
         return Place.HEIGHT
-    return Place.SHAPE if status == NO_ZERO else Place.WITHHELD
+    return Place.SHAPE if status == NO_ZERO else Place.NOT_REPORTED
 
 
 def pieces_of(recording: RecordingAnalysis, joint: Joint) -> Iterator[tuple[Place, slice]]:
@@ -47,7 +47,7 @@ def pieces_of(recording: RecordingAnalysis, joint: Joint) -> Iterator[tuple[Plac
     if end or not n:
         yield place_of(recording, joint), slice(0, end)
     if end < n:
-        yield Place.WITHHELD, slice(end, n)
+        yield Place.NOT_REPORTED, slice(end, n)
 
 
 def places(analysis: Analysis, joint: Joint) -> list[Place]:
@@ -63,7 +63,7 @@ def is_pose(recording: RecordingAnalysis, joint: Joint, time_s: FloatArray) -> B
 
 
 def name_of_view(analysis: Analysis, joint: Joint) -> str:
-    """What stands above a joint's curves: its name, and what is missing where no walk has more."""
+    """What is above a joint's curves: its name, and what is missing where no walk has more."""
     walks = tuple(r for r in analysis.recordings if r.kind is RecordingKind.WALKING and joint in r.measured)
     found = places(replace(analysis, recordings=walks or analysis.recordings), joint)
     name = joint.replace("_", " ")
@@ -79,10 +79,10 @@ def document(analysis: Analysis, timelines: Mapping[str, str]) -> str:
     """
     lines = ["# Data quality", "", PURPOSE]
     walks = {recording.name for recording in analysis.recordings if recording.kind is RecordingKind.WALKING}
-    in_order = sorted(all_that_is_said(analysis), key=lambda one: one.recording not in walks)
-    for recording, said in groupby(in_order, key=lambda one: one.recording):
+    in_order = sorted(all_that_is_stated(analysis), key=lambda one: one.recording not in walks)
+    for recording, stated in groupby(in_order, key=lambda one: one.recording):
         lines += ["", f"## {timelines[recording]}", "", "| of | what | verdict | why |", "|---|---|---|---|"]
-        for one in said:
+        for one in stated:
             verdict = one.assessment.verdict.replace("_", " ")
             lines.append(f"| {one.subject} | {one.quantity} | {verdict} | {why(one.assessment)} |")
     slipped = [side for side in Side if any(is_slipped(r, side).any() for r in analysis.recordings)]

@@ -16,11 +16,11 @@ BELOW, LEAST_BELOW_DEG = 0.15, 5.0  # of the curve's range
 def lanes_of(recording: RecordingAnalysis, joint: Joint) -> Mapping[Phase, tuple[FloatArray, FloatArray]]:
     """Each phase's times and heights in degrees (k,): a stretch for each time the foot is in it, NaN behind each.
 
-    None while the curve of the joint is not shown, or where the times of the leg may not be told.
+    None while the curve of the joint is not shown, or where the times of the leg may not be reported.
     """
     gait, shown_deg = recording.gait.get(joint.side), _shown_deg(recording, joint)
     known_deg = shown_deg[np.isfinite(shown_deg)]
-    if gait is None or not len(known_deg) or not recording.verdicts.leg(joint.side).timing.is_told:
+    if gait is None or not len(known_deg) or not recording.verdicts.leg(joint.side).timing.is_reported:
         return {}
     height_deg = float(known_deg.min() - max(BELOW * np.ptp(known_deg), LEAST_BELOW_DEG))
     shown_phase = np.where(np.isfinite(shown_deg), gait.phase, PHASES.index(Phase.UNKNOWN))
@@ -38,10 +38,10 @@ def lanes_of(recording: RecordingAnalysis, joint: Joint) -> Mapping[Phase, tuple
 
 
 def _shown_deg(recording: RecordingAnalysis, joint: Joint) -> FloatArray:
-    """A joint's curve (n,) as it is shown, a shape about its own mean; NaN where it is withheld."""
+    """A joint's curve (n,) as it is shown, a shape about its own mean; NaN where it is not reported."""
     shown = np.full(len(recording.time_s), np.nan)
     for place, rows in pieces_of(recording, joint):
-        if place is not Place.WITHHELD:
+        if place is not Place.NOT_REPORTED:
             shown[rows] = np.rad2deg(recording.measured[joint].angle_rad[rows])
             if place is Place.SHAPE and np.isfinite(shown[rows]).any():
                 shown[rows] -= np.nanmean(shown[rows])

@@ -2,8 +2,8 @@
 
 Every recording is a timeline of its own, named by its kind and number (`walking_1`); choosing another timeline shows
 another recording in the same views. Nothing is left out between samples, and nobody's words are inside. Above the
-curves two legs walk, which are drawn and say so, and beside them stands the answer with a verdict for each joint
-(`answer_panel`). Every verdict stands in a view of its own, and what may not be read is not shown until it is looked
+curves two legs walk, which are drawn and say so, and beside them is the answer with a verdict for each joint
+(`answer_panel`). Every verdict is in a view of its own, and what may not be read is not shown until it is looked
 for (`may_be_read`).
 
 The same session gives the same bytes: Rerun numbers its chunks and rows by the clock and by chance, so they are
@@ -123,7 +123,7 @@ def _labels(session: Session, analysis: Analysis) -> Iterator[Chunk]:
     for joint in _joints(analysis):
         looks = {"result": (SIDE_COLOUR[joint.side], 2.5), "published": (COLOURS.ink2, 1.0)}
         for place in places(analysis, joint):
-            grey = COLOURS.control if place is Place.WITHHELD else None
+            grey = COLOURS.control if place is Place.NOT_REPORTED else None
             looks |= {"orientation": (COLOURS.control, 1.0)}
             for curve, (colour, width) in list(looks.items())[: 1 if joint.is_hip else None]:
                 yield _label(place.entity(joint, curve), [f"{curve}{place} °"], grey or colour, width)
@@ -202,9 +202,9 @@ def _leg_chunks(timeline: str, side: Side, leg: DrawnLeg, recording: RecordingAn
     is_lifted = is_bent & is_pose(recording, ankle_of(side), leg.time_s)
     ends_m = {"thigh": leg.leg_m[:, :2], "shank": leg.leg_m[:, 1:], "foot": leg.foot_m}
     for part, points_m in ends_m.items():
-        is_told = is_lifted if part == "foot" else is_bent
+        is_reported = is_lifted if part == "foot" else is_bent
         is_known = np.isfinite(points_m).all(axis=(1, 2))
-        for name, is_here in ((part, is_known & is_told), (f"withheld_{part}", is_known & ~is_told)):
+        for name, is_here in ((part, is_known & is_reported), (f"withheld_{part}", is_known & ~is_reported)):
             if is_here.any():
                 columns = bodies(points_m[is_here], RADII_M[part])
                 yield Chunk.from_columns(
@@ -218,7 +218,7 @@ def _pelvis_chunks(timeline: str, session: Session, recording: RecordingAnalysis
         time_s, points_m = drawn
         strips = rr.LineStrips3D.columns(strips=points_m.astype(np.float32))
         yield Chunk.from_columns("/legs/pelvis", [rr.TimeColumn(timeline, duration=time_s)], columns=strips)
-    if recording.pelvis is not None and recording.verdicts.pelvis.is_told:
+    if recording.pelvis is not None and recording.verdicts.pelvis.is_reported:
         for name, values_rad in _pelvis_angles(recording.pelvis).items():
             yield from _series(f"/pelvis/{name}", timeline, recording.time_s, np.rad2deg(values_rad))
 
@@ -250,7 +250,7 @@ def _raw_chunks(timeline: str, site: Site, block: ImuBlock) -> Iterator[Chunk]:
 
 
 def _angle_chunks(timeline: str, joint: Joint, recording: RecordingAnalysis) -> Iterator[Chunk]:
-    """Yield a joint's curves where what may be said of them lets them lie; a shape has its mean taken away."""
+    """Yield a joint's curves where what may be stated about them lets them lie; a shape has its mean taken away."""
     angle, time_s = recording.measured[joint], recording.time_s
     band_rad = angle.angle_rad[:, None] + BAND_SD * angle.sd_rad[:, None] * np.array([-1.0, 1.0])
     curves: dict[str, FloatArray | None] = {"result": angle.angle_rad}
@@ -334,7 +334,7 @@ def _joints(analysis: Analysis) -> list[Joint]:
 
 
 def _has_pelvis(analysis: Analysis) -> bool:
-    return any(r.pelvis is not None and r.verdicts.pelvis.is_told for r in analysis.recordings)
+    return any(r.pelvis is not None and r.verdicts.pelvis.is_reported for r in analysis.recordings)
 
 
 def _sides_with_gait(analysis: Analysis) -> list[Side]:
@@ -390,7 +390,7 @@ def _leg_view(session: Session, analysis: Analysis) -> rrb.Spatial3DView:
 
 
 def side_views(analysis: Analysis, side: Side) -> rrb.Vertical | None:
-    """Stack a side's joints, each with its phases; what the lines are says the answer's panel, not a legend."""
+    """Stack a side's joints, each with its phases; what the lines are states the answer's panel, not a legend."""
     axis = rrb.archetypes.TimeAxis(link=rrb.components.LinkAxis.LinkToGlobal)
     views = [
         rrb.TimeSeriesView(

@@ -3,7 +3,7 @@
 Rerun names the layout's store by chance, stamps every store with the time, and lists the stores and their columns in
 the table of contents at the file's end in random order. Whoever checks a file or reads parts of it needs that table,
 so it is put in order rather than cut off. A file is "RRF2" and its version, then messages, each with its kind and
-length before it; the last holds the table, and 32 bytes behind it say where it stands.
+length before it; the last holds the table, and 32 bytes behind it say where it is.
 """
 
 import errno
@@ -76,7 +76,7 @@ def _put_in_order(file: BinaryIO, position: int, length: int, layout_name: bytes
 
 
 def _ordered(manifest: bytes) -> bytes:
-    """Give the same manifest with its columns, and what is said of each, in the order of their names."""
+    """Give the same manifest with its columns, and what is stated about each, in the order of their names."""
     parts = []
     for number, part in _fields(manifest):
         if number == SCHEMA:

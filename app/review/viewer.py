@@ -184,8 +184,8 @@ def _reason(errors: Path) -> str:
     except OSError:
         return ""
     lines = [line.strip() for line in _COLOURS.sub("", written).splitlines() if line.strip()]
-    said = _PLACE.sub("\N{HORIZONTAL ELLIPSIS}", lines[-1].removeprefix("Error: ")) if lines else ""
-    return said[:MOST_REASON].rstrip(". ")
+    stated = _PLACE.sub("\N{HORIZONTAL ELLIPSIS}", lines[-1].removeprefix("Error: ")) if lines else ""
+    return stated[:MOST_REASON].rstrip(". ")
 
 
 def _start(command: list[str], settings: Path, errors: Path | None = None) -> "subprocess.Popen[bytes]":

@@ -114,8 +114,8 @@ def _outline(value: Any, arrays: list[bytes]) -> Any:
             return {"map": [[_outline(key, arrays), _outline(one, arrays)] for key, one in value.items()]}
     if not is_dataclass(value) or type(value).__name__ not in VALUES:
         raise TypeError(f"an analysis holds no {type(value).__name__}")
-    told = [_outline(getattr(value, field.name), arrays) for field in fields(value)]
-    return {"value": [type(value).__name__, told]}
+    reported = [_outline(getattr(value, field.name), arrays) for field in fields(value)]
+    return {"value": [type(value).__name__, reported]}
 
 
 class _Arrays:
@@ -139,16 +139,16 @@ def _value(outline: Any, arrays: _Arrays) -> Any:
         return tuple(_value(one, arrays) for one in outline)
     if not isinstance(outline, dict):
         return outline
-    ((what, told),) = outline.items()
+    ((what, reported),) = outline.items()
     match what:
         case "array":
-            return arrays.next(*told)
+            return arrays.next(*reported)
         case "word":
-            return WORDS[told[0]](told[1])
+            return WORDS[reported[0]](reported[1])
         case "set":
-            return frozenset(_value(one, arrays) for one in told)
+            return frozenset(_value(one, arrays) for one in reported)
         case "map":
-            return {_value(key, arrays): _value(one, arrays) for key, one in told}
+            return {_value(key, arrays): _value(one, arrays) for key, one in reported}
         case "value":
-            return VALUES[told[0]](*(_value(one, arrays) for one in told[1]))
+            return VALUES[reported[0]](*(_value(one, arrays) for one in reported[1]))
     raise ValueError(what)

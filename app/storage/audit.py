@@ -2,8 +2,8 @@
 
 This is tamper-evident against outsiders only: who has no data key, a database server's keeper for one, can neither
 change, remove, add nor move an entry unseen. They can cut entries off at the end, which a checkpoint kept elsewhere
-shows. Whoever has the data key and the skill can make the whole chain anew; against them only the checkpoint helps.
-Entries name rows by their ids and hold no names and no values, so they may outlive what they tell of.
+shows. Whoever has the data key and the skill can make the whole chain again; against them only the checkpoint helps.
+Entries name rows by their ids and hold no names and no values, so they may outlive what they report of.
 """
 
 import datetime
@@ -39,14 +39,14 @@ class Audit:
 
     @property
     def end(self) -> Checkpoint:
-        """How far it has come, as far as this program was told."""
+        """How far it has come, as far as this program was reported."""
         return self._unit.end_of_audit
 
     def times(self) -> Iterator[datetime.datetime]:
         """When each entry was made, from the last to the first, by the clock of the computer that made it."""
-        wanted = select(AuditRow.at).order_by(AuditRow.number.desc()).execution_options(yield_per=MANY)
+        required = select(AuditRow.at).order_by(AuditRow.number.desc()).execution_options(yield_per=MANY)
         with self._unit.reading() as session:
-            yield from map(datetime.datetime.fromisoformat, session.scalars(wanted))
+            yield from map(datetime.datetime.fromisoformat, session.scalars(required))
 
     def entries_of_others(self) -> int:
         """How many entries this program did not add itself: more than before, and another station did something.
@@ -61,7 +61,7 @@ class Audit:
             return (session.scalar(select(func.max(AuditRow.number))) or 0) - added
 
     def holds(self, checkpoint: Checkpoint) -> bool:
-        """Whether the entry that a checkpoint tells of is there. The chain is not followed; see `verify`."""
+        """Whether the entry that a checkpoint reports is there. The chain is not followed; see `verify`."""
         with self._unit.reading() as session:
             row = session.get(AuditRow, checkpoint.number)
             return row is not None and hmac.compare_digest(row.hash, checkpoint.hash)
@@ -107,18 +107,18 @@ class Audit:
 
     def entries(self, subject: str = "", last: int = 1000) -> tuple[AuditEntry, ...]:
         """The latest entries, oldest first; all of them or those about one `subject`."""
-        wanted = select(AuditRow).order_by(AuditRow.number.desc()).limit(last)
+        required = select(AuditRow).order_by(AuditRow.number.desc()).limit(last)
         with self._unit.reading() as session:
-            rows = session.scalars(wanted.where(AuditRow.subject == subject) if subject else wanted)
+            rows = session.scalars(required.where(AuditRow.subject == subject) if subject else required)
             return tuple(entry_of(row) for row in rows)[::-1]
 
     def reported(self, session_ids: Collection[UUID]) -> frozenset[UUID]:
-        """Those sessions whose report was written, as the latest entry about it says."""
+        """Those sessions whose report was written, as the latest entry about it states."""
         ids = {about("session", session_id): session_id for session_id in session_ids}
-        wanted = select(AuditRow).where(AuditRow.subject.in_(ids), AuditRow.action == Action.EXPORT)
+        required = select(AuditRow).where(AuditRow.subject.in_(ids), AuditRow.action == Action.EXPORT)
         latest: dict[UUID, bool] = {}
         with self._unit.reading() as session:
-            for row in session.scalars(wanted.order_by(AuditRow.number)):
+            for row in session.scalars(required.order_by(AuditRow.number)):
                 details = json.loads(row.details)
                 if details.get("format") == REPORT_FORMAT and details.get("is_document", True):
                     latest[ids[row.subject]] = not details.get("is_broken_off", False)
@@ -126,18 +126,18 @@ class Audit:
 
     def deletions(self, subjects: Collection[str]) -> dict[str, AuditEntry]:
         """The latest deletion of each subject that was ever deleted."""
-        wanted = select(AuditRow).where(AuditRow.subject.in_(subjects), AuditRow.action == Action.DELETE)
+        required = select(AuditRow).where(AuditRow.subject.in_(subjects), AuditRow.action == Action.DELETE)
         with self._unit.reading() as session:
-            return {row.subject: entry_of(row) for row in session.scalars(wanted.order_by(AuditRow.number))}
+            return {row.subject: entry_of(row) for row in session.scalars(required.order_by(AuditRow.number))}
 
     def verify(self, checkpoint: Checkpoint = BEGINNING) -> AuditReport:
-        """Check every link, and that the chain still holds what `checkpoint` tells of."""
+        """Check every link, and that the chain still holds what `checkpoint` reports."""
         with self._unit.reading() as session:
             return verify_rows(session, self._unit.audit_key, checkpoint)
 
 
 def note(unit: UnitOfWork, session: OrmSession, action: Action, subject: str, **details: object) -> None:
-    """Add an entry in the same transaction as what it tells of."""
+    """Add an entry in the same transaction as what it reports."""
     append(session, unit.audit_key, unit.now(), unit.code, action, subject, details)
 
 
@@ -218,7 +218,7 @@ def canonical(content: object) -> str:
 
 
 def hash_of(entry: AuditEntry, key: bytes) -> str:
-    """HMAC-SHA256 of all that an entry says and of the hash before it."""
+    """HMAC-SHA256 of all that an entry states and of the hash before it."""
     content = [entry.number, entry.at, entry.operator, entry.action, entry.subject, entry.details, entry.previous_hash]
     return hmac.digest(key, canonical(content).encode(), "sha256").hex()
 
@@ -229,7 +229,8 @@ def verify_rows(session: OrmSession, key: bytes, checkpoint: Checkpoint = BEGINN
 
 
 def verify(entries: Iterable[AuditEntry], key: bytes, checkpoint: Checkpoint = BEGINNING) -> AuditReport:
-    """Follow the chain from its beginning; after a fault it goes on from what is there, so that one is told once."""
+    """Follow the chain from its beginning; after a fault it goes on from what is there, so that one is reported
+    once."""
     end, faults = BEGINNING, []
     is_held = checkpoint.number == 0
     for entry in entries:

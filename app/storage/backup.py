@@ -165,13 +165,13 @@ def restore(
     LibraryError
         Not a backup, it is not what it was, it does not open with this key, or there is something in `folder`.
     """
-    told, hashes = _read_list(backup)
+    reported, hashes = _read_list(backup)
     with made_beside(folder) as beside:
         work = _Work(report, backup / DATABASE, [backup / name for name in hashes])
         work.refuse_too_little_room(folder.resolve().parent)
         _copy(backup / DATABASE, beside / DATABASE, work)
         _copy_files(backup, beside, hashes, work)
-        faults = _check(beside, data_key, told.checkpoint, hashes, work)
+        faults = _check(beside, data_key, reported.checkpoint, hashes, work)
         with Library.open(beside, data_key) as library:  # who may not work there restores nothing
             library.log_in(code)
             library.audit.note(Action.BACKUP, "library", is_restored=True)
@@ -225,12 +225,12 @@ def _copy_database(library: Path, folder: Path, data_key: KeyMaterial | None, wo
             assert connection is not None  # both are open
             assert copy is not None
             connection.execute("BEGIN")
-            connection.execute("SELECT count(*) FROM sqlite_master").fetchone()  # from here on it stands still
+            connection.execute("SELECT count(*) FROM sqlite_master").fetchone()  # from here on it is still
 
-            def told(_status: int, left: int, total: int) -> None:
+            def reported(_status: int, left: int, total: int) -> None:
                 work.add(work.database_bytes * min(PAGES, total) // max(total, 1), "backup")
 
-            connection.backup(copy, pages=PAGES, progress=told)
+            connection.backup(copy, pages=PAGES, progress=reported)
             connection.execute("COMMIT")
     except sqlite.Error as error:
         raise OSError(EIO, str(error)) from None
@@ -343,20 +343,23 @@ def _write_list(folder: Path, backup: Backup, hashes: dict[str, str]) -> None:
 
 
 def _read_list(folder: Path) -> tuple[Backup, dict[str, str]]:
-    """What a backup says of itself, and the hashes of its files but the database.
+    """What a backup states of itself, and the hashes of its files but the database.
 
     Raises
     ------
     LibraryError
-        It is none. What it says may come from anywhere, so only names that a library has are taken.
+        It is none. What it states may come from anywhere, so only names that a library has are taken.
     """
     try:
-        told = json.loads((folder / LIST).read_bytes())
-        if told["format"] != FORMAT or KEYS not in told["files"]:
-            raise ValueError(told["format"])
-        hashes = {name: str(sha256) for name, sha256 in told["files"].items() if OUR_FILES.fullmatch(name)}
-        made_at, checkpoint = datetime.datetime.fromisoformat(told["made_at"]), Checkpoint.parsed(told["checkpoint"])
-        return Backup(folder, made_at, checkpoint, len(hashes) + 1, int(told["bytes"])), hashes
+        reported = json.loads((folder / LIST).read_bytes())
+        if reported["format"] != FORMAT or KEYS not in reported["files"]:
+            raise ValueError(reported["format"])
+        hashes = {name: str(sha256) for name, sha256 in reported["files"].items() if OUR_FILES.fullmatch(name)}
+        made_at, checkpoint = (
+            datetime.datetime.fromisoformat(reported["made_at"]),
+            Checkpoint.parsed(reported["checkpoint"]),
+        )
+        return Backup(folder, made_at, checkpoint, len(hashes) + 1, int(reported["bytes"])), hashes
     except (OSError, ValueError, KeyError, TypeError, AttributeError):
         remedy = tr("Choose a folder whose name starts with {name}").format(name=NAME)
         raise LibraryError("This version cannot read this folder as a backup", remedy) from None

@@ -101,7 +101,7 @@ def _is_done_with(path: Path) -> bool:
     """Whether it is at home already: only what is, is made unreadable."""
     try:
         return read_header(path).is_key_destroyed
-    except JournalRefusedError:  # damaged: it comes home as it is, where recovery says so
+    except JournalRefusedError:  # damaged: it comes home as it is, where recovery reports it
         return False
 
 

@@ -113,7 +113,7 @@ def apply(
         if row is None or plain(getattr(row, change.field)) != change.old:
             raise changed_meanwhile()
         setattr(row, change.field, _typed(type(row), change.field, change.new))
-        if isinstance(row, JointRow):  # it is part of its session, whose version has to tell
+        if isinstance(row, JointRow):  # it is part of its session, whose version has to report
             flag_modified(session.get_one(SessionRow, row.session_id), "started")
     last = session.scalar(select(func.max(CorrectionRow.number))) or 0  # the write lock is held: nobody takes the next
     correction = CorrectionRow(
@@ -136,7 +136,7 @@ def apply(
 def take_back(
     unit: UnitOfWork, session: OrmSession, changes: Sequence[Change], patient_id: UUID, session_id: UUID | None = None
 ) -> None:
-    """Make `changes` and take them back at once: they were wanted, did not come to hold, and stand in the history."""
+    """Make `changes` and take them back at once: they were required, did not come to hold, and stand in the history."""
     session.flush()
     made = apply(unit, session, changes, patient_id, session_id)
     session.flush()
@@ -146,7 +146,7 @@ def take_back(
 
 
 def author_of(session: OrmSession, patient_id: UUID, change: Change) -> tuple[str, datetime.datetime | None]:
-    """Who made one value of a row what it is, `change.old`, and when; nobody where no correction tells."""
+    """Who made one value of a row what it is, `change.old`, and when; nobody where no correction reports."""
     latest = select(CorrectionRow).where(CorrectionRow.patient_id == patient_id).order_by(CorrectionRow.number.desc())
     rows = session.scalars(latest.limit(SEARCHED)).all()
     taken_back = {
@@ -155,18 +155,18 @@ def author_of(session: OrmSession, patient_id: UUID, change: Change) -> tuple[st
         if later.undoes_id == before.id and later.operator == before.operator
         for one in (later, before)
     }
-    wanted = (change.table, change.row, change.field, change.old)
+    required = (change.table, change.row, change.field, change.old)
     for row in rows:
         made = {(one.table, one.row, one.field, one.new) for one in _changes(row)}
-        if row.id not in taken_back and wanted in made:
+        if row.id not in taken_back and required in made:
             operator = session.get(OperatorRow, row.operator)
             return (operator.name if operator is not None else "") or row.operator, row.at
     return "", None
 
 
-def differences(row: Any, wanted: Mapping[str, object]) -> list[Change]:
-    """What has to change in `row` so that its fields are as `wanted`."""
-    pairs = ((field, plain(getattr(row, field)), plain(value)) for field, value in wanted.items())
+def differences(row: Any, required: Mapping[str, object]) -> list[Change]:
+    """What has to change in `row` so that its fields are as `required`."""
+    pairs = ((field, plain(getattr(row, field)), plain(value)) for field, value in required.items())
     return [Change(row.__tablename__, row.id, field, old, new) for field, old, new in pairs if old != new]
 
 
@@ -185,15 +185,15 @@ def _changes(row: CorrectionRow) -> list[Change]:
     return [Change(**{**record, "row": uuid.UUID(record["row"])}) for record in row.changes]
 
 
-def _listed(session: OrmSession, is_wanted: ColumnElement[bool]) -> tuple[Correction, ...]:
+def _listed(session: OrmSession, is_required: ColumnElement[bool]) -> tuple[Correction, ...]:
     undoing = aliased(CorrectionRow)
-    wanted = (
+    required = (
         select(CorrectionRow, undoing.id)
         .outerjoin(undoing, undoing.undoes_id == CorrectionRow.id)
-        .where(is_wanted)
+        .where(is_required)
         .order_by(CorrectionRow.number.desc())
     )
     return tuple(
         Correction(row.id, row.at, row.operator, tuple(_changes(row)), row.undoes_id, is_undone=undone_by is not None)
-        for row, undone_by in session.execute(wanted)
+        for row, undone_by in session.execute(required)
     )

@@ -1,6 +1,7 @@
 """What can be edited of a patient, a session and a recording: plain values by the field's name, and back.
 
-What is said of a joint or a side is a field of its own, "zero_rad.left_knee": two people may say two joints' zeros.
+What is stated about a joint or a side is a field of its own, "zero_rad.left_knee": two people may say two joints'
+zeros.
 """
 
 from collections.abc import Mapping
@@ -31,11 +32,13 @@ SESSION_CORRECTABLE = ("started", "operator", "surface", "notes", "software")
 RECORDING_CORRECTABLE = ("name", "kind", "condition", "started", "is_kept", "note", "is_restrapped_before")
 
 
-def patient_fields(told: Patient) -> dict[str, Value]:
-    """Both sides are one field: which is affected and which prosthetic is said in one go."""
-    values: dict[str, Value] = {name: getattr(told, name) for name in PATIENT_CORRECTABLE if name not in SIDES}
-    values |= {"sides": ",".join(getattr(told, name) for name in SIDES)}
-    return values | {goal_field(key): goals_text([one for one in told.goals if one.key == key]) for key in GOAL_KEYS}
+def patient_fields(reported: Patient) -> dict[str, Value]:
+    """Both sides are one field: which is affected and which prosthetic is stated in one go."""
+    values: dict[str, Value] = {name: getattr(reported, name) for name in PATIENT_CORRECTABLE if name not in SIDES}
+    values |= {"sides": ",".join(getattr(reported, name) for name in SIDES)}
+    return values | {
+        goal_field(key): goals_text([one for one in reported.goals if one.key == key]) for key in GOAL_KEYS
+    }
 
 
 def goal_field(key: GoalKey) -> str:
@@ -43,48 +46,48 @@ def goal_field(key: GoalKey) -> str:
     return f"{GOALS}.{key[0]}.{key[1]}"
 
 
-def with_patient_fields(told: Patient, values: Values) -> Patient:
+def with_patient_fields(reported: Patient, values: Values) -> Patient:
     """The same patient with `values`, which may be of some fields only."""
-    every: dict[str, Any] = patient_fields(told) | dict(values)
+    every: dict[str, Any] = patient_fields(reported) | dict(values)
     affected, prosthetic = every.pop("sides").split(",")
     goals = ordered(goal for key in GOAL_KEYS for goal in goals_of_text(every.pop(goal_field(key))))
-    return replace(told, affected_side=affected, prosthetic_side=prosthetic, goals=goals, **every)
+    return replace(reported, affected_side=affected, prosthetic_side=prosthetic, goals=goals, **every)
 
 
-def session_fields(told: Session, comment: str, limits: Limits) -> dict[str, Value]:
-    values: dict[str, Value] = {name: getattr(told, name) for name in SESSION_CORRECTABLE}
+def session_fields(reported: Session, comment: str, limits: Limits) -> dict[str, Value]:
+    values: dict[str, Value] = {name: getattr(reported, name) for name in SESSION_CORRECTABLE}
     values |= {"comment": comment, "cannot_stand": limits.cannot_stand}
     values |= {f"without_ankle.{side}": side in limits.without_ankle for side in Side}
-    values |= {f"zero_rad.{joint}": told.zero_rad.get(joint) for joint in LEG_JOINTS}
-    return values | {f"turned_sign.{joint}": told.turned_sign.get(joint) for joint in LEG_JOINTS}
+    values |= {f"zero_rad.{joint}": reported.zero_rad.get(joint) for joint in LEG_JOINTS}
+    return values | {f"turned_sign.{joint}": reported.turned_sign.get(joint) for joint in LEG_JOINTS}
 
 
-def with_session_fields(told: Session, comment: str, limits: Limits, values: Values) -> tuple[Session, str, Limits]:
+def with_session_fields(reported: Session, comment: str, limits: Limits, values: Values) -> tuple[Session, str, Limits]:
     """The same session, comment and limits with `values`, which may be of some fields only."""
-    every: Mapping[str, Any] = session_fields(told, comment, limits) | dict(values)
-    said = replace(
-        told,
+    every: Mapping[str, Any] = session_fields(reported, comment, limits) | dict(values)
+    stated = replace(
+        reported,
         zero_rad={joint: every[f"zero_rad.{joint}"] for joint in LEG_JOINTS if every[f"zero_rad.{joint}"] is not None},
         turned_sign={joint: every[f"turned_sign.{joint}"] for joint in LEG_JOINTS if every[f"turned_sign.{joint}"]},
         **{name: every[name] for name in SESSION_CORRECTABLE},
     )
     without = frozenset(side for side in Side if every[f"without_ankle.{side}"])
-    return said, every["comment"], Limits(without, every["cannot_stand"])
+    return stated, every["comment"], Limits(without, every["cannot_stand"])
 
 
-def recording_fields(told: Recording) -> dict[str, Value]:
-    values: dict[str, Value] = {name: getattr(told, name) for name in RECORDING_CORRECTABLE}
-    values |= {ALIGNMENT: alignment_text(told.alignment), TEST: planned_text(told.test)}
-    return values | {f"left_out_s.{side}": tuple(sorted(told.left_out_s.get(side, ()))) for side in Side}
+def recording_fields(reported: Recording) -> dict[str, Value]:
+    values: dict[str, Value] = {name: getattr(reported, name) for name in RECORDING_CORRECTABLE}
+    values |= {ALIGNMENT: alignment_text(reported.alignment), TEST: planned_text(reported.test)}
+    return values | {f"left_out_s.{side}": tuple(sorted(reported.left_out_s.get(side, ()))) for side in Side}
 
 
-def with_recording_fields(told: Recording, values: Values) -> Recording:
+def with_recording_fields(reported: Recording, values: Values) -> Recording:
     """The same recording with `values`, which may be of some fields only."""
-    every: Mapping[str, Any] = recording_fields(told) | dict(values)
+    every: Mapping[str, Any] = recording_fields(reported) | dict(values)
     left_out_s = {side: every[f"left_out_s.{side}"] for side in Side if every[f"left_out_s.{side}"]}
     own = {name: every[name] for name in RECORDING_CORRECTABLE if name != "kind"}
     alignment = alignment_of_text(every[ALIGNMENT])
     test = planned_of_text(every[TEST])
     return replace(
-        told, kind=RecordingKind(every["kind"]), left_out_s=left_out_s, alignment=alignment, test=test, **own
+        reported, kind=RecordingKind(every["kind"]), left_out_s=left_out_s, alignment=alignment, test=test, **own
     )

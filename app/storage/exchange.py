@@ -1,6 +1,6 @@
 """How does a session get into the library, and out of it, without losing a sample?
 
-Samples become one journal per recording, one source per site; what `session.toml` says becomes rows. Both ways keep
+Samples become one journal per recording, one source per site; what `session.toml` states becomes rows. Both ways keep
 every bit of a float64, and every key and column, those that mean nothing to us included.
 """
 
@@ -13,7 +13,7 @@ from uuid import UUID
 from app.storage.audit import about, canonical
 from app.storage.database.ids import uuid7
 from app.storage.journal.decoding import DecodedJournal, Decoders, decode
-from app.storage.journal.disk import ROOM, TOLD, Room, Trouble
+from app.storage.journal.disk import REPORTED, ROOM, Room, Trouble
 from app.storage.journal.header import RESTORE, JournalRefusedError
 from app.storage.journal.payloads import layout_of, with_keys
 from app.storage.journal.writer import JournalSummary, JournalWriter, State
@@ -51,7 +51,7 @@ PIECE_ROWS = 10_000  # so that a long recording is not held a second time
 
 @dataclass(frozen=True, slots=True)
 class Imported:
-    """What came of an import. `differing`: what the library says of the patient otherwise, and goes on saying."""
+    """What came of an import. `differing`: what the library states of the patient otherwise, and goes on saying."""
 
     session_id: UUID
     patient: StoredPatient
@@ -89,14 +89,14 @@ def import_session(
         The folder of the recordings cannot be written.
     """
     library = opened.library
-    wanted = replace(session.patient, code=code or session.patient.code)
-    patient = library.patients.find(wanted.code) or library.patients.create(wanted)
+    required = replace(session.patient, code=code or session.patient.code)
+    patient = library.patients.find(required.code) or library.patients.create(required)
     differing = tuple(
         name
-        for name in type(wanted).__slots__
-        if name not in ("code", "goals") and getattr(wanted, name) != getattr(patient.details, name)
+        for name in type(required).__slots__
+        if name not in ("code", "goals") and getattr(required, name) != getattr(patient.details, name)
     )
-    if not set(wanted.goals) <= set(patient.details.goals):
+    if not set(required.goals) <= set(patient.details.goals):
         differing = (*differing, "goals")
     visit = library.sessions.create(patient.id, replace(session, recordings=(), sensors={}), limits)
     try:
@@ -122,10 +122,10 @@ def session_with_samples(opened: OpenedLibrary, visit: StoredSession, decoders: 
     OSError
         A file cannot be read.
     """
-    wanted = [recording for recording in visit.recordings if recording.state in READ_BACK]
+    required = [recording for recording in visit.recordings if recording.state in READ_BACK]
     recordings, findings = [], list(visit.details.findings)
-    for number, recording in enumerate(wanted):
-        report(number / len(wanted), recording.details.name)
+    for number, recording in enumerate(required):
+        report(number / len(required), recording.details.name)
         read, noticed = recording_with_samples(opened, recording, decoders)
         recordings.append(read)
         findings += noticed
@@ -158,7 +158,7 @@ def recording_with_samples(
 def export_orphan(opened: OpenedLibrary, orphan: Interrupted, folder: Path, decoders: Decoders, report: Report) -> None:
     """Write one CSV file per sensor of a recording that no session knows, to be imported into the right one.
 
-    Nobody knows where its sensors were worn, so it is no session folder. It stays in the library. The audit is told
+    Nobody knows where its sensors were worn, so it is no session folder. It stays in the library. The audit is reported
     before anything is written, and once more when all of it is.
 
     Raises
@@ -176,18 +176,18 @@ def export_orphan(opened: OpenedLibrary, orphan: Interrupted, folder: Path, deco
     opened.library.audit.note(Action.EXPORT, subject, format="one CSV per sensor")
     folder.mkdir(parents=True, exist_ok=True)
     names = _own_names(decoded)
-    for number, (sensor, heard) in enumerate(decoded.sensors.items()):
+    for number, (sensor, received) in enumerate(decoded.sensors.items()):
         report(number / len(decoded.sensors), sensor)
-        write_site(heard.block, folder / f"{folder_for(names.get(sensor, sensor))}.csv")
+        write_site(received.block, folder / f"{folder_for(names.get(sensor, sensor))}.csv")
     if decoded.is_simulated:
         (folder / SIMULATED_MARK).write_text("Nobody was measured.\n", encoding="ascii")
     opened.library.audit.note(Action.EXPORT, subject, **WHOLE)
 
 
 def was_exported(opened: OpenedLibrary, orphan: Interrupted) -> bool:
-    """Whether all of an orphan is in files already, so that nobody has to be told of it again."""
-    told = opened.library.audit.entries(about("recording", orphan.recording_id))
-    return any(entry.action == Action.EXPORT and entry.details == canonical(WHOLE) for entry in told)
+    """Whether all of an orphan is in files already, so that nobody has to be given of it again."""
+    reported = opened.library.audit.entries(about("recording", orphan.recording_id))
+    return any(entry.action == Action.EXPORT and entry.details == canonical(WHOLE) for entry in reported)
 
 
 def _refuse_undecoded(name: str, decoded: DecodedJournal) -> None:
@@ -200,8 +200,8 @@ def _refuse_undecoded(name: str, decoded: DecodedJournal) -> None:
     """
     if decoded.undecoded:
         what = tr("{recording} was recorded with {driver}, which this version cannot read")
-        told = what.format(recording=name, driver=decoded.undecoded[0])
-        raise LibraryError(told, "Install the version used to record it, or a later one")
+        reported = what.format(recording=name, driver=decoded.undecoded[0])
+        raise LibraryError(reported, "Install the version used to record it, or a later one")
 
 
 def _import_recordings(opened: OpenedLibrary, session_id: UUID, session: Session, report: Report, room: Room) -> None:
@@ -217,10 +217,10 @@ def _import_recordings(opened: OpenedLibrary, session_id: UUID, session: Session
             opened.library.sessions.place(session_id, placed)
             worn = placed
 
-        def told(share: float, number: int = number, name: str = recording.name) -> None:
+        def reported(share: float, number: int = number, name: str = recording.name) -> None:
             report((number + share) / len(session.recordings), name)
 
-        _import_recording(opened, session_id, session, recording, names, told, room)
+        _import_recording(opened, session_id, session, recording, names, reported, room)
 
 
 def _import_recording(
@@ -229,7 +229,7 @@ def _import_recording(
     session: Session,
     recording: Recording,
     names: Mapping[Site, str],
-    told: Callable[[float], None],
+    reported: Callable[[float], None],
     room: Room,
 ) -> None:
     recordings, recording_id = opened.library.recordings, uuid7()
@@ -245,7 +245,7 @@ def _import_recording(
             source = writer.source(info, layout_of(block, session.sensors.get(site, SensorInfo()).rate_hz))
             for share, piece in _pieces(block):
                 writer.samples(source, 0, piece, waits=True)
-                told((done + share) / len(names))
+                reported((done + share) / len(names))
     summary = writer.stop()
     _refuse_incomplete(summary)
     recordings.close(recording_id, RecordingState.CLOSED, {header.segment: summary.sha256})
@@ -268,7 +268,7 @@ def _refuse_incomplete(summary: JournalSummary) -> None:
     """
     if summary.state is State.CLOSED and not summary.dropped_records and summary.reason == "stopped":
         return
-    what, remedy = TOLD[Trouble(summary.reason)] if summary.reason in list(Trouble) else TOLD[Trouble.DISK_GONE]
+    what, remedy = REPORTED[Trouble(summary.reason)] if summary.reason in list(Trouble) else REPORTED[Trouble.DISK_GONE]
     raise LibraryError(what, remedy)
 
 

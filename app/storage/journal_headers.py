@@ -9,7 +9,7 @@ from app.storage.database.engine import Database
 from app.storage.database.models import JournalRow, SettingRow
 from app.storage.journal.header import HEADER_BYTES, JournalHeader, JournalRefusedError
 
-HEADERS_DUE = "journal_headers_due"  # the setting that says that headers still hold the old wrapping
+HEADERS_DUE = "journal_headers_due"  # the setting that states that headers still hold the old wrapping
 
 
 def write_headers(database: Database, recordings: Path) -> None:
@@ -31,12 +31,12 @@ def write_headers(database: Database, recordings: Path) -> None:
         with path.open("r+b", buffering=0) as journal:
             found = journal.read(HEADER_BYTES)
             try:
-                wanted = JournalHeader.parsed(found, file, wrapped_key).packed()
+                required = JournalHeader.parsed(found, file, wrapped_key).packed()
             except JournalRefusedError:
-                continue  # damaged before, and said so wherever it is read
-            if wanted != found:
+                continue  # damaged before, and stated so wherever it is read
+            if required != found:
                 journal.seek(0)
-                journal.write(wanted)
+                journal.write(required)
                 os.fsync(journal.fileno())
     with database.writing() as session:
         if (row := session.get(SettingRow, HEADERS_DUE)) is not None:

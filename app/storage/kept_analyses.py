@@ -1,6 +1,6 @@
 """What came of these very samples, was it computed before? Then it is read, not computed again.
 
-The key is over all that an analysis is given: the samples themselves, what was said of them, and the program's own
+The key is over all that an analysis is given: the samples themselves, what was stated about them, and the program's own
 code. An analysis is given nothing else (`bare`), so nothing else can change it.
 """
 
@@ -29,11 +29,11 @@ FIGURES_FROM = ("gaitwright", "numpy", "scipy", "vqf")  # whose next version may
 
 
 def bare(session: Session) -> Session:
-    """The session with all that an analysis reads, and without what was said to people: names, notes, conditions.
+    """The session with all that an analysis reads, and without what was stated to people: names, notes, conditions.
 
     Nor with the strides that were left out by hand: they are left out of what was found (`core.gait.chosen_strides`).
     """
-    patient, told = session.patient, session.sensors
+    patient, reported = session.patient, session.sensors
     return Session(
         recordings=tuple(
             Recording(
@@ -50,7 +50,7 @@ def bare(session: Session) -> Session:
         patient=Patient(affected_side=patient.affected_side, prosthetic_side=patient.prosthetic_side),
         sensors={
             site: SensorInfo(rate_hz=info.rate_hz, rate_kind=info.rate_kind, clock=info.clock)
-            for site, info in told.items()
+            for site, info in reported.items()
         },
         zero_rad=session.zero_rad,
         turned_sign=session.turned_sign,
@@ -60,13 +60,14 @@ def bare(session: Session) -> Session:
 
 
 def is_same_question(one: Session, other: Session) -> bool:
-    """Whether both give an analysis the very same: the same samples, not only equal ones, and the same said of them."""
+    """Whether both give an analysis the very same: the same samples, not only equal ones, and the same stated of
+    them."""
     both = (one, other)
     blocks = [[block for recording in session.recordings for block in recording.imu.values()] for session in both]
     if len(blocks[0]) != len(blocks[1]) or any(a is not b for a, b in zip(*blocks, strict=True)):
         return False
-    told = [_told(session) for session in both]
-    return told[0] == told[1]
+    reported = [_reported(session) for session in both]
+    return reported[0] == reported[1]
 
 
 def find_analysis(results: Results, session_id: UUID, session: Session) -> Analysis | None:
@@ -95,8 +96,8 @@ def keep_analysis(results: Results, session_id: UUID, session: Session, analysis
         _log.info("an analysis was not kept", exc_info=error)
 
 
-def _told(session: Session) -> tuple[Session, list[list[Site]]]:
-    """What an analysis is told besides the samples, and at which sites they were measured."""
+def _reported(session: Session) -> tuple[Session, list[list[Site]]]:
+    """What an analysis is reported besides the samples, and at which sites they were measured."""
     given = bare(session)
     without_samples = tuple(replace(recording, imu={}) for recording in given.recordings)
     return replace(given, recordings=without_samples), [list(recording.imu) for recording in session.recordings]
@@ -105,17 +106,17 @@ def _told(session: Session) -> tuple[Session, list[list[Site]]]:
 def inputs_of(session: Session) -> AnalysisInputs:
     """All that `analyse(bare(session))` depends on."""
     patient = session.patient
-    told: dict[str, str | float | bool | None] = {
+    reported: dict[str, str | float | bool | None] = {
         "affected_side": patient.affected_side,
         "prosthetic_side": patient.prosthetic_side,
         "is_simulated": session.is_simulated,
     }
     for site, info in session.sensors.items():
-        told[f"{site} rate_hz"] = info.rate_hz
-        told[f"{site} rate_kind"] = info.rate_kind
-        told[f"{site} clock"] = info.clock
+        reported[f"{site} rate_hz"] = info.rate_hz
+        reported[f"{site} rate_kind"] = info.rate_kind
+        reported[f"{site} clock"] = info.clock
     for number, finding in enumerate(session.findings):
-        told[f"finding {number}"] = repr(finding)
+        reported[f"finding {number}"] = repr(finding)
     return AnalysisInputs(
         recordings=tuple(
             AnalysedRecording(
@@ -131,7 +132,7 @@ def inputs_of(session: Session) -> AnalysisInputs:
         ),
         zero_rad=session.zero_rad,
         turned_sign=session.turned_sign,
-        details=told,
+        details=reported,
         algorithm=algorithm(),
         parameters={},
     )

@@ -1,9 +1,9 @@
 """How does a library get another data key, so that who had the old one reads nothing of what comes?
 
-The database is copied under the new key, with the keys of all journals wrapped anew, then takes the place of the old
+The database is copied under the new key, with the keys of all journals wrapped again, then takes the place of the old
 one, and the slots' file after it. Killed at any point, the library opens with the keys that it had or with all of the
-new ones: `settle` (`app.storage.key_change_rest`) looks which database stands there, by the salt in its first bytes,
-and takes the slots' file that belongs to it. What stands in the journals' own headers comes last; until then the
+new ones: `settle` (`app.storage.key_change_rest`) looks which database is there, by the salt in its first bytes,
+and takes the slots' file that belongs to it. What is in the journals' own headers comes last; until then the
 database's copy opens them.
 
 Backups that were made before keep their old key. So does what a disk keeps of files that were replaced.
@@ -77,7 +77,7 @@ def change_data_key(opened: OpenedLibrary, staying: Iterable[str], report: Repor
     report(0.0, "")
     opened.library.close()
     with slots.held():
-        sealed = slots.sealed_anew(old, new, staying)
+        sealed = slots.sealed_again(old, new, staying)
         _replace(opened.folder, old, new, sealed.content, report)
     database = Database(sqlite_engine(opened.folder / DATABASE, new, creates=False))
     try:
@@ -134,7 +134,7 @@ def _replace(folder: Path, old: DataKey, new: DataKey, keys: dict[str, object], 
             assert connection is not None  # it is open
             _hold_alone(connection.execute)
             _copy(connection, beside, new, report)
-            _wrap_anew(folder, beside, old, new, report)
+            _wrap_again(folder, beside, old, new, report)
             salt = salt_of(beside)
             if salt is None:
                 raise LibraryError("The new database was not found", "Try again, or check the disk")
@@ -164,18 +164,18 @@ def _hold_alone(execute: Callable[[str], object]) -> None:
 
 
 def _copy(connection: "object", beside: Path, new: KeyMaterial, report: Report) -> None:
-    def told(_status: int, left: int, total: int) -> None:
+    def reported(_status: int, left: int, total: int) -> None:
         report(COPY_SHARE * (1 - left / max(total, 1)), "")
 
     target = sqlite_engine(beside, new)
     try:
         with closing(target.raw_connection()) as writing:
-            connection.backup(writing.driver_connection, pages=PAGES, progress=told)  # type: ignore[attr-defined]  # a sqlcipher3 connection
+            connection.backup(writing.driver_connection, pages=PAGES, progress=reported)  # type: ignore[attr-defined]  # a sqlcipher3 connection
     finally:
         target.dispose()
 
 
-def _wrap_anew(folder: Path, beside: Path, old: DataKey, new: DataKey, report: Report) -> None:
+def _wrap_again(folder: Path, beside: Path, old: DataKey, new: DataKey, report: Report) -> None:
     database = Database(sqlite_engine(beside, new, creates=False))
     try:
         with database.writing() as session:
@@ -198,23 +198,23 @@ def _wrap_anew(folder: Path, beside: Path, old: DataKey, new: DataKey, report: R
 
 
 def _wrap_journal(path: Path, row: JournalRow, old: DataKey, new: DataKey) -> None:
-    """Wrap a journal's key anew in its row, with the hash that its file is going to have."""
+    """Wrap a journal's key again in its row, with the hash that its file is going to have."""
     try:
         with path.open("rb") as file:
             found = file.read(HEADER_BYTES)
             header = JournalHeader.parsed(found, path.name, row.wrapped_key)
             key = header.key(old, path.name)
             assert key is not None  # its row has one
-            wanted = header.with_key(key, new)
-            before, after = hashlib.sha256(found), hashlib.sha256(wanted.packed())
+            required = header.with_key(key, new)
+            before, after = hashlib.sha256(found), hashlib.sha256(required.packed())
             while row.sha256 and (piece := file.read(PIECE_BYTES)):
                 before.update(piece)
                 after.update(piece)
     except (JournalRefusedError, FileNotFoundError):
-        return  # it was missing or damaged before, and is said to be wherever it is read
+        return  # it was missing or damaged before, and is stated to be wherever it is read
     if row.sha256 == before.hexdigest():  # else it is not what it was when it was closed, and that stays to be seen
         row.sha256 = after.hexdigest()
-    row.wrapped_key = wanted.wrapped_key
+    row.wrapped_key = required.wrapped_key
 
 
 def _size(path: Path) -> int:

@@ -20,7 +20,7 @@ SAFE_PRIORITY = 1  # those below are, by the package's own rule, not recommended
 
 
 def is_there_a_keyring() -> bool:
-    """Tell whether this machine has a keyring that keeps a secret."""
+    """Return whether this machine has a keyring that keeps a secret."""
     return _keyring() is not None
 
 
@@ -60,7 +60,7 @@ def open_remembered(slots: KeySlots, code: str) -> DataKey | None:
         return None
     try:
         secret = keyring.get_password(SERVICE, slot.salt)
-    except Exception:  # as above; the passphrase is asked for, which says enough
+    except Exception:  # as above; the passphrase is asked for, which states enough
         return None
     return slot.opened(secret.encode()) if secret else None
 

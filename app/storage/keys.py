@@ -33,11 +33,11 @@ BUSY_S = 5.0  # another program's change takes a tenth of it
 RECOVERY = "recovery"
 CONFIRMED = "is_recovery_key_confirmed"
 GIVEN = "given_passphrases"  # codes of those whose passphrase somebody else chose; files without it name nobody
-KEYRING = "keyring-"  # stands before an operator's code; no code that is typed has a dash
+KEYRING = "keyring-"  # is before an operator's code; no code that is typed has a dash
 
 
 class KeyRefusedError(Exception):
-    """The library does not open, or the slots cannot be changed as asked. Says what and what to do."""
+    """The library does not open, or the slots cannot be changed as asked. States what and what to do."""
 
     def __init__(self, what: str, remedy: str) -> None:
         super().__init__(f"{what}. {remedy}.")
@@ -45,7 +45,7 @@ class KeyRefusedError(Exception):
 
 
 @dataclass(frozen=True, slots=True)
-class SealedAnew:
+class SealedAgain:
     """What the slots' file is to hold once the data key is changed.
 
     Attributes
@@ -104,7 +104,7 @@ class KeySlots:
         Raises
         ------
         KeyRefusedError
-            No such operator, or not this passphrase; the two are not told apart.
+            No such operator, or not this passphrase; the two are not distinguished.
         """
         slot = self._read().get(_normal(code))
         data_key = self._opened(slot, _secret(passphrase)) if slot is not None and _is_operators(slot.code) else None
@@ -212,7 +212,7 @@ class KeySlots:
         with self._changing() as slots:
             self._write(slots, is_confirmed=True)
 
-    def sealed_anew(self, old: KeyMaterial, new: KeyMaterial, staying: Iterable[str]) -> SealedAnew:
+    def sealed_again(self, old: KeyMaterial, new: KeyMaterial, staying: Iterable[str]) -> SealedAgain:
         """What the file is to hold when `new` is the data key of the operators `staying`, and of nobody else.
 
         Their passphrases, keyrings and the recovery key go on opening the library, under the new key.
@@ -228,7 +228,7 @@ class KeySlots:
         if not any(_is_operators(code) for code in kept):
             raise KeyRefusedError("Nobody would have a key to the library", "Log in with the passphrase once")
         left_out = sorted(code for code in codes if code in slots and code not in kept)
-        return SealedAnew(_file(kept, is_confirmed, self._given()), text, tuple(left_out))
+        return SealedAgain(_file(kept, is_confirmed, self._given()), text, tuple(left_out))
 
     def keyring_slot(self, code: str) -> Slot | None:
         """The slot that an operator's keyring opens; None when it was not asked to."""
@@ -337,7 +337,7 @@ class KeySlots:
     def _write(
         self, slots: dict[str, Slot], *, is_confirmed: bool | None = None, given: frozenset[str] | None = None
     ) -> None:
-        """Keep the slots and what is said beside them; None: as it is."""
+        """Keep the slots and what is stated beside them; None: as it is."""
         if is_confirmed is None:
             is_confirmed = self.is_recovery_key_confirmed
         if given is None:
@@ -374,8 +374,8 @@ def _recovery_bytes(text: str) -> bytes:
     count = RECOVERY_BYTES * 8 // 5
     if len(letters) != count + 1 or any(c not in LETTERS for c in letters):
         raise KeyRefusedError(
-            tr("A recovery key has {wanted} characters; this one has {count}").format(
-                wanted=count + 1, count=len(letters)
+            tr("A recovery key has {required} characters; this one has {count}").format(
+                required=count + 1, count=len(letters)
             ),
             "Compare it with the recovery sheet",
         )

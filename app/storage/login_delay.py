@@ -1,8 +1,8 @@
 """How long does the next try at a passphrase have to wait?
 
-After three wrong ones, twice as long after each further one. The count stands beside the library, and is raised before
+After three wrong ones, twice as long after each further one. The count is beside the library, and is raised before
 a passphrase is tried: neither a restart nor a kill in between is worth a try. No time is kept. A program that starts
-begins the wait anew, so a clock that was set changes nothing, and nobody ever waits longer than `LONGEST_DELAY_S`.
+begins the wait again, so a clock that was set changes nothing, and nobody ever waits longer than `LONGEST_DELAY_S`.
 
 Where the count cannot be kept, on a disk that is read only, every try waits `UNKEPT_DELAY_S`. Who may write to the
 library's folder can remove the file; the count slows down whoever sits at the screen, Argon2id whoever has a copy.

@@ -13,11 +13,11 @@ from app.storage.database.engine import changed_meanwhile
 from app.storage.database.models import AuditRow, PatientRow, RecordingRow, ResultRow, SessionRow, folded
 from app.storage.database.values import (
     patient_in_row,
+    reported_patient,
     stored_patient,
     stored_patients,
     stored_result,
     stored_session,
-    told_patient,
 )
 from app.storage.edited_fields import PATIENT_CORRECTABLE
 from app.storage.sessions import refuse_early
@@ -46,7 +46,7 @@ class Patients:
     def __init__(self, unit: UnitOfWork) -> None:
         self._unit = unit
 
-    def create(self, told: Patient) -> StoredPatient:
+    def create(self, reported: Patient) -> StoredPatient:
         """Add a patient.
 
         Raises
@@ -55,9 +55,9 @@ class Patients:
             The code is empty or another patient's, or a value is out of range.
         """
         with self._unit.writing(Role.CLINICIAN) as session:
-            told = _checked(told)
-            _refuse_taken(session, told.code)
-            row = PatientRow(created_at=self._unit.now(), **patient_in_row(told))
+            reported = _checked(reported)
+            _refuse_taken(session, reported.code)
+            row = PatientRow(created_at=self._unit.now(), **patient_in_row(reported))
             session.add(row)
             session.flush()
             note(self._unit, session, Action.CREATE, about("patient", row.id))
@@ -93,8 +93,8 @@ class Patients:
             )
         return tuple(sorted(found, key=lambda patient: (patient.last_session, str(patient.id)), reverse=True))
 
-    def change(self, patient: StoredPatient, told: Patient) -> StoredPatient:
-        """Correct what was told of a patient; kept in the history, and undone from there.
+    def change(self, patient: StoredPatient, reported: Patient) -> StoredPatient:
+        """Correct what was given of a patient; kept in the history, and undone from there.
 
         Raises
         ------
@@ -105,12 +105,12 @@ class Patients:
         """
         with self._unit.writing(Role.CLINICIAN) as session:
             row = _current(session, patient)
-            apply(self._unit, session, patient_changes(session, row, told), patient.id)
+            apply(self._unit, session, patient_changes(session, row, reported), patient.id)
             session.flush()
             return stored_patient(session, row)
 
     def merge(self, kept: StoredPatient, double: StoredPatient) -> StoredPatient:
-        """Give `kept` all sessions and goals of `double`, and what only `double` tells, which is then not listed.
+        """Give `kept` all sessions and goals of `double`, and what only `double` reports, which is then not listed.
 
         One correction of `kept`, undone as any other.
 
@@ -130,7 +130,7 @@ class Patients:
                 for name in PATIENT_CORRECTABLE
                 if getattr(row, name) in (None, "") and getattr(other, name) not in (None, "")
             }
-            goals = brought_together(*(told_patient(one).goals for one in (row, other)))
+            goals = brought_together(*(reported_patient(one).goals for one in (row, other)))
             moved = session.scalars(select(SessionRow).where(SessionRow.patient_id == other.id))
             changes = differences(row, filled | {"goals": goals_text(goals)})
             changes += [change for visit in moved for change in differences(visit, {"patient_id": row.id})]
@@ -253,12 +253,12 @@ class Patients:
             return stored_patient(session, row)
 
 
-def patient_changes(session: OrmSession, row: PatientRow, told: Patient) -> list[Change]:
-    """What has to change in `row` so that it says what `told` does; raises as `Patients.change`."""
-    told = _checked(told)
-    if folded(told.code) != row.code_folded:
-        _refuse_taken(session, told.code)
-    return differences(row, patient_in_row(told, PATIENT_CORRECTABLE))
+def patient_changes(session: OrmSession, row: PatientRow, reported: Patient) -> list[Change]:
+    """What has to change in `row` so that it states what `reported` does; raises as `Patients.change`."""
+    reported = _checked(reported)
+    if folded(reported.code) != row.code_folded:
+        _refuse_taken(session, reported.code)
+    return differences(row, patient_in_row(reported, PATIENT_CORRECTABLE))
 
 
 def existing_patient(session: OrmSession, patient_id: UUID) -> PatientRow:
@@ -285,17 +285,17 @@ def _refuse_taken(session: OrmSession, code: str) -> None:
     raise LibraryError("Another patient has this code", "Open that patient, or choose another code")
 
 
-def _checked(told: Patient) -> Patient:
+def _checked(reported: Patient) -> Patient:
     """What a session folder can hold too; the limits are its own."""
-    told = replace(told, code=told.code.strip())
-    if not told.code:
+    reported = replace(reported, code=reported.code.strip())
+    if not reported.code:
         raise LibraryError("A patient needs a code", "Enter the code your clinic uses for this patient")
     for key, (name, check) in PATIENT.items():
-        value = getattr(told, name)
+        value = getattr(reported, name)
         try:
             if value is not None:
                 check(value)
         except ExpectedError as error:
             what = tr("{field} must be {required}").format(field=key, required=filled(error.what, error.values))
             raise LibraryError(what, "Correct the value") from None
-    return told
+    return reported

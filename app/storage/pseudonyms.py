@@ -3,7 +3,7 @@
 A patient's pseudonym and the shift of the dates come from the library's key and the patient's row, so every export of
 one patient has the same ones: visits can still be put together and in order, and nobody without the key gets back.
 What may say a name is left out: notes, operator, software, keys and columns that mean nothing to us. Recordings get the
-names that we give, sensors and their clocks are numbered. In place of the year of birth stands the age at the visit,
+names that we give, sensors and their clocks are numbered. In place of the year of birth is the age at the visit,
 90 and older as one. What somebody typed freely, device, aids, surface and conditions, leaves only where it is asked
 for, each by itself; without their words conditions are numbered, so that equal ones are still equal. What was changed
 at a prosthesis stays, part by part with its figures; what was typed of it leaves only where it is asked for. Goals
@@ -31,7 +31,7 @@ from core.targets import tallies_of, with_tallies
 from devices.files.imports import folder_for, free_name
 
 AGE = "age_years"  # among what a patient's table of a session folder may hold beside what we read of it
-OLDEST_TOLD = 89  # older people are so few that the age alone says who it is
+OLDEST_REPORTED = 89  # older people are so few that the age alone states who it is
 SEXES = ("female", "male", "other")
 LETTERS = 8  # of a pseudonym: 40 bits, so that two of ten thousand patients hardly ever share one
 LEAST_SHIFT, MOST_SHIFT = datetime.timedelta(days=30), datetime.timedelta(days=730)
@@ -99,15 +99,15 @@ class Pseudonyms:
         return replace(pseudonymised, findings=tuple(_findings(session.findings, names)))
 
     def _patient(self, patient_id: UUID, session: Session, kept: Collection[Typed]) -> Patient:
-        told, age = session.patient, age_in_words(session)
+        reported, age = session.patient, age_in_words(session)
         return replace(
-            told,
+            reported,
             code=self.code(patient_id, session.is_simulated),
             birth_year=None,
-            sex=told.sex if told.sex in SEXES else "",
-            device=told.device if Typed.DEVICE in kept else "",
-            aids=told.aids if Typed.AIDS in kept else "",
-            goals=tuple(self._goal(patient_id, goal) for goal in told.goals),
+            sex=reported.sex if reported.sex in SEXES else "",
+            device=reported.device if Typed.DEVICE in kept else "",
+            aids=reported.aids if Typed.AIDS in kept else "",
+            goals=tuple(self._goal(patient_id, goal) for goal in reported.goals),
             unknown={AGE: age} if age else {},
         )
 
@@ -150,8 +150,10 @@ def _findings(findings: Sequence[Finding], names: Mapping[str, str]) -> Iterator
             or not set(sites) <= set(Site)
         ):
             continue
-        wanted = {part[1] for part in Formatter().parse(SENTENCES[one.key])}
-        numbers = {key: "?" if isinstance(value, str) else value for key, value in one.numbers.items() if key in wanted}
+        required = {part[1] for part in Formatter().parse(SENTENCES[one.key])}
+        numbers = {
+            key: "?" if isinstance(value, str) else value for key, value in one.numbers.items() if key in required
+        }
         yield replace(one, where=", ".join([names[name], *sites]), numbers=numbers)
 
 
@@ -161,25 +163,27 @@ def age_in_words(session: Session) -> str:
     if born is None or not (year.isascii() and year.isdigit()) or int(year) < born:
         return ""
     age_years = int(year) - born
-    return str(age_years) if age_years <= OLDEST_TOLD else f"{OLDEST_TOLD + 1}+"
+    return str(age_years) if age_years <= OLDEST_REPORTED else f"{OLDEST_REPORTED + 1}+"
 
 
 def _sensor(info: SensorInfo, names: Mapping[str, str], clocks: Mapping[str, str]) -> SensorInfo:
     return replace(info, serial=names.get(info.serial, ""), clock=clocks.get(info.clock, ""), unknown={})
 
 
-def _alignment(told: AlignmentChange | None, conditions: Mapping[str, str], *, is_kept: bool) -> AlignmentChange | None:
-    """What was changed, with our word for the condition before. Without words what only they tell is left out."""
-    if told is None:
+def _alignment(
+    reported: AlignmentChange | None, conditions: Mapping[str, str], *, is_kept: bool
+) -> AlignmentChange | None:
+    """What was changed, with our word for the condition before. Without words what only they report is left out."""
+    if reported is None:
         return None
-    said = (one if is_kept else _without_words(one) for one in told.parts)
-    parts = tuple(one for one in said if one is not None)
-    return AlignmentChange(conditions.get(told.since, ""), parts) if parts else None
+    stated = (one if is_kept else _without_words(one) for one in reported.parts)
+    parts = tuple(one for one in stated if one is not None)
+    return AlignmentChange(conditions.get(reported.since, ""), parts) if parts else None
 
 
-def _without_words(told: PartChange) -> PartChange | None:
+def _without_words(reported: PartChange) -> PartChange | None:
     """The figures alone; None where there are none."""
-    return replace(told, text="") if any(getattr(told, name) for name in FIGURES) else None
+    return replace(reported, text="") if any(getattr(reported, name) for name in FIGURES) else None
 
 
 def _conditions(session: Session, *, is_kept: bool) -> Mapping[str, str]:
@@ -196,5 +200,5 @@ def _numbered(session: Session) -> Mapping[str, str]:
 
 
 def _numbers(word: str, names: Iterable[str]) -> Mapping[str, str]:
-    """A number for each name that says something, the same for the same."""
+    """A number for each name that states something, the same for the same."""
     return {name: f"{word} {number}" for number, name in enumerate(dict.fromkeys(filter(None, names)), 1)}

@@ -1,4 +1,4 @@
-"""The recordings of a library's sessions: which journals they are in, and what was told of them."""
+"""The recordings of a library's sessions: which journals they are in, and what was given of them."""
 
 import datetime
 import json
@@ -44,14 +44,14 @@ class Recordings:
     def start(
         self,
         session_id: UUID,
-        told: Recording,
+        reported: Recording,
         is_simulated: bool,
         recording_id: UUID | None = None,
         *,
         is_decided: bool = True,
         began_at: datetime.datetime | None = None,
     ) -> StoredRecording:
-        """Add a recording that is open, worn as the session's latest placement says.
+        """Add a recording that is open, worn as the session's latest placement states.
 
         Parameters
         ----------
@@ -71,7 +71,7 @@ class Recordings:
             visit = session.get(SessionRow, session_id)
             if visit is None:
                 raise LibraryError("This session is no longer in the library", "Reload the list")
-            _refuse_taken(visit, told.name)
+            _refuse_taken(visit, reported.name)
             row = RecordingRow(
                 id=recording_id or uuid7(),
                 session_id=session_id,
@@ -81,10 +81,10 @@ class Recordings:
                 is_decided=is_decided,
                 state=RecordingState.OPEN,
                 station=self._unit.station,
-                left_out=left_out_in_row(told.left_out_s),
-                alignment=alignment_text(told.alignment),
-                test=planned_text(told.test),
-                **{name: getattr(told, name) for name in RECORDING_FIELDS},
+                left_out=left_out_in_row(reported.left_out_s),
+                alignment=alignment_text(reported.alignment),
+                test=planned_text(reported.test),
+                **{name: getattr(reported, name) for name in RECORDING_FIELDS},
             )
             session.add(row)
             visit.is_simulated = visit.is_simulated or is_simulated
@@ -155,8 +155,8 @@ class Recordings:
             row.state = RecordingState.DISCARDED
             note(self._unit, session, Action.DELETE, about("recording", row.id), is_final=True)
 
-    def change(self, recording: StoredRecording, told: Recording) -> StoredRecording:
-        """Correct what was told of a recording: condition, kept, strides left out and so on; undone from the history.
+    def change(self, recording: StoredRecording, reported: Recording) -> StoredRecording:
+        """Correct what was given of a recording: condition, kept, strides left out and so on; undone from the history.
 
         Raises
         ------
@@ -168,7 +168,7 @@ class Recordings:
         with self._unit.writing(Role.CLINICIAN) as session:
             row = current_recording(session, recording)
             visit = session.get_one(SessionRow, row.session_id)
-            apply(self._unit, session, recording_changes(visit, row, told), visit.patient_id, visit.id)
+            apply(self._unit, session, recording_changes(visit, row, reported), visit.patient_id, visit.id)
             session.flush()
             return stored_recording(row)
 
@@ -186,14 +186,14 @@ class Recordings:
             return stored_recording(row)
 
     def find(self, recording_id: UUID) -> StoredRecording | None:
-        """The recording that a journal says it is; None: an orphan."""
+        """The recording that a journal states it is; None: an orphan."""
         with self._unit.reading() as session:
             row = session.get(RecordingRow, recording_id)
             return None if row is None else stored_recording(row)
 
     def begun_at(self, utc_s: int) -> tuple[StoredRecording, ...]:
         """Those that were begun in this second since 1970, of no deleted patient or session; oldest first."""
-        wanted = (
+        required = (
             select(RecordingRow.id, RecordingRow.started)
             .join(SessionRow, RecordingRow.session_id == SessionRow.id)
             .join(PatientRow, SessionRow.patient_id == PatientRow.id)
@@ -202,7 +202,7 @@ class Recordings:
             .order_by(RecordingRow.id)
         )
         with self._unit.reading() as session:
-            ids = [one for one, started in session.execute(wanted) if _utc_s(started) == utc_s]
+            ids = [one for one, started in session.execute(required) if _utc_s(started) == utc_s]
             return tuple(stored_recording(session.get_one(RecordingRow, one)) for one in ids)
 
     def known(self) -> Mapping[UUID, frozenset[int]]:
@@ -230,22 +230,23 @@ class Recordings:
 
     def kept(self, recording_ids: Iterable[UUID]) -> dict[UUID, dict[int, str]]:
         """What segments of these are called in the clinic's shared place, as far as they are there."""
-        wanted = select(JournalRow.recording_id, JournalRow.segment, JournalRow.kept_as).where(
+        required = select(JournalRow.recording_id, JournalRow.segment, JournalRow.kept_as).where(
             JournalRow.recording_id.in_(list(recording_ids)), JournalRow.kept_as != ""
         )
         found: dict[UUID, dict[int, str]] = {}
         with self._unit.reading() as session:
-            for recording_id, segment, kept_as in session.execute(wanted):
+            for recording_id, segment, kept_as in session.execute(required):
                 found.setdefault(recording_id, {})[segment] = kept_as
         return found
 
     def destroyed(self, recording_ids: Iterable[UUID]) -> frozenset[UUID]:
-        """Which of these were ended and then destroyed for good, as the audit tells even where their rows are gone."""
+        """Which of these were ended and then destroyed for good, as the audit reports even where their rows are
+        gone."""
         ids = {about("recording", one): one for one in recording_ids}
-        wanted = select(AuditRow.subject, AuditRow.action, AuditRow.details).where(AuditRow.subject.in_(ids))
+        required = select(AuditRow.subject, AuditRow.action, AuditRow.details).where(AuditRow.subject.in_(ids))
         ended, gone = set(), set()
         with self._unit.reading() as session:
-            for subject, action, details in session.execute(wanted):
+            for subject, action, details in session.execute(required):
                 if action == Action.DELETE and "is_final" in json.loads(details):
                     gone.add(ids[subject])
                 elif action == Action.EDIT and "state" in json.loads(details):
@@ -254,16 +255,16 @@ class Recordings:
 
     def readable_files(self) -> frozenset[str]:
         """Every journal that was not destroyed."""
-        wanted = (
+        required = (
             select(JournalRow)
             .join(RecordingRow)
             .where(RecordingRow.state != RecordingState.DISCARDED, JournalRow.wrapped_key.is_not(None))
         )
         with self._unit.reading() as session:
-            return frozenset(journal.file for journal in session.scalars(wanted))
+            return frozenset(journal.file for journal in session.scalars(required))
 
     def undecided(self) -> tuple[UndecidedWalk, ...]:
-        """Walks of which nobody has said whether they are kept: recovered, or closed here before it was said.
+        """Walks of which nobody has stated whether they are kept: recovered, or closed here before it was stated.
 
         Of no deleted patient, in order of time.
         """
@@ -273,7 +274,7 @@ class Recordings:
             RecordingRow.is_decided.is_(False),
             RecordingRow.station == self._unit.station,  # at another it may be asked at this moment
         )
-        wanted = (
+        required = (
             select(RecordingRow, PatientRow.id, PatientRow.code)
             .join(SessionRow, RecordingRow.session_id == SessionRow.id)
             .join(PatientRow, SessionRow.patient_id == PatientRow.id)
@@ -285,7 +286,7 @@ class Recordings:
         with self._unit.reading() as session:
             return tuple(
                 UndecidedWalk(stored_recording(row), patient_id, code)
-                for row, patient_id, code in session.execute(wanted)
+                for row, patient_id, code in session.execute(required)
             )
 
     def still_open(self) -> tuple[StoredRecording, ...]:
@@ -306,23 +307,23 @@ def _utc_s(started: str) -> int | None:
         return None
 
 
-def recording_changes(visit: SessionRow, row: RecordingRow, told: Recording) -> list[Change]:
-    """What has to change in `row` so that it says what `told` does; raises as `Recordings.change`."""
-    if told.name != row.name:
-        _refuse_taken(visit, told.name)
-    wanted = {name: getattr(told, name) for name in RECORDING_CORRECTABLE}
-    in_row = {"left_out": left_out_in_row(told.left_out_s), "alignment": alignment_text(told.alignment)}
-    in_row |= {"test": planned_text(told.test)}
-    return differences(row, wanted | in_row)
+def recording_changes(visit: SessionRow, row: RecordingRow, reported: Recording) -> list[Change]:
+    """What has to change in `row` so that it states what `reported` does; raises as `Recordings.change`."""
+    if reported.name != row.name:
+        _refuse_taken(visit, reported.name)
+    required = {name: getattr(reported, name) for name in RECORDING_CORRECTABLE}
+    in_row = {"left_out": left_out_in_row(reported.left_out_s), "alignment": alignment_text(reported.alignment)}
+    in_row |= {"test": planned_text(reported.test)}
+    return differences(row, required | in_row)
 
 
 def decide_row(unit: UnitOfWork, session: OrmSession, visit: SessionRow, row: RecordingRow, is_kept: bool) -> None:
     """Take the answer whether a recording is kept, as `Recordings.decide`."""
     is_recovered = row.state is RecordingState.RECOVERED
-    wanted: dict[str, object] = {"is_kept": is_kept}
+    required: dict[str, object] = {"is_kept": is_kept}
     if is_recovered:
-        wanted["judged_by"] = unit.code
-    apply(unit, session, differences(row, wanted), visit.patient_id, visit.id)
+        required["judged_by"] = unit.code
+    apply(unit, session, differences(row, required), visit.patient_id, visit.id)
     row.is_decided = True
     session.flush()
     details = {"is_recovered": is_recovered, "is_kept": is_kept}
@@ -330,7 +331,7 @@ def decide_row(unit: UnitOfWork, session: OrmSession, visit: SessionRow, row: Re
 
 
 def current_recording(session: OrmSession, recording: StoredRecording) -> RecordingRow:
-    """The row, as long as it is what `recording` says.
+    """The row, as long as it is what `recording` states.
 
     Raises
     ------
@@ -355,7 +356,7 @@ def _free_number(session: OrmSession, visit: SessionRow, began_at: datetime.date
 
 
 def _instant(started: str) -> datetime.datetime | None:
-    """When a recording was begun; without a zone, as clocks show it here. None: nobody has said."""
+    """When a recording was begun; without a zone, as clocks show it here. None: nobody has stated."""
     try:
         return datetime.datetime.fromisoformat(started).astimezone()
     except ValueError:

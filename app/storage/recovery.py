@@ -1,7 +1,7 @@
 """What was recorded when the program, or the machine, ended without stopping? Found at the next start, and closed.
 
-Two kinds are found: rows that nobody closed, and orphans, journals that no row tells of because the database did not
-answer when they were begun. An orphan says itself which session it is of, unless its beginning is damaged. Nothing is
+Two kinds are found: rows that nobody closed, and orphans, journals that no row reports because the database did not
+answer when they were begun. An orphan states itself which session it is of, unless its beginning is damaged. Nothing is
 changed in a journal: whatever is proved in it is there, and is read in the same way as after a clean stop. Only the
 program that holds the library alone may ask (`opened.held_alone`), for what another program is recording is open, too.
 
@@ -36,12 +36,12 @@ from devices.files.imports import folder_for, free_name
 
 LAST_BYTES = (1 << 16, 1 << 22)  # where the last record is looked for: the longest has 1 MiB, most have far less
 EVERY_BYTES = 1 << 22  # between two reports
-FIRST_RECORDS = 100  # among which the mark is that says whose a recording is
+FIRST_RECORDS = 100  # among which the mark is that states whose a recording is
 
 
 @dataclass(frozen=True, slots=True)
 class Interrupted:
-    """A recording that nobody stopped, as its files' beginnings and ends tell.
+    """A recording that nobody stopped, as its files' beginnings and ends report.
 
     Attributes
     ----------
@@ -56,7 +56,7 @@ class Interrupted:
     problem, remedy
         What keeps it from being recovered, and what to do; empty where nothing does.
     belonging
-        Of an orphan: which session it was begun in, and what was told of it; None where that is not known.
+        Of an orphan: which session it was begun in, and what was given of it; None where that is not known.
     """
 
     recording_id: UUID
@@ -75,7 +75,7 @@ class Interrupted:
 
 @dataclass(frozen=True, slots=True)
 class Recovered:
-    """A recording that is closed now. `recorded_s` as all its records tell; one report for each segment."""
+    """A recording that is closed now. `recorded_s` as all its records report; one report for each segment."""
 
     stored: StoredRecording
     recorded_s: float
@@ -105,8 +105,8 @@ def find_interrupted(opened: OpenedLibrary) -> tuple[Interrupted, ...]:
                     known_to_all = {one.segment: one for one in late.journals if one.kept_as}
                     files[recording_id] = {n: opened.journal_path(one) for n, one in known_to_all.items()} | segments
     orphans = [recording_id for recording_id in files if recording_id not in known]
-    wanted = [*rows, *orphans]
-    return tuple(_look(opened, one, rows.get(one), files.get(one, {})) for one in sorted(wanted, key=str))
+    required = [*rows, *orphans]
+    return tuple(_look(opened, one, rows.get(one), files.get(one, {})) for one in sorted(required, key=str))
 
 
 def recover(opened: OpenedLibrary, interrupted: Interrupted, report: Report) -> Recovered:
@@ -128,8 +128,10 @@ def recover(opened: OpenedLibrary, interrupted: Interrupted, report: Report) -> 
     return _close(opened, interrupted.stored, _Contents(opened, interrupted, report))
 
 
-def adopt(opened: OpenedLibrary, orphan: Interrupted, session_id: UUID, told: Recording, report: Report) -> Recovered:
-    """Make an orphan a recording of a session, in order of time, worn as the session's latest placement says.
+def adopt(
+    opened: OpenedLibrary, orphan: Interrupted, session_id: UUID, reported: Recording, report: Report
+) -> Recovered:
+    """Make an orphan a recording of a session, in order of time, worn as the session's latest placement states.
 
     Raises
     ------
@@ -145,10 +147,10 @@ def adopt(opened: OpenedLibrary, orphan: Interrupted, session_id: UUID, told: Re
     contents = _Contents(opened, orphan, report)
     stored = opened.library.recordings.start(
         session_id,
-        told,
+        reported,
         contents.is_simulated,
         orphan.recording_id,
-        is_decided=told.kind is not RecordingKind.WALKING,
+        is_decided=reported.kind is not RecordingKind.WALKING,
         began_at=orphan.began_at,
     )
     return _close(opened, stored, contents)
@@ -164,11 +166,11 @@ def adopt_home(opened: OpenedLibrary, orphan: Interrupted, report: Report) -> Re
     """
     if orphan.belonging is None:
         raise LibraryError("The session of this recording is unknown", "Export the recording")
-    told, visit = orphan.belonging.details, opened.library.sessions.get(orphan.belonging.session_id)
-    if any(other.name == told.name for other in visit.details.recordings):
-        name = free_name(visit.details, told.kind)
-        told = replace(told, name=name, folder=folder_for(name))
-    return adopt(opened, orphan, visit.id, told, report)
+    reported, visit = orphan.belonging.details, opened.library.sessions.get(orphan.belonging.session_id)
+    if any(other.name == reported.name for other in visit.details.recordings):
+        name = free_name(visit.details, reported.kind)
+        reported = replace(reported, name=name, folder=folder_for(name))
+    return adopt(opened, orphan, visit.id, reported, report)
 
 
 def _look(
@@ -210,7 +212,7 @@ class _Length:
 
 
 def _belonging(opened: OpenedLibrary, segments: Mapping[int, Path]) -> Belonging | None:
-    """What one of the first marks says of whose it is."""
+    """What one of the first marks states of whose it is."""
     for path in segments.values():
         first = islice(JournalReader(path, opened.data_key).records(), FIRST_RECORDS)
         for record in first:
@@ -244,7 +246,7 @@ def _last_of(content: bytes, seal: Seal) -> Record | None:
 
 
 class _Contents:
-    """What a whole reading of all segments says."""
+    """What a whole reading of all segments states."""
 
     def __init__(self, opened: OpenedLibrary, interrupted: Interrupted, report: Report) -> None:
         self.is_simulated, self._length = False, _Length()
@@ -253,7 +255,7 @@ class _Contents:
         self.journals: list[StoredJournal] = []
         keys = _row_keys(interrupted.stored)
         self._total = max(sum(path.stat().st_size for path in interrupted.segments.values()), 1)
-        self._read = self._told = 0
+        self._read = self._reported = 0
         for number, path in interrupted.segments.items():
             reader = JournalReader(path, opened.data_key, keys.get(number))
             self._note_continued(reader.header)
@@ -288,16 +290,16 @@ class _Contents:
             self._read += len(record.payload)
             if record.kind is RecordKind.SOURCE:
                 self.is_simulated |= SourceEntry.parsed(record.payload).info.is_simulated
-            if self._read - self._told >= EVERY_BYTES:
-                self._told = self._read
+            if self._read - self._reported >= EVERY_BYTES:
+                self._reported = self._read
                 report(min(self._read / self._total, 1.0), "recovering")
         self._length.add(reader.header, last_ns)
 
 
 def _close(opened: OpenedLibrary, stored: StoredRecording, contents: _Contents) -> Recovered:
-    told = {journal.segment for journal in stored.journals}
+    reported = {journal.segment for journal in stored.journals}
     for journal in contents.journals:
-        if journal.segment not in told:
+        if journal.segment not in reported:
             opened.library.recordings.add_journal(stored.id, journal)
     # whole: only its row was left over
     state = RecordingState.CLOSED if contents.is_whole else RecordingState.RECOVERED

@@ -26,16 +26,16 @@ class Results:
     def find(self, session_id: UUID, kind: ResultKind, inputs: AnalysisInputs) -> StoredResult | None:
         """What was computed from these very inputs; None: not yet."""
         with self._unit.reading() as session:
-            row = session.scalars(_wanted(session_id, kind, key_of(inputs))).first()
+            row = session.scalars(_required(session_id, kind, key_of(inputs))).first()
             return None if row is None else stored_result(row)
 
     def analysed_by(self, algorithm: str) -> frozenset[UUID]:
-        """The sessions that have an analysis of this code, be it of what was told of them before."""
-        wanted = select(ResultRow.session_id).where(
+        """The sessions that have an analysis of this code, be it of what was given of them before."""
+        required = select(ResultRow.session_id).where(
             ResultRow.kind == ResultKind.ANALYSIS, ResultRow.algorithm == algorithm
         )
         with self._unit.reading() as session:
-            return frozenset(session.scalars(wanted))
+            return frozenset(session.scalars(required))
 
     def keep(
         self, session_id: UUID, kind: ResultKind, inputs: AnalysisInputs, content_format: str, content: bytes
@@ -52,7 +52,7 @@ class Results:
         key = key_of(inputs)
         with self._unit.writing(Role.VIEWER) as session:
             _existing(session, session_id)
-            row = session.scalars(_wanted(session_id, kind, key)).first()
+            row = session.scalars(_required(session_id, kind, key)).first()
             if row is not None and (row.format, row.content) != (content_format, content):
                 session.delete(row)
                 session.flush()
@@ -86,7 +86,7 @@ def _plain(inputs: AnalysisInputs) -> dict[str, Any]:
     return asdict(inputs)
 
 
-def _wanted(session_id: UUID, kind: ResultKind, key: str) -> Any:
+def _required(session_id: UUID, kind: ResultKind, key: str) -> Any:
     return select(ResultRow).where(ResultRow.session_id == session_id, ResultRow.kind == kind, ResultRow.key == key)
 
 

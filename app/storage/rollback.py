@@ -1,9 +1,9 @@
 """Is this library older than when this computer saw it last?
 
-How far the audit had come stands in a folder of this computer, outside of the library, by the library's own id: that of
+How far the audit had come is in a folder of this computer, outside of the library, by the library's own id: that of
 its first entry, which a copy and a backup share. A library that was put back to an older state, whole and sound, shows
-by that alone. A computer that never saw a library says nothing of it. Who may write to that folder can remove what
-stands there; the last line of `gaitwright audit`, or a backup's, kept elsewhere, does the same service.
+by that alone. A computer that never saw a library gives nothing of it. Who may write to that folder can remove what
+is there; the last line of `gaitwright audit`, or a backup's, kept elsewhere, does the same service.
 """
 
 import json
@@ -16,7 +16,7 @@ from app.storage.library import Library
 from app.storage.stored import Checkpoint, LibraryError
 
 FORMAT = "gaitwright-seen/1"
-MOST_KEPT = 100  # checkpoints, to tell from where on entries are missing
+MOST_KEPT = 100  # checkpoints, to report from where on entries are missing
 
 _log = logging.getLogger(__name__)
 
@@ -65,7 +65,7 @@ class SeenLibraries:
             self._latest[path] = end
 
     def accept(self, library: Library, rollback: Rollback) -> None:
-        """Go on from the library's state as it is; that this was said is in its audit.
+        """Go on from the library's state as it is; that this was stated is in its audit.
 
         Raises
         ------

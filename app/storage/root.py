@@ -56,7 +56,7 @@ class LibraryRoot:
             return False
 
     def is_another(self) -> bool:
-        """Whether the same library is there again, but not in the folder that was opened: mounted anew, or copied."""
+        """Whether the same library is there again, but not in the folder that was opened: mounted again, or copied."""
         try:
             return _identity(self.folder) != self._identity and read_id(self.folder) == self.id
         except OSError:
@@ -89,7 +89,7 @@ def count_sheltered() -> int:
 
 
 def read_id(folder: Path) -> str:
-    """What the folder says which library it is; empty where it does not.
+    """What the folder states which library it is; empty where it does not.
 
     Raises
     ------

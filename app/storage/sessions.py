@@ -49,17 +49,17 @@ class Sessions:
     def __init__(self, unit: UnitOfWork) -> None:
         self._unit = unit
 
-    def create(self, patient_id: UUID, told: Session, limits: Limits = NO_LIMITS) -> StoredSession:
-        """Add a visit that has no recordings yet; who the patient is stands in the patient's own row.
+    def create(self, patient_id: UUID, reported: Session, limits: Limits = NO_LIMITS) -> StoredSession:
+        """Add a visit that has no recordings yet; who the patient is is in the patient's own row.
 
         Raises
         ------
         LibraryError
-            There is no such patient, `told` is simulated and the patient is not, or a zero or sign is out of range.
+            There is no such patient, `reported` is simulated and the patient is not, or a zero or sign is out of range.
         """
-        if told.recordings or told.sensors:
+        if reported.recordings or reported.sensors:
             raise ValueError("a session is created without recordings and sensors: place and start them")
-        _refuse_wrong_joints(told)
+        _refuse_wrong_joints(reported)
         with self._unit.writing(Role.CLINICIAN) as session:
             patient = session.get(PatientRow, patient_id)
             if patient is None or patient.deleted_at or patient.merged_into_id:
@@ -68,18 +68,18 @@ class Sessions:
                 patient=patient,
                 comment="",
                 cannot_stand=limits.cannot_stand,
-                findings=[asdict(finding) for finding in told.findings],
+                findings=[asdict(finding) for finding in reported.findings],
                 created_at=self._unit.now(),
                 joints=[
                     JointRow(
                         joint=joint,
-                        zero_rad=told.zero_rad.get(joint),
-                        turned_sign=told.turned_sign.get(joint),
+                        zero_rad=reported.zero_rad.get(joint),
+                        turned_sign=reported.turned_sign.get(joint),
                         is_absent=_is_absent(joint, limits),
                     )
                     for joint in LEG_JOINTS
                 ],
-                **{name: getattr(told, name) for name in SESSION_FIELDS},
+                **{name: getattr(reported, name) for name in SESSION_FIELDS},
             )
             session.add(row)
             session.flush()
@@ -117,25 +117,25 @@ class Sessions:
 
         Those of deleted patients are not listed; `is_deleted` lists the visits that were deleted by themselves.
         """
-        is_wanted: list[ColumnElement[bool]] = [
+        is_required: list[ColumnElement[bool]] = [
             PatientRow.deleted_at.is_(None),
             SessionRow.deleted_at.is_not(None) if is_deleted else SessionRow.deleted_at.is_(None),
         ]
         if patient_id is not None:
-            is_wanted.append(SessionRow.patient_id == patient_id)
+            is_required.append(SessionRow.patient_id == patient_id)
         if text := text.strip().lower():
             in_condition = select(RecordingRow.session_id).where(
                 func.lower(RecordingRow.condition).contains(text, autoescape=True)
             )
             in_words = [func.lower(column).contains(text, autoescape=True) for column in SEARCHED]
-            is_wanted.append(or_(*in_words, SessionRow.id.in_(in_condition)))
+            is_required.append(or_(*in_words, SessionRow.id.in_(in_condition)))
         with self._unit.reading() as session:
-            return _lines(session, is_wanted)
+            return _lines(session, is_required)
 
     def change(
-        self, visit: StoredSession, told: Session, comment: str | None = None, limits: Limits | None = None
+        self, visit: StoredSession, reported: Session, comment: str | None = None, limits: Limits | None = None
     ) -> StoredSession:
-        """Correct what was told of a visit: words, goniometer, turned signs, the clinician's `comment`, the `limits`.
+        """Correct what was given of a visit: words, goniometer, turned signs, the clinician's `comment`, the `limits`.
 
         Kept in the history, and undone from there. Recordings, sensors and patient are changed where they belong.
 
@@ -148,7 +148,7 @@ class Sessions:
         """
         with self._unit.writing(Role.CLINICIAN) as session:
             row = unchanged(existing_session(session, visit.id), visit.version)
-            apply(self._unit, session, session_changes(row, told, comment, limits), row.patient_id, row.id)
+            apply(self._unit, session, session_changes(row, reported, comment, limits), row.patient_id, row.id)
             session.flush()
             return stored_session(row)
 
@@ -175,8 +175,8 @@ class Sessions:
     def deleted_before(self, before: datetime.datetime) -> tuple[StoredSession, ...]:
         """Find the visits that were deleted, or whose patient was, before an instant."""
         with self._unit.reading() as session:
-            wanted = select(SessionRow).join(PatientRow)
-            rows = session.scalars(wanted.where(or_(SessionRow.deleted_at <= before, PatientRow.deleted_at <= before)))
+            needed = select(SessionRow).join(PatientRow)
+            rows = session.scalars(needed.where(or_(SessionRow.deleted_at <= before, PatientRow.deleted_at <= before)))
             return tuple(stored_session(row) for row in rows)
 
     def destroy(self, session_id: UUID) -> None:
@@ -204,7 +204,7 @@ class Sessions:
 def new_placement(
     unit: UnitOfWork, session: OrmSession, visit: SessionRow, sensors: Mapping[Site, PlacedSensor]
 ) -> PlacementRow:
-    """Add what is said now of who is worn where; raises as `Sessions.place`."""
+    """Add what is stated now of who is worn where; raises as `Sessions.place`."""
     if len({sensor.name for sensor in sensors.values()}) < len(sensors):
         raise LibraryError("One sensor cannot have two positions", "Assign each sensor once")
     row = PlacementRow(
@@ -223,24 +223,24 @@ def new_placement(
 
 
 def session_changes(
-    row: SessionRow, told: Session, comment: str | None = None, limits: Limits | None = None
+    row: SessionRow, reported: Session, comment: str | None = None, limits: Limits | None = None
 ) -> list[Change]:
-    """What has to change in `row` and its joints so that they say what is told; raises as `Sessions.change`."""
-    _refuse_wrong_joints(told)
-    wanted = {name: getattr(told, name) for name in SESSION_CORRECTABLE}
+    """What has to change in `row` and its joints so that they say what is reported; raises as `Sessions.change`."""
+    _refuse_wrong_joints(reported)
+    needed = {name: getattr(reported, name) for name in SESSION_CORRECTABLE}
     if comment is not None:
-        wanted["comment"] = comment
+        needed["comment"] = comment
     if limits is not None:
-        wanted["cannot_stand"] = limits.cannot_stand
-    changes = differences(row, wanted)
+        needed["cannot_stand"] = limits.cannot_stand
+    changes = differences(row, needed)
     for joint in row.joints:
-        said: dict[str, object] = {
-            "zero_rad": told.zero_rad.get(joint.joint),
-            "turned_sign": told.turned_sign.get(joint.joint),
+        stated: dict[str, object] = {
+            "zero_rad": reported.zero_rad.get(joint.joint),
+            "turned_sign": reported.turned_sign.get(joint.joint),
         }
         if limits is not None:
-            said["is_absent"] = _is_absent(joint.joint, limits)
-        changes += differences(joint, said)
+            stated["is_absent"] = _is_absent(joint.joint, limits)
+        changes += differences(joint, stated)
     return changes
 
 
@@ -262,12 +262,12 @@ def _is_absent(joint: Joint, limits: Limits) -> bool:
     return not joint.is_knee and joint.side in limits.without_ankle
 
 
-def _refuse_wrong_joints(told: Session) -> None:
+def _refuse_wrong_joints(reported: Session) -> None:
     """What no session folder could hold; the limits are its own."""
     try:
-        for joint, zero_rad in told.zero_rad.items():
+        for joint, zero_rad in reported.zero_rad.items():
             ZERO[joint][1](math.degrees(zero_rad))
-        for joint, sign in told.turned_sign.items():
+        for joint, sign in reported.turned_sign.items():
             SIGN[joint][1](sign)
     except ExpectedError as error:
         what = tr("The joint value must be {required}").format(required=filled(error.what, error.values))
@@ -281,7 +281,7 @@ def existing_session(session: OrmSession, session_id: UUID) -> SessionRow:
     return row
 
 
-def _lines(session: OrmSession, is_wanted: Sequence[ColumnElement[bool]]) -> tuple[SessionSummary, ...]:
+def _lines(session: OrmSession, is_required: Sequence[ColumnElement[bool]]) -> tuple[SessionSummary, ...]:
     # columns, not rows: a library may hold thousands of sessions
     visits = (
         select(
@@ -294,14 +294,14 @@ def _lines(session: OrmSession, is_wanted: Sequence[ColumnElement[bool]]) -> tup
             SessionRow.deleted_at,
         )
         .join(PatientRow)
-        .where(*is_wanted)
+        .where(*is_required)
         .order_by(SessionRow.started.desc(), SessionRow.id.desc())
     )
     recordings = (
         select(RecordingRow.session_id, RecordingRow.condition)
         .join(SessionRow)
         .join(PatientRow)
-        .where(*is_wanted)
+        .where(*is_required)
         .order_by(RecordingRow.number)
     )
     conditions: dict[UUID, list[str]] = {}

@@ -1,8 +1,8 @@
-"""Edits of what another station may have changed meanwhile: merged, and where both changed the same, told of both.
+"""Edits of what another station may have changed meanwhile: merged, and where both changed the same, informed of both.
 
-Under the write lock the library compares what was shown, what is said and what it holds. A value that is contested
-stays as the other side has it, and what was said of it stands in the history, made and taken back: whoever is asked may
-choose it later, and nothing is lost where nobody answers.
+Under the write lock the library compares what was shown, what is stated and what it holds. A value that is contested
+stays as the other side has it, and what was stated about it is in the history, made and taken back: whoever is asked
+may choose it later, and nothing is lost where nobody answers.
 """
 
 import datetime
@@ -14,7 +14,7 @@ from sqlalchemy.orm import Session as OrmSession
 
 from app.storage.corrections import apply, author_of, differences, take_back
 from app.storage.database.models import PatientRow, RecordingRow, SessionRow
-from app.storage.database.values import placement_of, stored_patient, stored_recording, stored_session, told_patient
+from app.storage.database.values import placement_of, reported_patient, stored_patient, stored_recording, stored_session
 from app.storage.edited_fields import (
     KEPT,
     PLACEMENT,
@@ -38,7 +38,7 @@ from app.storage.stored import (
     StoredRecording,
     StoredSession,
 )
-from app.storage.three_way import Contest, Edited, OtherChange, Value, Values, three_way
+from app.storage.three_way import Edited, MergeConflict, OtherChange, Value, Values, three_way
 from app.storage.unit_of_work import UnitOfWork
 from core.body import Site
 
@@ -47,13 +47,13 @@ Worn = Mapping[Site, PlacedSensor]
 
 
 class SharedEdits:
-    """`upon` are the fields as they were shown, `said` what was made of them; the same fields, all or some of them."""
+    """`base` are the fields as they were shown, `stated` what was made of them; the same fields, or some of them."""
 
     def __init__(self, unit: UnitOfWork) -> None:
         self._unit = unit
 
-    def patient(self, patient_id: UUID, upon: Values, said: Values) -> Edited[StoredPatient]:
-        """Take what is said of a patient.
+    def patient(self, patient_id: UUID, base: Values, stated: Values) -> Edited[StoredPatient]:
+        """Take what is stated about a patient.
 
         Raises
         ------
@@ -67,14 +67,14 @@ class SharedEdits:
             _refuse_deleted(row)
 
             def changes(values: Values) -> list[Change]:
-                return patient_changes(session, row, with_patient_fields(told_patient(row), values))
+                return patient_changes(session, row, with_patient_fields(reported_patient(row), values))
 
             edit = _Edit(self._unit, session, row.id, None, changes)
-            contests, others = edit.take(upon, said, patient_fields(told_patient(row)))
+            contests, others = edit.take(base, stated, patient_fields(reported_patient(row)))
             return Edited(stored_patient(session, row), contests, others)
 
-    def session(self, session_id: UUID, upon: Values, said: Values) -> Edited[StoredSession]:
-        """Take what is said of a session, its comment and limits.
+    def session(self, session_id: UUID, base: Values, stated: Values) -> Edited[StoredSession]:
+        """Take what is stated about a session, its comment and limits.
 
         Raises
         ------
@@ -91,11 +91,11 @@ class SharedEdits:
 
             held = stored_session(row)
             edit = _Edit(self._unit, session, row.patient_id, row.id, changes)
-            contests, others = edit.take(upon, said, session_fields(held.details, held.comment, held.limits))
+            contests, others = edit.take(base, stated, session_fields(held.details, held.comment, held.limits))
             return Edited(stored_session(row), contests, others)
 
-    def recording(self, recording_id: UUID, upon: Values, said: Values) -> Edited[StoredRecording]:
-        """Take what is said of a recording.
+    def recording(self, recording_id: UUID, base: Values, stated: Values) -> Edited[StoredRecording]:
+        """Take what is stated about a recording.
 
         Raises
         ------
@@ -105,7 +105,7 @@ class SharedEdits:
         with self._unit.writing(Role.CLINICIAN) as session:
             row = existing_recording(session, recording_id)
             edit = self._of_recording(session, row)
-            contests, others = edit.take(upon, said, recording_fields(stored_recording(row).details))
+            contests, others = edit.take(base, stated, recording_fields(stored_recording(row).details))
             return Edited(stored_recording(row), contests, others)
 
     def decision(self, recording_id: UUID, is_kept: bool) -> Edited[StoredRecording]:
@@ -138,7 +138,7 @@ class SharedEdits:
         seen
             By recording the placement that was shown.
         worn
-            What is said of which recordings. All of it comes to hold, or, where somebody else has said otherwise
+            What is stated about which recordings. All of it comes to hold, or, where somebody else has stated otherwise
             meanwhile of one of them, nothing.
 
         Raises
@@ -149,24 +149,24 @@ class SharedEdits:
         with self._unit.writing(Role.CLINICIAN) as session:
             visit = existing_session(session, session_id)
             _refuse_deleted(visit)
-            wanted: list[Change] = []
-            contests: list[Contest] = []
+            required: list[Change] = []
+            contests: list[MergeConflict] = []
             for recording_ids, sensors in worn:
                 rows = [existing_recording(session, recording_id) for recording_id in recording_ids]
-                other = [row for row in rows if _names(_worn(row)) != _names(sensors)]  # else it is said already
+                other = [row for row in rows if _names(_worn(row)) != _names(sensors)]  # else it is stated already
                 if not other:
                     continue
                 placement = new_placement(self._unit, session, visit, sensors)
                 changes = [change for row in other for change in differences(row, {"placement_id": placement.id})]
-                wanted += changes
+                required += changes
                 for row, change in zip(other, changes, strict=True):
                     if row.placement_id != seen[row.id] and not contests:
                         by, at = author_of(session, visit.patient_id, change)
-                        contests.append(Contest(PLACEMENT, _names(sensors), _names(_worn(row)), by, at))
+                        contests.append(MergeConflict(PLACEMENT, _names(sensors), _names(_worn(row)), by, at))
             if contests:
-                take_back(self._unit, session, wanted, visit.patient_id, visit.id)
+                take_back(self._unit, session, required, visit.patient_id, visit.id)
             else:
-                apply(self._unit, session, wanted, visit.patient_id, visit.id)
+                apply(self._unit, session, required, visit.patient_id, visit.id)
             session.flush()
             session.expire_all()
             return Edited(stored_session(visit), tuple(contests))
@@ -182,7 +182,7 @@ class SharedEdits:
 
 
 class _Edit:
-    """One edit of one thing. `changes` tells what has to change in its rows so that they hold values."""
+    """One edit of one thing. `changes` gives what has to change in its rows so that they hold values."""
 
     def __init__(
         self, unit: UnitOfWork, session: OrmSession, patient_id: UUID, session_id: UUID | None, changes: Changes
@@ -190,20 +190,23 @@ class _Edit:
         self._unit, self._session, self._changes = unit, session, changes
         self._patient_id, self._session_id = patient_id, session_id
 
-    def take(self, upon: Values, said: Values, held: Values) -> tuple[tuple[Contest, ...], tuple[OtherChange, ...]]:
-        """Write what nobody contests, keep what is contested in the history, and tell of both."""
-        merge = three_way(upon, said, {field: held[field] for field in said})
+    def take(
+        self, base: Values, stated: Values, held: Values
+    ) -> tuple[tuple[MergeConflict, ...], tuple[OtherChange, ...]]:
+        """Write what nobody contests, keep what is contested in the history, and report of both."""
+        merge = three_way(base, stated, {field: held[field] for field in stated})
         contests = tuple(
-            Contest(field, said[field], held[field], *self._author(field, said[field])) for field in merge.contested
+            MergeConflict(field, stated[field], held[field], *self._author(field, stated[field]))
+            for field in merge.contested
         )
         others = tuple(
-            OtherChange(field, merge.merged[field], *self._author(field, upon[field])) for field in merge.theirs_only
+            OtherChange(field, merge.merged[field], *self._author(field, base[field])) for field in merge.theirs_only
         )
         apply(self._unit, self._session, self._changes(merge.merged), self._patient_id, self._session_id)
         self._session.flush()
         if contests:
-            wanted = self._changes({contest.field: contest.mine for contest in contests})
-            take_back(self._unit, self._session, wanted, self._patient_id, self._session_id)
+            required = self._changes({contest.field: contest.mine for contest in contests})
+            take_back(self._unit, self._session, required, self._patient_id, self._session_id)
         return contests, others
 
     def _author(self, field: str, another: Value) -> tuple[str, datetime.datetime | None]:

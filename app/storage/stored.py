@@ -1,6 +1,6 @@
 """What does the library hand out? Plain, frozen values; nothing here knows of a database.
 
-`details` is what the clinic or a file said, in the core's own words and without samples: those are in the journals.
+`details` is what the clinic or a file stated, in the core's own words and without samples: those are in the journals.
 """
 
 from collections.abc import Mapping
@@ -18,7 +18,7 @@ KEPT_DELETED = timedelta(days=30)  # and can be restored
 
 
 class LibraryError(Exception):
-    """The library cannot do what was asked. Says what is wrong and what to do; names no patient."""
+    """The library cannot do what was asked. States what is wrong and what to do; names no patient."""
 
     def __init__(self, what: str, remedy: str) -> None:
         super().__init__(f"{what}. {remedy}.")
@@ -84,7 +84,7 @@ class Action(StrEnum):
 
 @dataclass(frozen=True, slots=True)
 class Operator:
-    """Who works here. `code` is that of the key slot and of the audit; `name` stands on reports."""
+    """Who works here. `code` is that of the key slot and of the audit; `name` is on reports."""
 
     code: str
     name: str
@@ -166,9 +166,9 @@ class StoredJournal:
 
 @dataclass(frozen=True, slots=True)
 class StoredRecording:
-    """`judged_by`: who said after a crash whether what was recovered is kept; empty until somebody has.
+    """`judged_by`: who stated after a crash whether what was recovered is kept; empty until somebody has.
 
-    Not `is_decided`: it is kept until somebody says so, and that is still to be asked.
+    Not `is_decided`: it is kept until somebody reports it, and that is still to be asked.
     """
 
     id: UUID
@@ -190,7 +190,7 @@ class StoredRecording:
 
 @dataclass(frozen=True, slots=True)
 class UndecidedWalk:
-    """A walk of which nobody has said yet whether it is kept, recovered or closed before that, and whose it is."""
+    """A walk of which nobody has stated yet whether it is kept, recovered or closed before that, and whose it is."""
 
     recording: StoredRecording
     patient_id: UUID
@@ -279,7 +279,7 @@ class AnalysedRecording:
 class AnalysisInputs:
     """Everything that an analysis depends on: the same inputs give the same result, byte for byte.
 
-    `details` is what was said of patient, sensors and joints, `parameters` method and settings, both by name.
+    `details` is what was stated about patient, sensors and joints, `parameters` method and settings, both by name.
     """
 
     recordings: tuple[AnalysedRecording, ...]

@@ -1,7 +1,7 @@
 """What two people changed in one thing at the same time, brought together field by field.
 
-`upon` is what was shown when the editing began, `mine` what was made of it, `theirs` what the library holds by now.
-What only one side changed stands; what both changed to the same is no conflict; only what both changed differently has
+`base` is what was shown when the editing began, `mine` what was made of it, `theirs` what the library holds by now.
+What only one side changed is; what both changed to the same is no conflict; only what both changed differently has
 to be asked about. Strides that were left out are one yes or no each, so there nothing has to be asked.
 """
 
@@ -26,8 +26,8 @@ class Merge:
 
 
 @dataclass(frozen=True, slots=True)
-class Contest:
-    """One field that both changed, and differently. `by` is the other's name, empty where nothing tells it."""
+class MergeConflict:
+    """One field that both changed, and differently. `by` is the other's name, empty where nothing reports it."""
 
     field: str
     mine: Value
@@ -51,17 +51,17 @@ class Edited(Generic[T]):
     """What the library holds after an edit: all of it but what is contested, which is as the other side has it."""
 
     stored: T
-    contests: tuple[Contest, ...] = ()
+    contests: tuple[MergeConflict, ...] = ()
     others: tuple[OtherChange, ...] = ()
 
 
-def three_way(upon: Values, mine: Values, theirs: Values) -> Merge:
+def three_way(base: Values, mine: Values, theirs: Values) -> Merge:
     """Bring both sides together; all three have the same fields."""
     merged: dict[str, Value] = {}
     contested: list[str] = []
     theirs_only: list[str] = []
     for field, own in mine.items():
-        before, other = upon[field], theirs[field]
+        before, other = base[field], theirs[field]
         if isinstance(own, tuple) or isinstance(other, tuple):
             merged[field] = _united(before, own, other)
             if other != before and merged[field] != own:
@@ -73,18 +73,18 @@ def three_way(upon: Values, mine: Values, theirs: Values) -> Merge:
     return Merge(merged, tuple(contested), tuple(theirs_only))
 
 
-def rebased(upon: Values, said: Values, held: Values) -> tuple[dict[str, Value], dict[str, Value]]:
-    """Go on from what the library holds now: what was said since `upon` stays said, all else is as it is held.
+def rebased(base: Values, stated: Values, held: Values) -> tuple[dict[str, Value], dict[str, Value]]:
+    """Go on from what the library holds now: what was stated since `base` stays stated, all else is as it is held.
 
-    Gives what it is said upon from now on, and what is said.
+    Gives what it is stated on from now on, and what is stated.
     """
-    is_open = {field: value not in (upon[field], held[field]) for field, value in said.items()}
+    is_open = {field: value not in (base[field], held[field]) for field, value in stated.items()}
     return (
-        {field: upon[field] if is_open[field] else held[field] for field in said},
-        {field: said[field] if is_open[field] else held[field] for field in said},
+        {field: base[field] if is_open[field] else held[field] for field in stated},
+        {field: stated[field] if is_open[field] else held[field] for field in stated},
     )
 
 
-def _united(upon: Value, mine: Value, theirs: Value) -> tuple[float, ...]:
-    before, own, other = (set(one) if isinstance(one, tuple) else set() for one in (upon, mine, theirs))
+def _united(base: Value, mine: Value, theirs: Value) -> tuple[float, ...]:
+    before, own, other = (set(one) if isinstance(one, tuple) else set() for one in (base, mine, theirs))
     return tuple(sorted((other | (own - before)) - (before - own)))

@@ -1,6 +1,6 @@
 """What was changed at a prosthesis before each walk, as a table for other programs: `alignments.csv`.
 
-One line for each part of each change. Nothing of it is measured: it is what somebody has said.
+One line for each part of each change. Nothing of it is measured: it is what somebody has stated.
 """
 
 from collections.abc import Mapping, Sequence

@@ -1,4 +1,4 @@
-"""The answer to a walk, as a screen tells it before anything else: one sentence, and one beside it.
+"""The answer to a walk, as a screen reports it before anything else: one sentence, and one beside it.
 
 They are the sentences of the report's first page, so that nobody reads on paper what the screen did not say.
 """
@@ -24,9 +24,9 @@ from core.verdicts.model import Verdict
 class Outcome(StrEnum):
     """What kind of answer there is.
 
-    DIFFERS: something is so much larger than its error, or beyond a band, that it is told. NOTHING: differences were
-    judged, and none exceeds its error. OPEN: nothing is told, and yet something exceeds its error or nothing could be
-    judged. UNREADABLE: a mean cannot be told of either leg.
+    DIFFERS: something is so much larger than its error, or beyond a band, that it is reported. NOTHING: differences
+    were judged, and none exceeds its error. OPEN: nothing is reported, and yet something exceeds its error or nothing
+    could be judged. UNREADABLE: a mean cannot be given of either leg.
     """
 
     DIFFERS = "differs"
@@ -56,9 +56,9 @@ def answer_of(facts: Facts) -> Answer:
         return Answer(Outcome.UNREADABLE, first, tr("Repeat the walk, further or longer."))
     last = _brief_caveat(facts)
     if found := ranked_findings(facts, None, BANDS_ON_SCREEN):
-        beside = [found[1].said] if len(found) > 1 else last
-        said = [found[0].evidence, *_goal(facts), *beside]
-        return Answer(Outcome.DIFFERS, found[0].said, " ".join(filter(None, said)))
+        beside = [found[1].stated] if len(found) > 1 else last
+        stated = [found[0].evidence, *_goal(facts), *beside]
+        return Answer(Outcome.DIFFERS, found[0].stated, " ".join(filter(None, stated)))
     first, *others = nothing_found(facts, None)
     judged = judged_differences(facts, None)
     is_none = bool(judged) and not any(one.exceeds for one in judged.values())
@@ -66,11 +66,11 @@ def answer_of(facts: Facts) -> Answer:
 
 
 def _goal(facts: Facts) -> list[str]:
-    """How the walk stands to a goal that was agreed before: to the first that is judged."""
-    return [said for one in facts.told_goals if (said := goal_sentence(one))][:1]
+    """How the walk is to a goal that was agreed before: to the first that is judged."""
+    return [stated for one in facts.reported_goals if (stated := goal_sentence(one))][:1]
 
 
 def _brief_caveat(facts: Facts) -> list[str]:
-    """Which joint or leg cannot be read; why, and what to do, stands one step behind the answer."""
-    withheld = [cause.where for cause in quality.causes(facts, (Verdict.WITHHELD,)) if not cause.is_aside]
-    return [tr("Not reported: {where}.").format(where=within_sentence(withheld[0]))] if withheld else []
+    """Which joint or leg cannot be read; why, and what to do, is one step behind the answer."""
+    not_reported = [cause.where for cause in quality.causes(facts, (Verdict.NOT_REPORTED,)) if not cause.is_aside]
+    return [tr("Not reported: {where}.").format(where=within_sentence(not_reported[0]))] if not_reported else []

@@ -24,7 +24,7 @@ from core.verdicts.stride_means import mean_of_strides
 
 @dataclass(frozen=True, slots=True)
 class Average:
-    """One average; NaN where it is withheld, was not measured, or is not known.
+    """One average; NaN where it is not reported, was not measured, or is not known.
 
     Attributes
     ----------

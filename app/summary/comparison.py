@@ -34,12 +34,12 @@ class Reservation(StrEnum):
     NONE = ""
     NOT_MEASURED = "not_measured"
     OTHER_ZERO = "other_zero"
-    WITHHELD = "withheld"
+    NOT_REPORTED = "withheld"
 
 
 @dataclass(frozen=True)
 class Compared:
-    """One figure of one part beside that of the part everything is told against."""
+    """One figure of one part beside that of the part everything is reported against."""
 
     measure: Measure
     side: Side
@@ -51,17 +51,17 @@ class Compared:
     reservation: Reservation
 
     @property
-    def is_told(self) -> bool:
-        return self.reservation is Reservation.NONE and self.difference.is_told
+    def is_reported(self) -> bool:
+        return self.reservation is Reservation.NONE and self.difference.is_reported
 
     @property
     def exceeds(self) -> bool:
-        return self.is_told and self.difference.exceeds
+        return self.is_reported and self.difference.exceeds
 
 
 @dataclass(frozen=True)
 class Comparison:
-    """`parts` in the order of time; each is told against `parts[base]`."""
+    """`parts` in the order of time; each is reported against `parts[base]`."""
 
     kind: Contrast
     parts: tuple[Part, ...]
@@ -77,10 +77,10 @@ class Comparison:
         return tuple(part for k, part in enumerate(self.parts) if k != self.base)
 
     def base_of(self, part: Part) -> Part:
-        """What a part is told against: the condition that its alignment was changed from, else that of all.
+        """What a part is reported against: the condition that its alignment was changed from, else that of all.
 
-        Where sensors were strapped on anew a condition may be there twice: the latest before the part counts. What the
-        prosthesis was put back to is told against the first walks with it.
+        Where sensors were strapped on again a condition may be there twice: the latest before the part counts. What the
+        prosthesis was put back to is reported against the first walks with it.
         """
         if self.kind is not Contrast.CONDITIONS:
             return self.against
@@ -109,20 +109,20 @@ class Comparison:
 
     @property
     def latest(self) -> Part | None:
-        """The last part but the one told against; None where it stands alone."""
+        """The last part but the one reported against; None where it is alone."""
         return self.others[-1] if self.others else None
 
     @property
     def changes(self) -> tuple[Compared, ...]:
-        """What the screen tells: between visits the change to the latest, else the changes of all parts.
+        """What the screen reports: between visits the change to the latest, else the changes of all parts.
 
-        Its sentences and its table speak of these alone, so that no sentence says what the table does not show.
+        Its sentences and its table speak of these alone, so that no sentence states what the table does not show.
         """
         return tuple(row for row in self.rows if self.kind is not Contrast.VISITS or row.part is self.latest)
 
     @cached_property
     def rows(self) -> tuple[Compared, ...]:
-        """Every measure of each side of each part but the one told against."""
+        """Every measure of each side of each part but the one reported against."""
         return tuple(
             self._row(measure, side, part)
             for measure in MEASURES
@@ -131,7 +131,7 @@ class Comparison:
         )
 
     def first_readable(self, measure: Measure, side: Side) -> Part:
-        """The part that a measure is told against: of visits, if the base cannot be read, the next that can."""
+        """The part that a measure is reported against: of visits, if the base cannot be read, the next that can."""
         if self.kind in (Contrast.VISITS, Contrast.CHOSEN):
             for part in self.parts[self.base :]:
                 found, verdict = part.figure(measure, side)
@@ -150,7 +150,7 @@ class Comparison:
         )
 
     def is_same_attachment(self, part: Part, against: Part | None = None) -> bool:
-        """Whether the sensors stayed on between a part and `against`, None: the one that all are told against."""
+        """Whether the sensors stayed on between a part and `against`, None: the one that all are reported against."""
         other = against or self.against
         same = (part.visit, part.attachment) == (other.visit, other.attachment)
         return self.kind is not Contrast.VISITS and same
@@ -161,14 +161,14 @@ class Comparison:
         return len(kinds) == 1 and ZeroKind.NONE not in kinds
 
     def error_kind(self, part: Part, against: Part | None = None) -> ComparisonKind:
-        """What lies between a part and `against`, None: the one that all are told against."""
+        """What lies between a part and `against`, None: the one that all are reported against."""
         other = against or self.against
         if self.kind is Contrast.VISITS or part.visit != other.visit:
             return ComparisonKind.VISITS
         return ComparisonKind.ATTACHED if self.is_same_attachment(part, other) else ComparisonKind.STRAPPINGS
 
     def compare(self, measure: Measure, side: Side, part: Part, against: Part | None = None) -> Compared:
-        """A measure of one leg against that of `against`, None: of the part that all are told against."""
+        """A measure of one leg against that of `against`, None: of the part that all are reported against."""
         other = against or self.against
         kind, column, pair = self.error_kind(part, other), measure.column, (part, other)
         means = [one.mean(side, column, kind) for one in pair]
@@ -194,8 +194,8 @@ class Comparison:
         one, other = (of.of_walk(column, kind) for of in (part, against))
         assessments = part.assessment_of_walk(column), against.assessment_of_walk(column)
         reservation = Reservation.NONE if one.n and other.n else Reservation.NOT_MEASURED
-        if any(found.verdict is Verdict.WITHHELD for found in assessments):
-            reservation = Reservation.WITHHELD
+        if any(found.verdict is Verdict.NOT_REPORTED for found in assessments):
+            reservation = Reservation.NOT_REPORTED
         is_chosen = part.agreed.is_chosen(column, Side)
         difference = compare(column, kind, one, other, assessments, is_chosen_before=is_chosen)
         values = (part.figure(measure, side)[0], against.figure(measure, side)[0])
@@ -209,8 +209,8 @@ class Comparison:
             return Reservation.NOT_MEASURED
         if joint is not None and measure.needs_height and not self.has_one_zero(joint):
             return Reservation.OTHER_ZERO
-        if not all(found.is_told for found in assessments):
-            return Reservation.WITHHELD
+        if not all(found.is_reported for found in assessments):
+            return Reservation.NOT_REPORTED
         return Reservation.NONE if all(one.value(side, measure.column).n for one in pair) else Reservation.NOT_MEASURED
 
 
@@ -232,12 +232,12 @@ class SideRow:
     symmetry_percent: float
 
     @property
-    def is_told(self) -> bool:
-        return self.difference.is_told
+    def is_reported(self) -> bool:
+        return self.difference.is_reported
 
     @property
     def exceeds(self) -> bool:
-        return self.is_told and self.difference.exceeds
+        return self.is_reported and self.difference.exceeds
 
 
 def first_and_second(affected: Side | None) -> tuple[Side, Side]:

@@ -18,7 +18,7 @@ from core.verdicts.model import Verdict
 
 @dataclass(frozen=True, slots=True)
 class ConditionFigure:
-    """One mean over the strides of a condition; `side` None: of the walk. NaN where it is withheld or not known.
+    """One mean over the strides of a condition; `side` None: of the walk. NaN where it is not reported or not known.
 
     `error` is half of what the difference of two visits has to exceed.
     """
@@ -50,7 +50,7 @@ def summarise_conditions(
     analysis: Analysis, recordings: Sequence[Recording], agreed: AgreedGoals = NO_GOALS
 ) -> list[dict[str, Any]]:
     """Give what `summary.json` has of each condition: its walks, and the figures of each leg and of both."""
-    told = []
+    reported = []
     for part in conditions_of(analysis, recordings, agreed=agreed):
         sides: dict[str, dict[str, Any]] = {str(side): {"strides_used": part.strides(side)} for side in part.sides}
         sides["both"] = {}
@@ -62,8 +62,8 @@ def summarise_conditions(
                 f"{one.column}_status": str(one.verdict),
             }
         walks = [walk.name for walk in part.walks]
-        told.append({"letter": part.letter, "condition": part.name, "walks": walks, **sides})
-    return told
+        reported.append({"letter": part.letter, "condition": part.name, "walks": walks, **sides})
+    return reported
 
 
 def _number(value: float) -> float | None:

@@ -50,7 +50,7 @@ from core.verdicts.stride_means import MeanOfStrides, mean_of_strides
 class Part:
     """One condition or walk, of this visit or another: its walks, whose strides are taken together.
 
-    `attachment` numbers how often the sensors had been strapped on anew before; equal numbers of one visit share it.
+    `attachment` numbers how often the sensors had been strapped on again before; equal numbers of one visit share it.
     `visit` numbers the visits of a comparison of several, and `day` is when that visit was, if that is known.
     `alignment` is what was changed at the prosthesis before it, and since which condition; `agreed` are the goals by
     its day. `is_apart`: it is of timed tests, or a walk towards a target, beside the walks of its condition.
@@ -90,7 +90,7 @@ class Part:
         return assessment_of(self.verdicts, side, "stride_time_s" if column == CADENCE else column)
 
     def values(self, side: Side, column: str) -> FloatArray:
-        """Of the strides used of all walks (k,), degrees, percent, metres or seconds; none where withheld."""
+        """Of the strides used of all walks (k,), degrees, percent, metres or seconds; none where not reported."""
         if column == CADENCE:
             return 120.0 / self.values(side, "stride_time_s")
         found = [
@@ -98,14 +98,14 @@ class Part:
             for walk in self.walks
             if side in walk.gait
         ]
-        return np.concatenate(found) if found and self.assessment(side, column).is_told else np.empty(0)
+        return np.concatenate(found) if found and self.assessment(side, column).is_reported else np.empty(0)
 
     @cached_property
     def _found_values(self) -> dict[tuple[Side, str], MeanAndSd]:
         return {}
 
     def value(self, side: Side, column: str) -> MeanAndSd:
-        """Over the strides used of all walks; found once, for it stands in every row that the part is in."""
+        """Over the strides used of all walks; found once, for it is in every row that the part is in."""
         found = self._found_values.get((side, column))
         if found is None:
             found = self._found_values[side, column] = mean_and_sd(self.values(side, column))
@@ -128,16 +128,16 @@ class Part:
         return found
 
     def strides_deg(self, joint: Joint) -> FloatArray:
-        """The joint's angle over the strides used of all walks (k, 101), degrees: evidence, whatever may be said."""
+        """The joint's angle over the strides used of all walks (k, 101), degrees: evidence, whatever may be stated."""
         cycles = [used_cycles(walk, joint) for walk in self.walks if joint.side in walk.gait]
         return np.rad2deg(np.concatenate(cycles)) if cycles else np.empty((0, POINTS))
 
     def cycle(self, joint: Joint) -> MeanCycle:
-        """Mean over the strides used of all walks, degrees; NaN throughout where its shape or sign is withheld."""
+        """Mean over the strides used of all walks, degrees; NaN throughout where its shape or sign is not reported."""
         return mean_cycle(self.strides_deg(joint) if self.is_drawn(joint) else np.empty((0, POINTS)))
 
     def curve(self, joint: Joint, *, is_about_mean: bool) -> StrideCurve:
-        """A joint's mean cycle as charts show it; without its height where that says nothing beside the others'."""
+        """A joint's mean cycle as charts show it; without its height where that gives nothing beside the others'."""
         found, off = self.cycle(joint), self.value(joint.side, "stance_percent")
         return StrideCurve(
             self.letter,
@@ -162,7 +162,7 @@ class Part:
     def is_drawn(self, joint: Joint) -> bool:
         """Whether the joint's curve may be seen at all."""
         found = self.verdicts.joint(joint)
-        return together((found.shape, found.sign)).is_told
+        return together((found.shape, found.sign)).is_reported
 
     def is_no_peak(self, side: Side, column: str) -> bool:
         """Whether the angle is known and only passes through where this peak is looked for."""
@@ -170,14 +170,14 @@ class Part:
         if (
             joint is None
             or column not in {*WINDOWS, *EXCURSIONS_BY_COLUMN}
-            or not self.assessment(side, column).is_told
+            or not self.assessment(side, column).is_reported
         ):
             return False
         return self.cycle(joint).n >= MIN_STRIDES_FOR_MEAN and not math.isfinite(self.value(side, column).mean)
 
     def of_both(self, name: str) -> float:
         """Cadence, double support or speed (the names of `BothFeet`), mean of the walks; NaN if one withholds it."""
-        if not assessment_of_both(self.verdicts, name).is_told:
+        if not assessment_of_both(self.verdicts, name).is_reported:
             return math.nan
         known = [value for walk in self._both_of_walks if math.isfinite(value := getattr(walk, name))]
         return fmean(known) if known else math.nan
@@ -187,7 +187,7 @@ class Part:
         return tuple(map(both_sides, self.walks))
 
     def of_walk(self, column: str, kind: ComparisonKind) -> MeanOfStrides:
-        """Speed or cadence of both legs, as sure as one leg's strides are: neighbours step alike."""
+        """Speed or cadence of both legs, as sure as one leg's strides are: adjacent ones step alike."""
         value, one = self.of_both(column), self.mean(self.sides[0], column, kind)
         if not math.isfinite(value):
             return mean_of_strides(np.empty(0))
@@ -196,7 +196,7 @@ class Part:
         return MeanOfStrides(value, share * one.sd, one.n, *(share * uncertainty for uncertainty in of_one))
 
     def assessment_of_walk(self, column: str) -> Assessment:
-        """What may be said of speed or cadence."""
+        """What may be stated about speed or cadence."""
         return assessment_of_both(self.verdicts, column)
 
     def figure(self, measure: Measure, side: Side) -> tuple[MeanAndSd, Verdict]:
@@ -258,12 +258,12 @@ def parts_of(
     recordings
         Those of the session, in order of time, whose conditions and attachments count.
     prefix
-        Stands before each letter.
+        Is before each letter.
     agreed
         The goals by the session's day.
     """
     pools, letters, changed = pools_of(recordings), pool_letters(recordings), alignments_of(recordings)
-    others = iter(letter for letter in LETTERS if letter not in letters.values())  # of walks nobody has told of
+    others = iter(letter for letter in LETTERS if letter not in letters.values())  # of walks nobody has informed of
     found: dict[Pool, list[RecordingAnalysis]] = {}
     for walk in _walks(analysis):
         found.setdefault(pools.get(walk.name, Pool(walk.name)), []).append(walk)
@@ -295,16 +295,16 @@ def _walks(analysis: Analysis) -> list[RecordingAnalysis]:
 
 def left_out_of_parts(parts: Sequence[Part]) -> str:
     """Which strides of what is compared were left out by hand; empty where none was."""
-    told = [(part.letter, by_hand_in_words(walk)) for part in parts for walk in part.walks]
-    return " ".join(f"{letter}: {words}" for letter, words in told if words)
+    reported = [(part.letter, by_hand_in_words(walk)) for part in parts for walk in part.walks]
+    return " ".join(f"{letter}: {words}" for letter, words in reported if words)
 
 
 def by_hand_in_words(*walks: RecordingAnalysis) -> str:
     """How many strides of which side a person has left out; empty where none was."""
-    said = []
+    stated = []
     for side in Side:
         gaits = [walk.gait[side] for walk in walks if side in walk.gait]
         if count := sum(map(left_out_by_hand, gaits)):
-            told = tr("{count} of {of} {side} strides excluded by hand.")
-            said.append(told.format(count=count, of=sum(len(g.strides) for g in gaits), side=side_name(side)))
-    return " ".join(said)
+            reported = tr("{count} of {of} {side} strides excluded by hand.")
+            stated.append(reported.format(count=count, of=sum(len(g.strides) for g in gaits), side=side_name(side)))
+    return " ".join(stated)

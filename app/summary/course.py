@@ -1,4 +1,4 @@
-"""What of a visit stands in the patient's course: a few figures of each condition, with what judging them needs.
+"""What of a visit is in the patient's course: a few figures of each condition, with what judging them needs.
 
 They are few enough to be kept beside the session, so that home shows the course of many visits without analysing one.
 """
@@ -30,7 +30,7 @@ OF_A_LEG = tuple(OF_LEGS)  # all that a goal can be of, so that its course can b
 @dataclass(frozen=True, slots=True)
 class CourseFigure:
     """The mean of one measure. `side` None: of the walk. `gates`: those that were not passed; `found` is NaN where
-    it is withheld or was not measured."""
+    it is not reported or was not measured."""
 
     column: str
     side: Side | None
@@ -39,8 +39,8 @@ class CourseFigure:
     gates: tuple[str, ...] = ()
 
     @property
-    def is_told(self) -> bool:
-        return self.assessment.is_told and self.found.n >= MIN_STRIDES_FOR_MEAN and math.isfinite(self.found.mean)
+    def is_reported(self) -> bool:
+        return self.assessment.is_reported and self.found.n >= MIN_STRIDES_FOR_MEAN and math.isfinite(self.found.mean)
 
     @property
     def assessment(self) -> Assessment:
@@ -50,20 +50,21 @@ class CourseFigure:
     @property
     def whisker(self) -> float:
         """Half of the error of a difference between visits; NaN where no error is known."""
-        return whisker(self.column, ComparisonKind.VISITS, self.found) if self.is_told else math.nan
+        return whisker(self.column, ComparisonKind.VISITS, self.found) if self.is_reported else math.nan
 
 
 @dataclass(frozen=True, slots=True)
 class CourseTest:
-    """What a timed test of a visit is made for, over its attempts; `found` is NaN where none has it, or withheld."""
+    """What a timed test of a visit is made for, over its attempts; `found` is NaN where none has it, or not
+    reported."""
 
     column: str
     found: MeanOfAttempts
     verdict: Verdict
 
     @property
-    def is_told(self) -> bool:
-        return self.assessment.is_told and math.isfinite(self.found.mean)
+    def is_reported(self) -> bool:
+        return self.assessment.is_reported and math.isfinite(self.found.mean)
 
     @property
     def assessment(self) -> Assessment:
@@ -72,12 +73,12 @@ class CourseTest:
     @property
     def whisker(self) -> float:
         """Half of the error of a difference between visits; NaN where no error is known."""
-        return 0.5 * error_between_visits(self.column) if self.is_told else math.nan
+        return 0.5 * error_between_visits(self.column) if self.is_reported else math.nan
 
 
 @dataclass(frozen=True, slots=True)
 class CourseCondition:
-    """One condition of a visit, as it was walked last. `withheld`: the joints whose curve may not be read.
+    """One condition of a visit, as it was walked last. `not_reported`: the joints whose curve may not be read.
 
     `tests`: those that were done under it, each once. Where it was walked in tests from a chair alone, there are no
     `figures`.
@@ -86,7 +87,7 @@ class CourseCondition:
     condition: str
     strides: int
     figures: tuple[CourseFigure, ...]
-    withheld: tuple[Joint, ...] = ()
+    not_reported: tuple[Joint, ...] = ()
     tests: tuple[CourseTest, ...] = ()
 
     def test(self, column: str) -> CourseTest | None:
@@ -133,7 +134,7 @@ def course_of(analysis: Analysis, recordings: Sequence[Recording]) -> Course:
 
 
 def timed_tests_of(analysis: Analysis, recordings: Sequence[Recording]) -> tuple[CourseCondition, ...]:
-    """The timed tests of a visit alone, without what its walks tell besides."""
+    """The timed tests of a visit alone, without what its walks report besides."""
     tested = _tests(analysis, recordings)
     return tuple(CourseCondition(name, 0, (), tests=tests) for name, tests in tested.items())
 
@@ -169,12 +170,12 @@ def _test(column: str, walks: Sequence[RecordingAnalysis]) -> CourseTest:
         verdict = Verdict.READ
         if rests_on_feet(walk.timed):
             verdict = together(walk.verdicts.leg(side).distance for side in walk.gait).verdict
-        is_told = Assessment(verdict).is_told
-        values.append(figure_of(walk.timed) if is_told else math.nan)
+        is_reported = Assessment(verdict).is_reported
+        values.append(figure_of(walk.timed) if is_reported else math.nan)
         verdicts.append(verdict)
     found = mean_of_attempts(values)
-    told = [one for one, value in zip(verdicts, values, strict=True) if math.isfinite(value)]
-    return CourseTest(column, found, worst(told) if told else Verdict.WITHHELD)
+    reported = [one for one, value in zip(verdicts, values, strict=True) if math.isfinite(value)]
+    return CourseTest(column, found, worst(reported) if reported else Verdict.NOT_REPORTED)
 
 
 def change(
@@ -190,12 +191,14 @@ def change(
         tests = one.test(column), first.test(column)
         if tests[0] is None or tests[1] is None:
             return None
-        said = (tests[0].assessment, tests[1].assessment)
-        return compare_attempts(column, tests[0].found, tests[1].found, said, is_chosen_before=is_chosen_before)
+        wording = (tests[0].assessment, tests[1].assessment)
+        return compare_attempts(column, tests[0].found, tests[1].found, wording, is_chosen_before=is_chosen_before)
     pair = one.figure(column, side), first.figure(column, side)
     if pair[0] is None or pair[1] is None:
         return None
-    speeds = [found.found.mean for part in (one, first) if (found := part.figure(SPEED)) is not None and found.is_told]
+    speeds = [
+        found.found.mean for part in (one, first) if (found := part.figure(SPEED)) is not None and found.is_reported
+    ]
     return compare(
         column,
         ComparisonKind.VISITS,
@@ -213,12 +216,12 @@ def _condition(name: str, part: Part, tests: tuple[CourseTest, ...]) -> CourseCo
         for column in (one for one in OF_A_LEG if one not in OF_HIPS or part.is_measured(side, one)):
             found = part.assessment(side, column)
             figures.append(_figure(column, side, part.mean(side, column, ComparisonKind.VISITS), found))
-    withheld = []
+    not_reported = []
     for joint in part.joints:
-        said = part.verdicts.joint(joint)
-        if together((said.shape, said.sign)).verdict is Verdict.WITHHELD:
-            withheld.append(joint)
-    return CourseCondition(name, sum(map(part.strides, part.sides)), tuple(figures), tuple(withheld), tests)
+        wording = part.verdicts.joint(joint)
+        if together((wording.shape, wording.sign)).verdict is Verdict.NOT_REPORTED:
+            not_reported.append(joint)
+    return CourseCondition(name, sum(map(part.strides, part.sides)), tuple(figures), tuple(not_reported), tests)
 
 
 def _of_walk(part: Part, column: str) -> CourseFigure:
@@ -228,7 +231,7 @@ def _of_walk(part: Part, column: str) -> CourseFigure:
 
 def _figure(column: str, side: Side | None, found: MeanOfStrides, assessment: Assessment) -> CourseFigure:
     gates = tuple(dict.fromkeys(reason.gate for reason in assessment.reasons))
-    if not assessment.is_told:
+    if not assessment.is_reported:
         found = MeanOfStrides(math.nan, math.nan, 0, math.nan, math.nan)
     return CourseFigure(column, side, found, assessment.verdict, gates)
 
@@ -245,7 +248,7 @@ def course_in_json(course: Course) -> dict[str, Any]:
             {
                 "condition": one.condition,
                 "strides": one.strides,
-                "withheld": list(one.withheld),
+                "withheld": list(one.not_reported),
                 "figures": [
                     {
                         "column": figure.column,

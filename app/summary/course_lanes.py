@@ -1,7 +1,7 @@
 """A patient's course as lanes over the dates of the visits: what is drawn, and what has changed since the first one.
 
-Conditions stand side by side and are never joined. What is withheld is a gap, and a change counts from the first visit
-that can be read.
+Conditions stand side by side and are never joined. What is not reported is a gap, and a change counts from the first
+visit that can be read.
 """
 
 import datetime
@@ -20,7 +20,7 @@ from core.timed.measures import COLUMNS, PROTOCOLS
 from core.verdicts.measurement_error import Difference, Judgement
 from core.verdicts.model import Verdict
 
-MOST_TOGETHER = 4  # conditions in one lane: as many marks can be told apart
+MOST_TOGETHER = 4  # conditions in one lane: as many marks can be distinguished
 USUAL_LANES, MOST_LANES = 3, 4  # without goals, and with as many
 
 
@@ -47,7 +47,7 @@ USUAL = (SPEED_LANE, KNEE_LANE, STANCE_LANE)
 class CourseVisit:
     """One visit on the axis of dates. `course` None: it is not computed yet, or no longer holds.
 
-    `clock`: at which time of that day, where it is known; it tells visits of one day apart.
+    `clock`: at which time of that day, where it is known; it reports visits of one day apart.
     """
 
     id: UUID
@@ -66,7 +66,7 @@ class LanePoint:
     verdict: Verdict
 
     @property
-    def is_told(self) -> bool:
+    def is_reported(self) -> bool:
         return math.isfinite(self.value)
 
 
@@ -79,8 +79,8 @@ class LaneLine:
     points: tuple[LanePoint, ...]
 
     @property
-    def told(self) -> tuple[LanePoint, ...]:
-        return tuple(point for point in self.points if point.is_told)
+    def reported(self) -> tuple[LanePoint, ...]:
+        return tuple(point for point in self.points if point.is_reported)
 
 
 @dataclass(frozen=True, slots=True)
@@ -96,7 +96,7 @@ class LaneChange:
 
 @dataclass(frozen=True, slots=True)
 class CourseLane:
-    """`changes`: of the lines of the condition that is told of. `band`: its first visit less and plus the error.
+    """`changes`: of the lines of the condition that is given of. `band`: its first visit less and plus the error.
 
     `goals`: those that hold now.
     """
@@ -116,7 +116,7 @@ class CourseLane:
     @property
     def values(self) -> list[float]:
         """All that has to have a place in the lane."""
-        points = [point for line in self.lines for point in line.told]
+        points = [point for line in self.lines for point in line.reported]
         ends = [end for p in points if math.isfinite(p.whisker) for end in (p.value - p.whisker, p.value + p.whisker)]
         return [*(point.value for point in points), *ends, *(self.band or ()), *self.goal_values]
 
@@ -135,8 +135,8 @@ def conditions_of_visits(visits: Sequence[CourseVisit]) -> dict[str, int]:
 
 def lane_kinds(goals: Sequence[Goal] = ()) -> tuple[LaneKind, ...]:
     """What has a lane: first what goals are of, then the usual ones as far as there is room."""
-    wanted = dict.fromkeys(_kind(goal) for goal in held(goals) if not _kind(goal).is_of_test)
-    own = [*(kind for kind in USUAL if kind in wanted), *(kind for kind in wanted if kind not in USUAL)]
+    required = dict.fromkeys(_kind(goal) for goal in held(goals) if not _kind(goal).is_of_test)
+    own = [*(kind for kind in USUAL if kind in required), *(kind for kind in required if kind not in USUAL)]
     few = own[:MOST_LANES]
     return (*few, *[kind for kind in USUAL if kind not in own][: max(USUAL_LANES - len(few), 0)])
 
@@ -144,8 +144,8 @@ def lane_kinds(goals: Sequence[Goal] = ()) -> tuple[LaneKind, ...]:
 def kinds_of_tests(visits: Sequence[CourseVisit], goals: Sequence[Goal] = ()) -> tuple[LaneKind, ...]:
     """The timed tests that have a lane: those that were done, and those that goals are of."""
     done = {test.column for visit in visits if visit.course for one in visit.course.conditions for test in one.tests}
-    wanted = done | {goal.column for goal in held(goals)}
-    return tuple(LaneKind(column) for column in COLUMNS.values() if column in wanted)
+    required = done | {goal.column for goal in held(goals)}
+    return tuple(LaneKind(column) for column in COLUMNS.values() if column in required)
 
 
 def without_lane(goals: Sequence[Goal]) -> tuple[Goal, ...]:
@@ -165,26 +165,26 @@ def lanes(
     Parameters
     ----------
     condition
-        The only one that is shown; None: all of them, and changes are told of the most frequent one.
+        The only one that is shown; None: all of them, and changes are given of the most frequent one.
     kinds
         What has a lane in place of these.
     """
     known = list(conditions_of_visits(visits))
     shown = known if condition is None else [condition]
-    told = shown[0] if shown else ""
+    reported = shown[0] if shown else ""
     affected = next((visit.course.affected for visit in reversed(visits) if visit.course is not None), None)
     sides = (affected,) if affected is not None else tuple(Side)
     found = []
     for kind in lane_kinds(goals) if kinds is None else kinds:
         own = tuple(one for one in held(goals) if _kind(one) == kind)
-        wanted: tuple[Side | None, ...] = (None,)
+        required: tuple[Side | None, ...] = (None,)
         if not (kind.is_between or kind.is_of_walk):
             with_goal = {one.of.side for one in own}
-            wanted = tuple(side for side in Side if side in sides or side in with_goal)
-        lines = [_line(visits, kind, one, side) for one in shown for side in wanted]
+            required = tuple(side for side in Side if side in sides or side in with_goal)
+        lines = [_line(visits, kind, one, side) for one in shown for side in required]
         lines = [line for line in lines if line.points]
-        changes = [_change(visits, kind, line) for line in lines if line.condition == told]
-        found.append(CourseLane(kind, tuple(lines), tuple(changes), _band(lines, told), own))
+        changes = [_change(visits, kind, line) for line in lines if line.condition == reported]
+        found.append(CourseLane(kind, tuple(lines), tuple(changes), _band(lines, reported), own))
     return tuple(found)
 
 
@@ -207,21 +207,23 @@ def _point(number: int, walked: CourseCondition, kind: LaneKind, side: Side | No
         between = walked.between_legs(kind.column)
         if between is None:
             return None
-        is_withheld = between.judgement is Judgement.WITHHELD
-        return LanePoint(number, between.difference, math.nan, Verdict.WITHHELD if is_withheld else Verdict.READ)
+        is_not_reported = between.judgement is Judgement.NOT_REPORTED
+        return LanePoint(
+            number, between.difference, math.nan, Verdict.NOT_REPORTED if is_not_reported else Verdict.READ
+        )
     if kind.is_of_test:
         test = walked.test(kind.column)
         return None if test is None else LanePoint(number, test.found.mean, test.whisker, test.verdict)
     figure = walked.figure(kind.column, side)
     if figure is None or figure.verdict is Verdict.NOT_MEASURED:
         return None
-    return LanePoint(number, figure.found.mean if figure.is_told else math.nan, figure.whisker, figure.verdict)
+    return LanePoint(number, figure.found.mean if figure.is_reported else math.nan, figure.whisker, figure.verdict)
 
 
 def _change(visits: Sequence[CourseVisit], kind: LaneKind, line: LaneLine) -> LaneChange:
     last = line.points[-1]
-    before = [point for point in line.told if point.visit < last.visit]
-    if not before or not last.is_told:
+    before = [point for point in line.reported if point.visit < last.visit]
+    if not before or not last.is_reported:
         return LaneChange(line, None, None, before[0].visit if before else None, None)
     since = [_difference(visits, kind, line, last, point) for point in (before[0], before[-1])]
     return LaneChange(line, since[0], since[1] if len(before) > 1 else None, before[0].visit, before[-1].visit)
@@ -240,10 +242,10 @@ def _difference(
 
 
 def _band(lines: Sequence[LaneLine], condition: str) -> tuple[float, float] | None:
-    """Where one line alone is told of and has two values to compare: the first, less and plus the error."""
+    """Where one line alone is given of and has two values to compare: the first, less and plus the error."""
     of_condition = [line for line in lines if line.condition == condition]
-    if len(of_condition) != 1 or len(of_condition[0].told) < 2:
+    if len(of_condition) != 1 or len(of_condition[0].reported) < 2:
         return None
-    first = of_condition[0].told[0]
+    first = of_condition[0].reported[0]
     error = 2 * first.whisker
     return (first.value - error, first.value + error) if math.isfinite(error) else None

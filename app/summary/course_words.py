@@ -1,4 +1,4 @@
-"""How is a patient's course said? Each lane with its unit and its changes, and what is to be done next."""
+"""How is a patient's course stated? Each lane with its unit and its changes, and what is to be done next."""
 
 import datetime
 import math
@@ -34,11 +34,11 @@ class NextStep:
 
 @dataclass(frozen=True, slots=True)
 class LatestVisit:
-    """What is known of the latest visit. `withheld`: joints that could not be read; `reached`: goals that were."""
+    """What is known of the latest visit. `not_reported`: joints that could not be read; `reached`: goals that were."""
 
     id: UUID
     day: datetime.date
-    withheld: tuple[Joint, ...]
+    not_reported: tuple[Joint, ...]
     has_walk: bool
     has_report: bool
     reached: tuple[GoalFigure, ...] = ()
@@ -47,8 +47,8 @@ class LatestVisit:
 def day_of(number: int, visits: Sequence[CourseVisit]) -> str:
     """The day of the visit of this number, with the time where another was on that day."""
     visit, days = visits[number], [visit.day for visit in visits]
-    said = day_in_words(visit.day, days)
-    return f"{said}, {visit.clock}" if visit.clock and days.count(visit.day) > 1 else said
+    stated = day_in_words(visit.day, days)
+    return f"{stated}, {visit.clock}" if visit.clock and days.count(visit.day) > 1 else stated
 
 
 def value_in_words(value: float, kind: LaneKind) -> str:
@@ -62,7 +62,7 @@ def change_in_words(found: Difference, kind: LaneKind) -> str:
 def last_in_words(one: LaneChange, kind: LaneKind) -> str:
     """The last value with its unit."""
     last = one.line.points[-1]
-    if not last.is_told:
+    if not last.is_reported:
         return tr("not reported")
     return value_in_words(last.value, kind) + short_unit(kind.column)
 
@@ -79,8 +79,8 @@ def judged_in_words(found: Difference, kind: LaneKind) -> str:
 
 def since_last_in_words(found: Difference, kind: LaneKind) -> str:
     """What has changed since the visit before."""
-    said = tr("since last visit {change}, {verdict}")
-    return said.format(change=change_in_words(found, kind), verdict=_verdict(found))
+    stated = tr("since last visit {change}, {verdict}")
+    return stated.format(change=change_in_words(found, kind), verdict=_verdict(found))
 
 
 def _verdict(found: Difference) -> str:
@@ -93,35 +93,35 @@ def _verdict(found: Difference) -> str:
 
 def key_in_words(lanes: Sequence[CourseLane]) -> str:
     """What is drawn beside the values; empty where nothing of it is."""
-    has_whiskers = any(math.isfinite(point.whisker) for lane in lanes for line in lane.lines for point in line.told)
+    has_whiskers = any(math.isfinite(point.whisker) for lane in lanes for line in lane.lines for point in line.reported)
     changes = [found for lane in lanes for one in lane.changes if (found := one.since_first) is not None]
-    said = [tr("Whisker: half the error of a change.")] if has_whiskers else []
-    said += [tr("Grey: first visit \N{PLUS-MINUS SIGN} error.")] if any(lane.band for lane in lanes) else []
-    said += [tr("Dotted: goal.")] if any(lane.goals for lane in lanes) else []
+    stated = [tr("Whisker: half the error of a change.")] if has_whiskers else []
+    stated += [tr("Grey: first visit \N{PLUS-MINUS SIGN} error.")] if any(lane.band for lane in lanes) else []
+    stated += [tr("Dotted: goal.")] if any(lane.goals for lane in lanes) else []
     if any(found.is_unverified for found in changes):
-        said.append(dagger_note())
-    return " ".join(said)
+        stated.append(dagger_note())
+    return " ".join(stated)
 
 
 def lane_in_words(lane: CourseLane, visits: Sequence[CourseVisit]) -> str:
-    """All of a lane, for who hears it: every value with its day, then what has changed."""
+    """All of a lane, for who receives it: every value with its day, then what has changed."""
     name = spoken_name(lane.kind.column, is_between=lane.kind.is_between)
-    agreed = [tr("Goal: {wanted}.").format(wanted=goal_in_words(goal)) for goal in lane.goals]
+    agreed = [tr("Goal: {required}.").format(required=goal_in_words(goal)) for goal in lane.goals]
     if not lane.lines:
         return " ".join([tr("{name}: no value.").format(name=name), *agreed])
     conditions = {line.condition for line in lane.lines}
-    said = []
+    stated = []
     for line in lane.lines:
         values = [_spoken(point, lane.kind, visits) for point in line.points]
-        said.append(f"{_head(lane.kind, line, has_condition=len(conditions) > 1)}: {', '.join(values)}.")
-    said += [words for one in lane.changes if (words := _change_in_words(one, lane.kind, visits))]
-    told = [found for one in lane.changes for found in told_goals(lane, one, visits)]
-    agreed += [f"{capitalised(standing_in_words(found))}." for found in told]
-    return " ".join([*said, *agreed])
+        stated.append(f"{_head(lane.kind, line, has_condition=len(conditions) > 1)}: {', '.join(values)}.")
+    stated += [words for one in lane.changes if (words := _change_in_words(one, lane.kind, visits))]
+    reported = [found for one in lane.changes for found in reported_goals(lane, one, visits)]
+    agreed += [f"{capitalised(standing_in_words(found))}." for found in reported]
+    return " ".join([*stated, *agreed])
 
 
-def told_goals(lane: CourseLane, one: LaneChange, visits: Sequence[CourseVisit]) -> list[GoalFigure]:
-    """How the last value of a line stands to its goals, of those alone that were agreed before the visit's day."""
+def reported_goals(lane: CourseLane, one: LaneChange, visits: Sequence[CourseVisit]) -> list[GoalFigure]:
+    """How the last value of a line is to its goals, of those alone that were agreed before the visit's day."""
     walked = walked_at(visits, one.line)
     if walked is None:
         return []
@@ -131,7 +131,7 @@ def told_goals(lane: CourseLane, one: LaneChange, visits: Sequence[CourseVisit])
 
 def changes_since_in_words(lane: CourseLane, visits: Sequence[CourseVisit]) -> str:
     """What the last visit differs by from the one before, and from the first; empty where there is none before."""
-    said = []
+    stated = []
     for one in lane.changes:
         since = [(one.since_last, one.before)] if one.since_last is not None else []
         for found, number in (*since, (one.since_first, one.first)):
@@ -140,25 +140,25 @@ def changes_since_in_words(lane: CourseLane, visits: Sequence[CourseVisit]) -> s
             change = signed(found.difference, decimals(lane.kind.column)) + short_unit(lane.kind.column)
             words = tr("{change} since {day}, {judged}.")
             judged = judged_in_words(found, lane.kind)
-            said.append(words.format(change=change, day=day_of(number, visits), judged=judged))
-    return " ".join(said)
+            stated.append(words.format(change=change, day=day_of(number, visits), judged=judged))
+    return " ".join(stated)
 
 
 def visit_in_words(number: int, lanes: Sequence[CourseLane], visits: Sequence[CourseVisit]) -> str:
     """All values of one visit, for who goes from visit to visit."""
-    said = []
+    stated = []
     for lane in lanes:
         conditions = {line.condition for line in lane.lines}
         for line in lane.lines:
             for point in line.points:
                 if point.visit == number:
                     value = tr("not reported")
-                    if point.is_told:
+                    if point.is_reported:
                         value = spoken_value(lane.kind.column, value_in_words(point.value, lane.kind))
-                    said.append(f"{_head(lane.kind, line, has_condition=len(conditions) > 1)}: {value}")
+                    stated.append(f"{_head(lane.kind, line, has_condition=len(conditions) > 1)}: {value}")
     if visits[number].course is None:
-        said = [tr("not calculated yet")]
-    return f"{day_of(number, visits)}. {'. '.join(said or [tr('no walk')])}."
+        stated = [tr("not calculated yet")]
+    return f"{day_of(number, visits)}. {'. '.join(stated or [tr('no walk')])}."
 
 
 def nothing_between(visits: Sequence[CourseVisit]) -> str:
@@ -179,10 +179,10 @@ def next_step(recovered: NextStep | None, latest: LatestVisit | None, today: dat
     if recovered is not None or latest is None:
         return recovered
     day = short_date(latest.day)
-    if latest.withheld:
-        names = joined([name_of(joint) for joint in latest.withheld])
-        said = tr("check {joints}, not reported on {day}.")
-        return NextStep(said.format(joints=names, day=day), tr("Review"), latest.id)
+    if latest.not_reported:
+        names = joined([name_of(joint) for joint in latest.not_reported])
+        stated = tr("check {joints}, not reported on {day}.")
+        return NextStep(stated.format(joints=names, day=day), tr("Review"), latest.id)
     if latest.has_walk and not latest.has_report:
         return NextStep(tr("write the report for {day}.").format(day=day), tr("Open"), latest.id)
     if latest.reached:
@@ -195,27 +195,27 @@ def next_step(recovered: NextStep | None, latest: LatestVisit | None, today: dat
 def reached_in_words(reached: Sequence[GoalFigure], day: str) -> str:
     """Which goal was reached on a day, and whether by more than the error; of several the surest, and how many more."""
     first, *others = reached
-    said = tr("goal reached on {day}: {goal}; measured {value}, {standing}.").format(
+    stated = tr("goal reached on {day}: {goal}; measured {value}, {standing}.").format(
         day=day,
         goal=goal_in_words(first.goal),
         value=value_in_words_of_goal(first),
         standing=beyond_in_words(first.standing),
     )
     if not others:
-        return said
-    return f"{said} {tr_n('{count} more.', '{count} more.', len(others)).format(count=len(others))}"
+        return stated
+    return f"{stated} {tr_n('{count} more.', '{count} more.', len(others)).format(count=len(others))}"
 
 
 def undecided_step(session_id: UUID, day: datetime.date | None) -> NextStep:
-    """A walk of which nobody has said whether it is kept."""
-    said = tr("include or exclude the last walk.")
+    """A walk of which nobody has stated whether it is kept."""
+    stated = tr("include or exclude the last walk.")
     if day is not None:
-        said = tr("include or exclude the walk of {day}.").format(day=short_date(day))
-    return NextStep(said, tr("Review"), session_id)
+        stated = tr("include or exclude the walk of {day}.").format(day=short_date(day))
+    return NextStep(stated, tr("Review"), session_id)
 
 
 def _head(kind: LaneKind, line: LaneLine, *, has_condition: bool) -> str:
-    """Of what and whom values are told."""
+    """Of what and whom values are reported."""
     name = spoken_name(kind.column, is_between=kind.is_between)
     who = [side_name(line.side)] if line.side is not None else []
     who += [condition_in_words(line.condition)] if has_condition else []
@@ -224,7 +224,7 @@ def _head(kind: LaneKind, line: LaneLine, *, has_condition: bool) -> str:
 
 def _spoken(point: LanePoint, kind: LaneKind, visits: Sequence[CourseVisit]) -> str:
     day = day_of(point.visit, visits)
-    if not point.is_told:
+    if not point.is_reported:
         return tr("not reported on {day}").format(day=day)
     value = spoken_value(kind.column, value_in_words(point.value, kind))
     return tr("{value} on {day}").format(value=value, day=day)
@@ -234,8 +234,8 @@ def _change_in_words(one: LaneChange, kind: LaneKind, visits: Sequence[CourseVis
     found = one.since_first
     if found is None or one.first is None or not math.isfinite(found.difference):
         return ""
-    said = tr("{change} since {day}, {judged}.")
+    stated = tr("{change} since {day}, {judged}.")
     day = day_of(one.first, visits)
-    return said.format(
+    return stated.format(
         change=signed(found.difference, decimals(kind.column)), day=day, judged=judged_in_words(found, kind)
     )

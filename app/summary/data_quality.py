@@ -1,4 +1,4 @@
-"""Which parts of a walk can be read, what stands against the others, and what to do: as the screen tells it."""
+"""Which parts of a walk can be read, what is against the others, and what to do: as the screen reports it."""
 
 from dataclasses import dataclass
 
@@ -15,7 +15,7 @@ from core.results import RecordingAnalysis
 from core.verdicts.model import Verdict, worst
 from core.verdicts.quality import MIN_LOSS_PERCENT
 
-# findings that a gate of the verdicts says with its own figure
+# findings that a gate of the verdicts states with its own figure
 GATES_OF_FINDINGS = {
     "axis_uncertain": ("axis",),
     "axis_from_walking": ("axis",),
@@ -45,7 +45,7 @@ ALL_READ = {
 
 @dataclass(frozen=True, slots=True)
 class QualityLine:
-    """One thing that stands against a figure: `where` it is, `why`, and what `to_do`, which may be empty.
+    """One thing that is against a figure: `where` it is, `why`, and what `to_do`, which may be empty.
 
     `side` is the leg whose free motion mends it, None where that does not. `is_aside`: each leg can be read.
     """
@@ -60,7 +60,7 @@ class QualityLine:
     @property
     def is_grave(self) -> bool:
         """Whether it takes a joint or a leg away."""
-        return self.verdict is Verdict.WITHHELD and not self.is_aside
+        return self.verdict is Verdict.NOT_REPORTED and not self.is_aside
 
 
 @dataclass(frozen=True, slots=True)
@@ -70,11 +70,11 @@ class DataQuality:
     Attributes
     ----------
     first, then
-        The sentence that says it, and one beside it.
+        The sentence that states it, and one beside it.
     verdict
         The gravest of all.
     lines
-        What stands against it, the gravest first.
+        What is against it, the gravest first.
     in_order
         What was looked at and found in order; empty where nothing was.
     """
@@ -103,7 +103,7 @@ def quality_without_walk(visit: AnalysedVisit, recording: str) -> DataQuality:
 
 
 def _quality(first: str, then: str, lines: list[QualityLine], in_order: str) -> DataQuality:
-    ordered = sorted(lines, key=lambda line: (not line.is_grave, line.verdict is not Verdict.WITHHELD))
+    ordered = sorted(lines, key=lambda line: (not line.is_grave, line.verdict is not Verdict.NOT_REPORTED))
     return DataQuality(worst(line.verdict for line in ordered), first, then, tuple(ordered), in_order)
 
 
@@ -114,18 +114,18 @@ def _of_cause(cause: Cause) -> QualityLine:
 
 
 def _of_finding(finding: Finding) -> QualityLine:
-    """A finding withholds nothing by itself: what it withholds is said by a verdict."""
-    said = sentence(finding)
+    """A finding withholds nothing by itself: what it withholds is stated by a verdict."""
+    stated = sentence(finding)
     where = capitalised(place(finding.where))
-    where, rest = (where, said.removeprefix(f"{where}: ")) if said.startswith(f"{where}: ") else ("", said)
+    where, rest = (where, stated.removeprefix(f"{where}: ")) if stated.startswith(f"{where}: ") else ("", stated)
     why, stop, to_do = rest.partition(". ")
     return QualityLine(Verdict.CARE, where, capitalised(why + "." if stop else why), to_do)
 
 
 def _noticed(visit: AnalysedVisit, names: set[str], gates: set[str]) -> list[Finding]:
-    """What was noticed of these recordings or of the session that no verdict says already, the gravest first.
+    """What was noticed of these recordings or of the session that no verdict states already, the gravest first.
 
-    Where it was found is told as the reader knows it.
+    Where it was found is reported as the reader knows it.
     """
     others = {one.name for one in visit.session.recordings} - names if names else set()
     found = [
@@ -147,13 +147,13 @@ def _in_words(facts: Facts) -> tuple[str, str]:
     if not joints:
         return tr("No joint was measured in this walk."), ""
     care, out = (
-        [name_of(joint) for joint, verdict in joints.items() if verdict is wanted]
-        for wanted in (Verdict.CARE, Verdict.WITHHELD)
+        [name_of(joint) for joint, verdict in joints.items() if verdict is required]
+        for required in (Verdict.CARE, Verdict.NOT_REPORTED)
     )
     if len(out) == len(joints):
         return tr("No joint is reported for this walk."), ""
     first = _readable(list(map(name_of, joints)), care, out)
-    heights = [name_of(joint) for joint in joints if facts.verdicts.joint(joint).height.verdict is Verdict.WITHHELD]
+    heights = [name_of(joint) for joint in joints if facts.verdicts.joint(joint).height.verdict is Verdict.NOT_REPORTED]
     if out or not heights:
         return first, ""
     if len(heights) == len(joints):
@@ -162,16 +162,16 @@ def _in_words(facts: Facts) -> tuple[str, str]:
 
 
 def _readable(joints: list[str], care: list[str], out: list[str]) -> str:
-    """How many joints can be read, and which are read with care or withheld."""
+    """How many joints can be read, and which are read with care or not reported."""
     read = len(joints) - len(care) - len(out)
     if read == len(joints):
         return tr(ALL_READ[read]).format(joint=joints[0])
     if len(care) == len(joints):
         return tr("All joints: Caution.") if len(joints) > 1 else tr("Caution: {joints}.").format(joints=care[0])
-    said = [tr("{count} of {all} joints: Good.").format(count=read, all=len(joints))] if read else []
-    said += [tr("Caution: {joints}.").format(joints=joined(care))] if care else []
-    said += [tr("Not reported: {joints}.").format(joints=joined(out))] if out else []
-    return " ".join(said)
+    stated = [tr("{count} of {all} joints: Good.").format(count=read, all=len(joints))] if read else []
+    stated += [tr("Caution: {joints}.").format(joints=joined(care))] if care else []
+    stated += [tr("Not reported: {joints}.").format(joints=joined(out))] if out else []
+    return " ".join(stated)
 
 
 def one_time_in_words(walk: RecordingAnalysis) -> str:
@@ -184,17 +184,17 @@ def one_time_in_words(walk: RecordingAnalysis) -> str:
         return tr("left and right sensors synchronised from hip movement to ± {sd} ms").format(sd=sd)
     late = f"{1000 * abs(clock.applied_s):.0f}"
     side = side_name(Side.RIGHT if clock.applied_s > 0 else Side.LEFT)
-    said = tr("left and right sensors synchronised from hip movement: the {side} leg was {late} ms late, ± {sd} ms")
-    return said.format(side=side, late=late, sd=sd)
+    stated = tr("left and right sensors synchronised from hip movement: the {side} leg was {late} ms late, ± {sd} ms")
+    return stated.format(side=side, late=late, sd=sd)
 
 
 def _in_order(facts: Facts) -> str:
     """What was looked at without finding anything."""
-    said = []
+    stated = []
     if not quality.slipped_straps(facts):
-        said.append(tr("no strap moved"))
+        stated.append(tr("no strap moved"))
     if max((lost for walk in facts.part.walks for lost in walk.lost_percent.values()), default=0.0) < MIN_LOSS_PERCENT:
-        said.append(tr("hardly any samples lost"))
+        stated.append(tr("hardly any samples lost"))
     if facts.verdicts.between.verdict is Verdict.READ:
-        said.append(one_time_in_words(facts.walk))
-    return tr("Checked: {what}.").format(what=joined(said)) if said else ""
+        stated.append(one_time_in_words(facts.walk))
+    return tr("Checked: {what}.").format(what=joined(stated)) if stated else ""

@@ -16,7 +16,7 @@ from core.verdicts.diagnostics import JointDiagnostics
 
 AXIS_COST, PROJECTED_RATES, TWO_WAYS, FIGURES = "axis_cost", "projected_rates", "two_ways", "figures"
 SIMULATED = "simulated_"  # before the name of a file, where it cannot be lost
-MARGIN_BEYOND = 100.0  # how many times better says no more from here on
+MARGIN_BEYOND = 100.0  # how many times better states no more from here on
 SENSORS = ("proximal", "distal")
 UNIT_WORDS = {"deg_s": "°/s", "deg": "°", "mm": "mm", "ms": "ms", "s": "s", "percent": "%", "": ""}
 
@@ -118,7 +118,7 @@ def names_of_files(joint: Joint, is_simulated: bool) -> dict[str, str]:
 
 
 def write_diagnostics(found: JointDiagnostics, is_simulated: bool, folder: Path) -> list[Path]:
-    """Write every number that the page draws or says into `folder`, which is made where it is missing.
+    """Write every number that the page draws or states into `folder`, which is made where it is missing.
 
     Raises
     ------

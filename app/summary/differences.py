@@ -1,6 +1,6 @@
 """By how much do conditions, visits or legs differ, and is that more than the measurement error? The tables of it.
 
-`rows_of` tells every figure of a stride, those of both legs, and how far the mean curves lie apart; screen and
+`rows_of` reports every figure of a stride, those of both legs, and how far the mean curves lie apart; screen and
 report show some of them.
 """
 
@@ -46,16 +46,16 @@ OF_WALKS = {measure.column: measure for measure in MEASURES if measure.is_of_wal
 
 # of hips and pelvis no error of a difference is known: none is judged
 COMPARED = columns_of(ParameterFile.STRIDES, ParameterFile.PEAKS, ParameterFile.FITTING, ParameterFile.PELVIS)
-SIGNED = ("foot_pitch_at_contact_deg",)  # whose nought is no less of it: a share of it says nothing
+SIGNED = ("foot_pitch_at_contact_deg",)  # whose nought is no less of it: a share of it gives nothing
 
-WITHHELD = Difference(math.nan, math.nan, Judgement.WITHHELD)
+NOT_REPORTED = Difference(math.nan, math.nan, Judgement.NOT_REPORTED)
 
 
 @dataclass(frozen=True, slots=True)
 class Row:
-    """One figure of `part` and of the one it is told against. `side` None: of both. NaN where it is not known.
+    """One figure of `part` and of the one it is reported against. `side` None: of both. NaN where it is not known.
 
-    `status` is the worse of what may be said of the two.
+    `status` is the worse of what may be stated about the two.
     """
 
     part: Part
@@ -71,9 +71,9 @@ class Row:
 def comparisons_of(visits: Sequence[tuple[Session, Analysis]]) -> list[Comparison]:
     """Within each visit its conditions, then each later visit against the first.
 
-    Between visits a condition is told against the same one of the first, and never against another; what is not
-    compared for that reason `without_common_condition` tells. Letters of several visits have the visit's number before
-    them.
+    Between visits a condition is reported against the same one of the first, and never against another; what is not
+    compared for that reason `without_common_condition` reports. Letters of several visits have the visit's number
+    before them.
     """
     of_visits = []
     for number, (session, analysis) in enumerate(visits, start=1):
@@ -111,7 +111,7 @@ def _by_condition(visits: Sequence[tuple[Session, Analysis]]) -> list[Mapping[st
 
 
 def rows_of(comparison: Comparison) -> Iterator[Row]:
-    """Every figure that a part and the one it is told against both measured; those withheld without figures."""
+    """Every figure that a part and the one it is reported against both measured; those not reported without figures."""
     against = comparison.against
     for part in comparison.others:
         for side in Side:
@@ -123,7 +123,7 @@ def rows_of(comparison: Comparison) -> Iterator[Row]:
                 if found.reservation is Reservation.NONE:
                     yield Row(part, against, side, column, found.value, found.other, found.difference, status)
                 else:
-                    yield Row(part, against, side, column, found.value, found.other, WITHHELD, Verdict.WITHHELD)
+                    yield Row(part, against, side, column, found.value, found.other, NOT_REPORTED, Verdict.NOT_REPORTED)
             yield from _curves(comparison, part, side)
         yield from _of_both(comparison, part)
 
@@ -164,17 +164,17 @@ def write_compared_cycles(parts: Sequence[Part], path: Path) -> None:
 
 def _curve(part: Part, joint: Joint) -> Iterator[tuple[str, ...]]:
     """The cells of one mean curve, as in cycles.csv: of a joint without a height its shape alone."""
-    said, cycle = part.verdicts.joint(joint), part.cycle(joint)
+    stated, cycle = part.verdicts.joint(joint), part.cycle(joint)
     shape = cycle.mean - cycle.mean.mean()
     for percent in range(POINTS):
-        height = float(cycle.mean[percent]) if said.height.is_told else math.nan
+        height = float(cycle.mean[percent]) if stated.height.is_reported else math.nan
         known = (
             figure_cell(height),
             figure_cell(float(cycle.sd[percent])),
             str(cycle.n),
             figure_cell(float(shape[percent])),
         )
-        yield (*known, status_of(said))
+        yield (*known, status_of(stated))
 
 
 def write_sides(parts: Sequence[Part], sides: tuple[Side, Side], path: Path) -> None:
@@ -197,7 +197,7 @@ def write_sides(parts: Sequence[Part], sides: tuple[Side, Side], path: Path) -> 
             status = together(part.assessment(side, column) for side in sides).verdict
             is_size = BY_COLUMN[column].rests_on is not QuantityClass.HEIGHT and column not in SIGNED
             difference = compare_legs(part, column, sides)
-            has_index = is_size and difference.is_told and min(one.n, other.n) >= MIN_STRIDES_FOR_MEAN
+            has_index = is_size and difference.is_reported and min(one.n, other.n) >= MIN_STRIDES_FOR_MEAN
             symmetry = symmetry_index_percent(one.mean, other.mean) if has_index else math.nan
             cells = [*_named(part), column, *_mean(one), *_mean(other)]
             judged = _judged(difference, status)
@@ -207,20 +207,21 @@ def write_sides(parts: Sequence[Part], sides: tuple[Side, Side], path: Path) -> 
 
 
 def _curves(comparison: Comparison, part: Part, side: Side) -> Iterator[Row]:
-    """How far apart the mean curves lie on average, where the heights of both are told from the same kind of zero."""
+    """How far apart the mean curves lie on average, where the heights of both are distinguished from the same kind of
+    zero."""
     nothing = MeanAndSd(math.nan, math.nan, 0)
     for joint in comparison.joints:
         if joint.side is not side or not comparison.has_one_zero(joint):
             continue
-        said = together(of.verdicts.joint(joint).height for of in (part, comparison.against))
-        if not said.is_told:
+        stated = together(of.verdicts.joint(joint).height for of in (part, comparison.against))
+        if not stated.is_reported:
             continue
         cycles = part.cycle(joint), comparison.against.cycle(joint)
         difference = curve_difference(cycles[0].mean, cycles[1].mean)
         if min(cycle.n for cycle in cycles) >= MIN_STRIDES_FOR_MEAN and math.isfinite(difference):
             name = f"{joint.kind}_curve_difference_deg"
             found = Difference(difference, math.nan, Judgement.NO_PUBLISHED_FIGURE)
-            yield Row(part, comparison.against, side, name, nothing, nothing, found, said.verdict)
+            yield Row(part, comparison.against, side, name, nothing, nothing, found, stated.verdict)
 
 
 def _of_both(comparison: Comparison, part: Part) -> Iterator[Row]:
@@ -228,8 +229,8 @@ def _of_both(comparison: Comparison, part: Part) -> Iterator[Row]:
     for name in OF_BOTH:
         value, other = (MeanAndSd(one.of_both(name), math.nan, 0) for one in (part, against))
         status = together(assessment_of_both(one.verdicts, name) for one in (part, against)).verdict
-        if status is Verdict.WITHHELD:
-            yield Row(part, against, None, name, value, other, WITHHELD, status)
+        if status is Verdict.NOT_REPORTED:
+            yield Row(part, against, None, name, value, other, NOT_REPORTED, status)
         elif math.isfinite(difference := value.mean - other.mean):
             found = Difference(difference, math.nan, Judgement.NO_PUBLISHED_FIGURE)
             if name in OF_WALKS:

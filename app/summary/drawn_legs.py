@@ -59,7 +59,7 @@ def how_drawn(session: Session, *, has_pelvis: bool = False) -> str:
 
 
 def draw_legs(session: Session, analysis: Analysis, recording: RecordingAnalysis) -> dict[Side, DrawnLeg]:
-    """Each leg of a walk whose knee was found and whose thigh was heard."""
+    """Each leg of a walk whose knee was found and whose thigh was received."""
     if recording.kind is not RecordingKind.WALKING:
         return {}
     raw = next((r for r in session.recordings if r.name == recording.name), None)
@@ -90,7 +90,7 @@ def draw_pelvis(session: Session, recording: RecordingAnalysis) -> tuple[FloatAr
 
 
 def _has_pelvis(recording: RecordingAnalysis) -> bool:
-    return recording.pelvis is not None and recording.verdicts.pelvis.is_told
+    return recording.pelvis is not None and recording.verdicts.pelvis.is_reported
 
 
 def _hip_m(recording: RecordingAnalysis, frames: IntArray, height_m: float, side: Side) -> FloatArray:
@@ -173,7 +173,7 @@ def _thigh_directions(
 
 
 def _upright(session: Session, raw: Recording, knee: JointCalibration) -> FloatArray:
-    """Up in the thigh sensor's axes (3,) while standing, else on average over the walk; NaN if never heard."""
+    """Up in the thigh sensor's axes (3,) while standing, else on average over the walk; NaN if never received."""
     site = knee.joint.proximal
     standing = next((r for r in session.recordings if r.name == knee.standing_from and r.holds(site)), raw)
     acc_m_s2 = standing.imu[site].acc_m_s2
@@ -185,7 +185,7 @@ def _upright(session: Session, raw: Recording, knee: JointCalibration) -> FloatA
 def _orientations(
     session: Session, raw: Recording, knee: JointCalibration, time_s: FloatArray
 ) -> Iterator[tuple[IntArray, FloatArray]]:
-    """Frames at which the thigh was heard, and its orientation there, block by block."""
+    """Frames at which the thigh was received, and its orientation there, block by block."""
     site = knee.joint.proximal
     block, info = raw.imu[site], session.sensors.get(site)
     kind = (info.rate_kind if info else None) or RateKind.INSTANTANEOUS

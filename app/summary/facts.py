@@ -1,4 +1,5 @@
-"""What do all pages need to know of a walk's condition? Its means, what may not be told, the cited groups beside it."""
+"""What do all pages need to know of a walk's condition? Its means, what may not be reported, the cited groups beside
+it."""
 
 import math
 from collections.abc import Mapping, Sequence
@@ -27,7 +28,7 @@ from core.verdicts.model import Assessment, Verdict, Verdicts
 from core.verdicts.norms import Bands, ReferenceCurves, ReferenceValues, height_offset_deg, peak_away_sd
 from core.verdicts.quantities import WINDOWS, assessment_of, peak_percent
 
-KINDS = (JointKind.KNEE, JointKind.ANKLE)  # that every report tells of
+KINDS = (JointKind.KNEE, JointKind.ANKLE)  # that every report reports
 
 
 @dataclass(frozen=True, eq=False)
@@ -35,7 +36,7 @@ class Facts:
     """One condition of one visit, by one of its walks: every figure, curve and verdict is of the walks of `part`.
 
     What only one recording has, as when each stride was, is that of `walk`. `chosen` are the walks that are looked at
-    together: where two of them are of one condition, each stands alone. `course` are the patient's visits in order of
+    together: where two of them are of one condition, each is alone. `course` are the patient's visits in order of
     time, this one the last; the changes since then are findings of this one.
     """
 
@@ -75,18 +76,18 @@ class Facts:
 
     @cached_property
     def part(self) -> Part:
-        """The condition as it stands in every comparison."""
+        """The condition as it is in every comparison."""
         return part_of(self.visit, self.walk.name, self.chosen)
 
     @cached_property
     def goals(self) -> tuple[GoalFigure, ...]:
-        """What had been agreed by the walk's day, and how its condition stands to it."""
+        """What had been agreed by the walk's day, and how its condition is to it."""
         return of_part(self.part)
 
     @property
-    def told_goals(self) -> tuple[GoalFigure, ...]:
-        """Those of which may be said whether they are reached: agreed before the walk's day."""
-        return tuple(one for one in self.goals if one.goal in self.part.agreed.told)
+    def reported_goals(self) -> tuple[GoalFigure, ...]:
+        """Those of which may be stated whether they are reached: agreed before the walk's day."""
+        return tuple(one for one in self.goals if one.goal in self.part.agreed.reported)
 
     @property
     def condition(self) -> str:
@@ -128,8 +129,8 @@ class Facts:
         """Head a side's column, with its strides where it was measured."""
         if side not in self.gait:
             return tr("Left") if side is Side.LEFT else tr("Right")
-        said = tr("Left, n = {count}") if side is Side.LEFT else tr("Right, n = {count}")
-        return said.format(count=self.strides(side))
+        stated = tr("Left, n = {count}") if side is Side.LEFT else tr("Right, n = {count}")
+        return stated.format(count=self.strides(side))
 
     def is_measured(self, joint: Joint) -> bool:
         return joint in self.part.joints
@@ -140,21 +141,21 @@ class Facts:
 
     @property
     def kinds(self) -> tuple[JointKind, ...]:
-        """The kinds of joints that are told of, from the trunk down: hips where one was measured."""
+        """The kinds of joints that are given of, from the trunk down: hips where one was measured."""
         return (JointKind.HIP, *KINDS) if self.has_joint(JointKind.HIP) else KINDS
 
     def has_joint(self, kind: str) -> bool:
         return any(self.is_measured(joint_of(kind, side)) for side in Side)
 
     def assessment(self, side: Side, column: str) -> Assessment:
-        """What may be said of a column of strides.csv."""
+        """What may be stated about a column of strides.csv."""
         return assessment_of(self.verdicts, side, column)
 
     def has_no_zero(self, kind: str) -> bool:
-        """Whether a height of either leg's joint says nothing: both curves are then drawn about their own mean."""
+        """Whether a height of either leg's joint gives nothing: both curves are then drawn about their own mean."""
         joints = [joint_of(kind, side) for side in Side]
-        told = [self.verdicts.joint(joint) for joint in joints if self.is_measured(joint)]
-        return any(found.shape.is_told and not found.height.is_told for found in told)
+        reported = [self.verdicts.joint(joint) for joint in joints if self.is_measured(joint)]
+        return any(found.shape.is_reported and not found.height.is_reported for found in reported)
 
     def value(self, side: Side, column: str) -> MeanAndSd:
         """Mean and SD of one column of strides.csv over the strides used."""
@@ -190,8 +191,8 @@ class Facts:
         joint = joint_of(kind, side)
         found = self.verdicts.joint(joint)
         reasons = (*found.shape.reasons, *found.sign.reasons)
-        are_few = {one.gate for one in reasons if one.verdict is Verdict.WITHHELD} == {"strides"}
-        if not self.is_measured(joint) or not ((found.shape.is_told and found.sign.is_told) or are_few):
+        are_few = {one.gate for one in reasons if one.verdict is Verdict.NOT_REPORTED} == {"strides"}
+        if not self.is_measured(joint) or not ((found.shape.is_reported and found.sign.is_reported) or are_few):
             return np.empty((0, POINTS))
         strides_deg = side_cycle(self.part, joint).strides_deg
         if self.has_no_zero(kind) and len(strides_deg):
@@ -207,11 +208,11 @@ class Facts:
         return band_of_peak(group, kind, rest, window)
 
     def offset_deg(self, side: Side, kind: str) -> float:
-        """How much higher than band [1] a leg's curve lies as a whole; NaN where that is not to be told."""
+        """How much higher than band [1] a leg's curve lies as a whole; NaN where that is not to be reported."""
         group, joint = self.curves_group, joint_of(kind, side)
         if joint.is_hip:  # the group's zero is that of the pelvis's markers
             return math.nan
-        if group is None or side not in self.sides_with_band or not self.verdicts.joint(joint).height.is_told:
+        if group is None or side not in self.sides_with_band or not self.verdicts.joint(joint).height.is_reported:
             return math.nan
         return height_offset_deg(self.part.cycle(joint).mean, group.mean_and_sd_deg(kind)[0])
 

@@ -1,4 +1,4 @@
-"""What was measured beside the goals that were agreed with a patient, and how each value stands to its goal."""
+"""What was measured beside the goals that were agreed with a patient, and how each value is to its goal."""
 
 import math
 from collections.abc import Sequence
@@ -24,7 +24,8 @@ from core.verdicts.stride_means import MeanOfStrides
 
 @dataclass(frozen=True, slots=True)
 class GoalFigure:
-    """A goal and what was measured of it. `value` and `error` are NaN where they are not told; then nothing is said."""
+    """A goal and what was measured of it. `value` and `error` are NaN where they are not reported; then nothing is
+    stated."""
 
     goal: Goal
     value: float
@@ -41,8 +42,8 @@ def measured(goal: Goal, part: Part) -> GoalFigure:
     if goal.of is GoalOf.BETWEEN:
         has_both = all(part.is_measured(side, goal.column) for side in Side)
         between = compare_legs(part, goal.column, (Side.LEFT, Side.RIGHT)) if has_both else None
-        said = [part.assessment(side, goal.column).verdict for side in Side] if has_both else [Verdict.NOT_MEASURED]
-        return _between(goal, between, Verdict.CARE if Verdict.CARE in said else said[0])
+        stated = [part.assessment(side, goal.column).verdict for side in Side] if has_both else [Verdict.NOT_MEASURED]
+        return _between(goal, between, Verdict.CARE if Verdict.CARE in stated else stated[0])
     if goal.column in PROTOCOLS:
         return _of_test(goal, timed_test_of(goal.column, part.walks))
     if goal.of is GoalOf.WALK:
@@ -51,7 +52,7 @@ def measured(goal: Goal, part: Part) -> GoalFigure:
         found = part.of_walk(goal.column, ComparisonKind.VISITS)
         return _figure(goal, found, part.assessment_of_walk(goal.column))
     side = goal.of.side
-    assert side is not None  # the other two are told above
+    assert side is not None  # the other two are reported above
     if not part.is_measured(side, goal.column):
         return _nothing(goal, Verdict.NOT_MEASURED)
     found = part.mean(side, goal.column, ComparisonKind.VISITS)
@@ -59,7 +60,7 @@ def measured(goal: Goal, part: Part) -> GoalFigure:
 
 
 def in_course(goal: Goal, walked: CourseCondition) -> GoalFigure:
-    """What is kept of a visit's condition says of a goal."""
+    """What is kept of a visit's condition states of a goal."""
     if goal.of is GoalOf.BETWEEN:
         between = walked.between_legs(goal.column)
         return _between(goal, between, Verdict.READ)
@@ -85,13 +86,13 @@ def reached_at(goals: Sequence[Goal], course: Course) -> tuple[GoalFigure, ...]:
 
 
 def _between(goal: Goal, found: Difference | None, verdict: Verdict) -> GoalFigure:
-    if found is None or not found.is_told:
-        return _nothing(goal, Verdict.NOT_MEASURED if found is None else Verdict.WITHHELD)
+    if found is None or not found.is_reported:
+        return _nothing(goal, Verdict.NOT_MEASURED if found is None else Verdict.NOT_REPORTED)
     return GoalFigure(goal, found.difference, found.error, verdict)
 
 
 def _figure(goal: Goal, found: MeanOfStrides, assessment: Assessment) -> GoalFigure:
-    if not (assessment.is_told and found.n >= MIN_STRIDES_FOR_MEAN and math.isfinite(found.mean)):
+    if not (assessment.is_reported and found.n >= MIN_STRIDES_FOR_MEAN and math.isfinite(found.mean)):
         return _nothing(goal, assessment.verdict)
     is_biased = (
         KINDS.get(goal.column) is QuantityKind.STANCE and assessment.is_toe_off_biased
@@ -101,7 +102,7 @@ def _figure(goal: Goal, found: MeanOfStrides, assessment: Assessment) -> GoalFig
 
 
 def _of_test(goal: Goal, test: CourseTest | None) -> GoalFigure:
-    if test is None or not test.is_told:
+    if test is None or not test.is_reported:
         return _nothing(goal, Verdict.NOT_MEASURED if test is None else test.verdict)
     return GoalFigure(goal, test.found.mean, error_between_visits(goal.column), test.verdict)
 
@@ -126,9 +127,9 @@ def value_in_words(found: GoalFigure) -> str:
 
 
 def standing_in_words(found: GoalFigure) -> str:
-    """How a value stands to its goal, after the goal was named."""
+    """How a value is to its goal, after the goal was named."""
     error = fixed(found.error, _places(found.goal.column)) + short_unit(found.goal.column)
-    said = {
+    stated = {
         GoalStanding.SHORT: tr("not reached, beyond measurement error (±{error})"),
         GoalStanding.SHORT_INSIDE: tr("not reached, but within measurement error (±{error})"),
         GoalStanding.REACHED_INSIDE: tr("reached, but within measurement error (±{error})"),
@@ -136,7 +137,7 @@ def standing_in_words(found: GoalFigure) -> str:
         GoalStanding.NOT_JUDGED: tr("not judged: measurement error not known"),
         GoalStanding.UNKNOWN: tr("no value reported"),
     }
-    return said[found.standing].format(error=error)
+    return stated[found.standing].format(error=error)
 
 
 def beyond_in_words(found: GoalStanding) -> str:
@@ -145,7 +146,7 @@ def beyond_in_words(found: GoalStanding) -> str:
 
 
 def brief_standing(found: GoalStanding) -> str:
-    """The same in a few words, where the goal stands beside."""
+    """The same in a few words, where the goal is beside."""
     return {
         GoalStanding.SHORT: tr("not reached, beyond error"),
         GoalStanding.SHORT_INSIDE: tr("not reached; the difference is within measurement error"),
@@ -157,11 +158,11 @@ def brief_standing(found: GoalStanding) -> str:
 
 
 def goal_sentence(found: GoalFigure) -> str:
-    """A goal that was agreed before, what was measured, and how that stands to it; nothing where no value is judged."""
+    """A goal that was agreed before, what was measured, and how that is to it; nothing where no value is judged."""
     if found.standing in (GoalStanding.UNKNOWN, GoalStanding.NOT_JUDGED):
         return ""
-    said = tr("Goal: {goal}; measured {value}, {standing}.")
-    return said.format(goal=goal_in_words(found.goal), value=value_in_words(found), standing=standing_in_words(found))
+    stated = tr("Goal: {goal}; measured {value}, {standing}.")
+    return stated.format(goal=goal_in_words(found.goal), value=value_in_words(found), standing=standing_in_words(found))
 
 
 def goal_mark(goal: Goal) -> str:

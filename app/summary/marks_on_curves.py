@@ -29,15 +29,15 @@ CONTACT, ALL = (0.0, 0.0), (0.0, 100.0)  # percent of the stride
 
 
 def deviations_of(facts: Facts) -> list[Deviation]:
-    """Of each kind of joint the excursion between the legs that the findings tell first, on the first leg.
+    """Of each kind of joint the excursion between the legs that the findings report first, on the first leg.
 
     Degrees as measured: the screen takes away the height of a curve without a zero, and of its marks with it.
     """
     rows = {row.column: row for row in what_differs(facts)}
-    told = [rows[one.column] for one in ranked_findings(facts, None, BANDS_ON_SCREEN) if _is_between(one, rows)]
+    reported = [rows[one.column] for one in ranked_findings(facts, None, BANDS_ON_SCREEN) if _is_between(one, rows)]
     found: list[Deviation] = []
     for kind in facts.kinds:
-        row = next((row for row in told if _has_extremes(row, kind)), None)
+        row = next((row for row in reported if _has_extremes(row, kind)), None)
         if row is not None:
             found.append(_on_leg(facts, row, kind))
     return found
@@ -48,13 +48,13 @@ def brackets_of(facts: Facts, comparison: Comparison | None) -> dict[Joint, Devi
 
     The other leg's bracket shows the same movement, without a number.
     """
-    printed = [one.said for one in printed_findings(facts, comparison)]
+    printed = [one.stated for one in printed_findings(facts, comparison)]
     found: dict[Joint, Deviation] = {}
-    for candidate, row in _told_between_legs(facts):
+    for candidate, row in _reported_between_legs(facts):
         kind = next((kind for kind in facts.kinds if _has_extremes(row, kind)), None)
         if kind is None or joint_of(kind, Side.LEFT) in found or joint_of(kind, Side.RIGHT) in found:
             continue
-        number = printed.index(candidate.said) + 1 if candidate.said in printed else None
+        number = printed.index(candidate.stated) + 1 if candidate.stated in printed else None
         for side in facts.first_and_second:
             if np.isfinite(facts.mean_curve_deg(side, kind)).all():
                 size = fixed(row.values[side].mean, row.decimals) + row.unit
@@ -67,7 +67,7 @@ def brackets_of(facts: Facts, comparison: Comparison | None) -> dict[Joint, Devi
     return found
 
 
-def _told_between_legs(facts: Facts) -> list[tuple[Candidate, LegsRow]]:
+def _reported_between_legs(facts: Facts) -> list[tuple[Candidate, LegsRow]]:
     """The findings between the legs, each with its figures."""
     rows = {row.column: row for row in what_differs(facts)}
     return [(one, rows[one.column]) for one in ranked_findings(facts, None, BANDS_ON_PAPER) if _is_between(one, rows)]
@@ -122,8 +122,8 @@ def windows_of(column: str) -> tuple[tuple[float, float], tuple[float, float]]:
 def gaps_of(facts: Facts) -> list[Gap]:
     """Where a leg's curve lies beyond 2 SD both of the band as drawn and of the band laid at the curve's height.
 
-    A knee has to do so as measured and divided by what knees over-read; without a height nothing is said, and of hips,
-    whose group has another zero, neither.
+    A knee has to do so as measured and divided by what knees over-read; without a height nothing is stated, and of
+    hips, whose group has another zero, neither.
     """
     group = facts.curves_group
     if group is None or facts.bands.are_curves_of_other_ages:
@@ -133,7 +133,7 @@ def gaps_of(facts: Facts) -> list[Gap]:
         for kind in KINDS:
             joint = joint_of(kind, side)
             curve = facts.measured_curve_deg(side, kind)
-            is_judged = side in facts.sides_with_band and facts.verdicts.joint(joint).height.is_told
+            is_judged = side in facts.sides_with_band and facts.verdicts.joint(joint).height.is_reported
             if is_judged and np.isfinite(curve).all() and is_mean_enough(facts.strides(side)):
                 found += _beyond(joint, curve, Band(*group.mean_and_sd_deg(kind)))
     return found

@@ -43,7 +43,7 @@ class MeanLegs:
     reference
         The leg whose stride is gone through.
     other_contact_percent
-        When in that stride the other foot comes down; half of it where the clocks do not tell, see `is_together`.
+        When in that stride the other foot comes down; half of it where the clocks do not report, see `is_together`.
     is_together
         Whether both legs are known at one instant.
     tilt_rad
@@ -81,7 +81,7 @@ class MeanLegs:
 
 
 def mean_legs(session: Session, analysis: Analysis, walk: RecordingAnalysis) -> MeanLegs | None:
-    """The mean over the strides used; None where no thigh was heard or no knee's height may be read."""
+    """The mean over the strides used; None where no thigh was received or no knee's height may be read."""
     drawn = draw_legs(session, analysis, walk)
     legs = {side: leg for side, one in drawn.items() if (leg := _mean_leg(walk, side, one)) is not None}
     if not legs:
@@ -93,13 +93,13 @@ def mean_legs(session: Session, analysis: Analysis, walk: RecordingAnalysis) -> 
     if other not in legs:
         return MeanLegs(legs, reference, tilt_rad=tilt)
     step = side_mean(walk, other, "step_time_s")
-    is_together = step.assessment.is_told and math.isfinite(step.found.mean)
+    is_together = step.assessment.is_reported and math.isfinite(step.found.mean)
     contact = 100.0 * step.found.mean / legs[reference].stride_s if is_together else 50.0
     return MeanLegs(legs, reference, contact, is_together, tilt)
 
 
 def _mean_tilt(walk: RecordingAnalysis, side: Side) -> FloatArray | None:
-    if walk.pelvis is None or not walk.verdicts.pelvis.is_told:
+    if walk.pelvis is None or not walk.verdicts.pelvis.is_reported:
         return None
     strides = walk.gait[side].strides
     cycles = cycles_of(walk.time_s, walk.pelvis.tilt_rad, strides.start_s, strides.end_s)
@@ -112,17 +112,17 @@ def _mean_leg(walk: RecordingAnalysis, side: Side, drawn: DrawnLeg) -> MeanLeg |
     if gait is None:
         return None
     knee, ankle = walk.verdicts.joint(knee_of(side)), walk.verdicts.joint(ankle_of(side))
-    if not together((knee.height, knee.sign, knee.shape)).is_told:
+    if not together((knee.height, knee.sign, knee.shape)).is_reported:
         return None
     used = gait.strides.is_used
     starts, ends = gait.strides.start_s[used], gait.strides.end_s[used]
     points = _over_strides(drawn, starts, ends)
     if points is None:
         return None
-    if not together((ankle.height, ankle.sign, ankle.shape)).is_told:
+    if not together((ankle.height, ankle.sign, ankle.shape)).is_reported:
         points[:, TOES] = np.nan
     stance = side_mean(walk, side, "stance_percent")
-    toe_off = stance.found.mean if stance.assessment.is_told else math.nan
+    toe_off = stance.found.mean if stance.assessment.is_reported else math.nan
     return MeanLeg(points, float(np.mean(ends - starts)), toe_off)
 
 

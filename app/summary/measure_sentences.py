@@ -15,7 +15,7 @@ from core.verdicts.measurement_error import Difference
 from core.verdicts.quantities import joint_of as joint_of_column
 
 
-class Told(NamedTuple):
+class Reported(NamedTuple):
     """Where a value was measured, as "in B" or "on 1 July", and the value."""
 
     where: str
@@ -49,7 +49,7 @@ CLAUSES = {
 OTHER_OF_LEG, OTHER = later("{who}: {measure} is {value}"), later("{measure} is {value}")
 
 
-def change_sentence(column: str, who: str, difference: float, now: Told, before: Told) -> str:
+def change_sentence(column: str, who: str, difference: float, now: Reported, before: Reported) -> str:
     """What a measure is now, and by how much it is more or less than before: "Left knee flexes 54° in B, 5° more ..."
 
     Parameters
@@ -66,34 +66,34 @@ def change_sentence(column: str, who: str, difference: float, now: Told, before:
     other = fixed(before.value, decimals) + unit_and_decimals(column)[0]
     pattern = CLAUSES.get(column, OTHER_OF_LEG if who else OTHER)
     clause = tr(pattern).format(who=who, measure=name_in_sentence(column), value=value)
-    said = (
+    stated = (
         tr("{clause} {now}, {size} less than {before} ({other}).")
         if difference < 0
         else tr("{clause} {now}, {size} more than {before} ({other}).")
     )
-    return capitalised(said.format(clause=clause, now=now.where, size=size, before=before.where, other=other))
+    return capitalised(stated.format(clause=clause, now=now.where, size=size, before=before.where, other=other))
 
 
-def similar_sentence(column: str, who: str, difference: float, now: Told, before: Told) -> str:
+def similar_sentence(column: str, who: str, difference: float, now: Reported, before: Reported) -> str:
     """The same where the difference may be error: both values."""
     decimals = _decimals(column, now.value, before.value, difference)
     value, other = _figures(column, (now.value, before.value), decimals)
-    said = tr("{who}: {measure} is similar {before} and {now}, {other} and {value}.")
+    stated = tr("{who}: {measure} is similar {before} and {now}, {other} and {value}.")
     if not who:
-        said = tr("{measure} is similar {before} and {now}, {other} and {value}.")
+        stated = tr("{measure} is similar {before} and {now}, {other} and {value}.")
     measure = name_in_sentence(column)
-    text = said.format(who=who, measure=measure, before=before.where, now=now.where, other=other, value=value)
+    text = stated.format(who=who, measure=measure, before=before.where, now=now.where, other=other, value=value)
     return capitalised(text)
 
 
-def likely_sentence(column: str, found: Difference, now: Told, before: Told) -> str:
+def likely_sentence(column: str, found: Difference, now: Reported, before: Reported) -> str:
     """What a difference within its error may be."""
     decimals = _decimals(column, now.value, before.value, found.difference)
     unit = _unit(column)
     edges = found.difference, found.difference - found.error, found.difference + found.error
     size, low, high = (signed(edge, decimals) + unit for edge in edges)
-    said = tr("The change of {size} may be measurement error: likely between {low} and {high}.")
-    return said.format(size=size, low=low, high=high)
+    stated = tr("The change of {size} may be measurement error: likely between {low} and {high}.")
+    return stated.format(size=size, low=low, high=high)
 
 
 def who_in_sentence(column: str, side: Side) -> str:
@@ -123,7 +123,7 @@ def _decimals(column: str, value: float, other: float, difference: float) -> int
 
 
 def _unit(column: str) -> str:
-    """As it stands behind a number; a share is that of the gait cycle, since "2 % more" means another thing."""
+    """As it is behind a number; a share is that of the gait cycle, since "2 % more" means another thing."""
     is_share = unit_of(column) is Unit.PERCENT
     return f"\N{NO-BREAK SPACE}{tr('% of the gait cycle')}" if is_share else unit_and_decimals(column)[0]
 

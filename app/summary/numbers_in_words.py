@@ -60,11 +60,11 @@ def away_in_words(away_sd: float) -> str:
     return tr("more than 2\u00a0SD\u00a0below") if away_sd < 0 else tr("more than 2\u00a0SD\u00a0above")
 
 
-def each_side(said: Mapping[Side, str]) -> str:
+def each_side(stated: Mapping[Side, str]) -> str:
     """Words for both legs, in one line where they agree."""
-    if len(said) == len(Side) and len(set(said.values())) == 1:
-        return f"L, R {said[Side.LEFT]}"
-    return "\n".join(f"{side[0].upper()} {words}" for side, words in said.items()) or NOTHING
+    if len(stated) == len(Side) and len(set(stated.values())) == 1:
+        return f"L, R {stated[Side.LEFT]}"
+    return "\n".join(f"{side[0].upper()} {words}" for side, words in stated.items()) or NOTHING
 
 
 def sides_against_band(values: Mapping[Side, MeanAndSd], band: Band | None) -> str:
@@ -74,9 +74,9 @@ def sides_against_band(values: Mapping[Side, MeanAndSd], band: Band | None) -> s
     return each_side({s: against_band(v.mean, band) for s, v in values.items() if math.isfinite(v.mean)})
 
 
-def marked(said: str, verdict: Verdict) -> str:
+def marked(stated: str, verdict: Verdict) -> str:
     """A figure with the mark of what is to be read with care."""
-    return f"{said}\u00a0{CARE}" if verdict is Verdict.CARE and said != NOTHING else said
+    return f"{stated}\u00a0{CARE}" if verdict is Verdict.CARE and stated != NOTHING else stated
 
 
 def care_note() -> str:
@@ -88,14 +88,14 @@ def in_words(verdict: Judgement) -> str:
     return {
         Judgement.EXCEEDS_ERROR: tr("beyond error"),
         Judgement.INSIDE_ERROR: tr("within error"),
-        Judgement.WITHHELD: tr("not reported"),
+        Judgement.NOT_REPORTED: tr("not reported"),
         Judgement.TOO_FEW_STRIDES: tr("too few strides"),
         Judgement.NO_PUBLISHED_FIGURE: tr("not judged"),
     }[verdict]
 
 
 def in_brief(verdict: Judgement) -> str:
-    """The same in a narrow column, whose head says what is judged against what."""
+    """The same in a narrow column, whose head states what is judged against what."""
     return {Judgement.EXCEEDS_ERROR: tr("beyond"), Judgement.INSIDE_ERROR: tr("within")}.get(verdict, in_words(verdict))
 
 

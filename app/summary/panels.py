@@ -77,8 +77,8 @@ def title_of(facts: Facts, kind: str) -> str:
 
 
 def title_with_side(facts: Facts, kind: str, side: Side, *, is_about_mean: bool = False) -> str:
-    said = tr("Left: {title}") if side is Side.LEFT else tr("Right: {title}")
-    return said.format(title=small_title(facts, kind, is_about_mean=is_about_mean))
+    stated = tr("Left: {title}") if side is Side.LEFT else tr("Right: {title}")
+    return stated.format(title=small_title(facts, kind, is_about_mean=is_about_mean))
 
 
 def small_title(facts: Facts, kind: str, *, is_about_mean: bool = False) -> str:
@@ -126,7 +126,7 @@ def leg_chart(facts: Facts, joint: Joint, bracket: Deviation | None) -> StrideCh
     """One leg's joint with the band laid at its curve's height, so that the picture judges its shape alone."""
     side, kind = joint.side, joint.kind
     own = curve_of(facts, side, kind)
-    band, said = None, [curve_alt(facts, kind, [side])]
+    band, stated = None, [curve_alt(facts, kind, [side])]
     group = facts.curves_group
     if group is not None and own.is_known and side in facts.sides_with_band:
         band = laid_at_height_of(own.angle_deg, Band(*group.mean_and_sd_deg(kind)))
@@ -136,8 +136,8 @@ def leg_chart(facts: Facts, joint: Joint, bracket: Deviation | None) -> StrideCh
         curves=(replace(own, toe_off_label=toe_off_in_words(own.toe_off_percent)),),
         band=band,
         is_simulated=facts.is_simulated,
-        alt=" ".join(said),
-        withheld=why_withheld(facts, joint),
+        alt=" ".join(stated),
+        not_reported=why_not_reported(facts, joint),
         deviations=(bracket,) if bracket is not None and own.is_known else (),
     )
 
@@ -158,26 +158,26 @@ def narrow_title(facts: Facts, kind: JointKind) -> str:
     return tr("{joint}, ° from its mean").format(joint=name) if facts.has_no_zero(kind) else f"{name}, °"
 
 
-def why_withheld(facts: Facts, joint: Joint) -> str:
+def why_not_reported(facts: Facts, joint: Joint) -> str:
     """Why neither mean nor single strides of a joint may be drawn; empty where one of them may."""
     side, kind = joint.side, joint.kind
     if np.isfinite(facts.mean_curve_deg(side, kind)).any() or len(facts.strides_deg(side, kind)):
         return ""
-    for cause in quality.causes(facts, (Verdict.WITHHELD,), is_of_joints=True):
+    for cause in quality.causes(facts, (Verdict.NOT_REPORTED,), is_of_joints=True):
         if joint in cause.places and cause.gate not in quality.HEIGHT_GATES:
             return cause.words.why
     return tr("No usable stride for this joint.")
 
 
 def why_missing(facts: Facts, joint: Joint) -> str:
-    """What stands in a joint's place beside those that were measured."""
+    """What is in a joint's place beside those that were measured."""
     if joint.side not in facts.gait:
         return tr("{joint}: not measured.").format(joint=capitalised(name_of(joint)))
     worn = facts.visit.recording(facts.walk.name).imu
     missing = [name_of(site) for site in (joint.proximal, joint.distal) if site not in worn]
     if missing:
-        said = tr("{joint}: not measured, no sensor on {sites}.")
-        return said.format(joint=capitalised(name_of(joint)), sites=joined(missing))
+        stated = tr("{joint}: not measured, no sensor on {sites}.")
+        return stated.format(joint=capitalised(name_of(joint)), sites=joined(missing))
     return tr("{joint}: not measured.").format(joint=capitalised(name_of(joint)))
 
 
@@ -193,7 +193,7 @@ def why_no_joint(facts: Facts, kind: str) -> str:
 
 
 def why_no_band(facts: Facts, why: NoBand | None) -> str:
-    """Why no band stands beside this walk; empty where one does."""
+    """Why no band is beside this walk; empty where one does."""
     if facts.gait and not facts.sides_with_band:
         return tr("No reference: a prosthetic leg is not compared with other people.")
     return tr(WHY_NO_BAND[why]) if why is not None else ""
@@ -206,27 +206,28 @@ def band_in_words(facts: Facts, *, is_at_height: bool) -> str:
         return why_no_band(facts, facts.bands.why_no_curves)
     if not is_at_height and all(facts.has_no_zero(kind) for kind in KINDS if facts.has_joint(kind)):
         return tr("No reference band: without a standing reference there are no absolute angles to compare.")
-    said = [
+    stated = [
         tr("Grey: reference (mean, ±1 and ±2 SD of {n} young adults, barefoot, treadmill, {speed} m/s) [1].").format(
             n=group.n, speed=fixed(group.speed_m_s, 2)
         )
     ]
     if is_at_height:
-        said.append(
+        stated.append(
             tr("It is shifted to the level of each curve to compare shape; the absolute angle is shown beside it.")
         )
     elif JointKind.HIP in facts.kinds:
-        said.append(tr("For the hip it has a different zero and is shown on page 1 only."))
+        stated.append(tr("For the hip it has a different zero and is shown on page 1 only."))
     if facts.bands.are_curves_of_other_ages:
-        said.append(tr(OTHER_AGES))
+        stated.append(tr(OTHER_AGES))
     if not facts.sides_with_band.issuperset(facts.gait):
         sides = joined([side_name(side) for side in Side if side in facts.sides_with_band])
-        said.append(tr("It applies to the {side} leg only.").format(side=sides))
-    return " ".join(said)
+        stated.append(tr("It applies to the {side} leg only.").format(side=sides))
+    return " ".join(stated)
 
 
 def dot(verdict: Verdict) -> Picture:
-    """Full where something can be read, half where with care, empty where it is withheld, a dash where not measured."""
+    """Full where something can be read, half where with care, empty where it is not reported, a dash where not
+    measured."""
     x = y = DOT / 2
     radius = DOT / 2 - 0.6
     if verdict is Verdict.NOT_MEASURED:
@@ -248,7 +249,7 @@ def swatch(side: Side, colour: str | None = None, width: float = PLAIN) -> Pictu
 
 
 def pair_swatch(letter: str, looks: Sequence[tuple[Side, str, float]]) -> Picture:
-    """A letter, and the lines of both legs that it stands for."""
+    """A letter, and the lines of both legs that it represents."""
     y, parts = SWATCH_HEIGHT / 2, [text(0, 7, letter, 7.6, weight=600)]
     for k, (side, colour, width) in enumerate(looks):
         x = 10 + 22 * k
@@ -270,20 +271,20 @@ def band_swatches() -> list[tuple[Picture, str]]:
 
 def not_drawn(facts: Facts, kind: str) -> list[str]:
     """Say of each leg whose curve is missing why it is."""
-    said = []
+    stated = []
     for side in Side:
         joint = name_of(joint_of(kind, side))
         if not np.isfinite(facts.mean_curve_deg(side, kind)).any() and not len(facts.strides_deg(side, kind)):
             found = facts.verdicts.joint(joint_of(kind, side))
-            is_withheld = Verdict.WITHHELD in (found.shape.verdict, found.sign.verdict)
-            pattern = tr("Not drawn: {joint}, not reported.") if is_withheld else tr("Not drawn: {joint}.")
-            said.append(pattern.format(joint=joint))
-    return said
+            is_not_reported = Verdict.NOT_REPORTED in (found.shape.verdict, found.sign.verdict)
+            pattern = tr("Not drawn: {joint}, not reported.") if is_not_reported else tr("Not drawn: {joint}.")
+            stated.append(pattern.format(joint=joint))
+    return stated
 
 
 def curve_alt(facts: Facts, kind: str, sides: Sequence[Side]) -> str:
     """The figure in words and numbers, for who does not see it."""
-    said = [title_of(facts, kind) + "."]
+    stated = [title_of(facts, kind) + "."]
     for side in sides:
         numbers = [tr("{count} strides").format(count=facts.strides(side))]
         for column in PEAK_COLUMNS[kind]:
@@ -298,8 +299,8 @@ def curve_alt(facts: Facts, kind: str, sides: Sequence[Side]) -> str:
         off = facts.value(side, "stance_percent")
         if is_mean_enough(off.n):
             numbers.append(tr("toe\u2011off at {percent} %").format(percent=fixed(off.mean, 0)))
-        said.append(f"{capitalised(side_name(side))}: {', '.join(numbers)}.")
-    return " ".join([tr("SIMULATED.")] * facts.is_simulated + said)
+        stated.append(f"{capitalised(side_name(side))}: {', '.join(numbers)}.")
+    return " ".join([tr("SIMULATED.")] * facts.is_simulated + stated)
 
 
 def peak_name(column: str) -> str:

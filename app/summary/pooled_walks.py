@@ -19,9 +19,9 @@ from core.targets import tallies_of
 class Pool(NamedTuple):
     """What walks share that are taken together.
 
-    `condition` is a walk's own name where it has none, `attachment` how often the sensors were strapped on anew before,
-    `returns` how often the prosthesis was put back to the condition. `apart` is the timed test that the walks are, or
-    the name of a walk towards a target; empty of all others.
+    `condition` is a walk's own name where it has none, `attachment` how often the sensors were strapped on again
+    before, `returns` how often the prosthesis was put back to the condition. `apart` is the timed test that the walks
+    are, or the name of a walk towards a target; empty of all others.
     """
 
     condition: str

@@ -25,20 +25,20 @@ Place = Joint | Side | None
 
 
 def caveats(
-    facts: Facts, of: Iterable[Verdict] = (Verdict.WITHHELD, Verdict.CARE), *, is_of_joints: bool = False
+    facts: Facts, of: Iterable[Verdict] = (Verdict.NOT_REPORTED, Verdict.CARE), *, is_of_joints: bool = False
 ) -> list[str]:
-    """Why something is withheld or read with care, the gravest first; what holds alike of several places once.
+    """Why something is not reported or read with care, the gravest first; what holds alike of several places once.
 
     `is_of_joints`: of the joints alone, not of the legs' timing and distance.
     """
     if not facts.gait:
         return [tr("No stride was found from a foot or shank sensor.")]
-    return [f"{one.where}: {one.said}" for one in causes(facts, of, is_of_joints=is_of_joints)]
+    return [f"{one.where}: {one.stated}" for one in causes(facts, of, is_of_joints=is_of_joints)]
 
 
 @dataclass(frozen=True, slots=True)
 class Cause:
-    """Why something is withheld or read with care, said once for every place of which it holds alike.
+    """Why something is not reported or read with care, stated once for every place of which it holds alike.
 
     `where` names the places, `gate` is that of `core.verdicts.gates`.
     """
@@ -55,12 +55,12 @@ class Cause:
         return set(self.places) == {None} or self.gate in ABDUCTION_GATES
 
     @property
-    def said(self) -> str:
+    def stated(self) -> str:
         return " ".join(filter(None, self.words))
 
 
 def causes(
-    facts: Facts, of: Iterable[Verdict] = (Verdict.WITHHELD, Verdict.CARE), *, is_of_joints: bool = False
+    facts: Facts, of: Iterable[Verdict] = (Verdict.NOT_REPORTED, Verdict.CARE), *, is_of_joints: bool = False
 ) -> list[Cause]:
     """Every reason of a walk with one of these verdicts, in their order.
 
@@ -71,14 +71,14 @@ def causes(
         if isinstance(place, Joint) or not is_of_joints:
             known = places.setdefault((reason.gate, gate_words(reason)), {})
             known[place] = worst((reason.verdict, known.get(place, Verdict.READ)))
-    wanted, found = list(of), []
+    required, found = list(of), []
     for (gate, words), known in places.items():
         gravest = worst(known.values())
         # what one reason withholds names it; what it leaves to be read with care beside that is in the table
         where = tuple(place for place, verdict in known.items() if verdict is gravest)
-        if gravest in wanted:
+        if gravest in required:
             found.append(Cause(gate, gravest, where, _named(gate, _where(facts, where)), words))
-    return sorted(found, key=lambda one: wanted.index(one.verdict))
+    return sorted(found, key=lambda one: required.index(one.verdict))
 
 
 def _reasons(verdicts: Verdicts) -> Iterator[tuple[Place, GateReason]]:
@@ -87,8 +87,8 @@ def _reasons(verdicts: Verdicts) -> Iterator[tuple[Place, GateReason]]:
     for side, leg in verdicts.legs.items():
         yield from ((side, reason) for part in (leg.timing, leg.distance) for reason in part.reasons)
     for side, abduction in verdicts.abduction.items():
-        if verdicts.joint(hip_of(side)).shape.verdict is Verdict.WITHHELD:
-            continue  # with the hip, whose own reason is told
+        if verdicts.joint(hip_of(side)).shape.verdict is Verdict.NOT_REPORTED:
+            continue  # with the hip, whose own reason is reported
         yield from ((hip_of(side), reason) for reason in abduction.reasons)
     yield from ((None, reason) for reason in verdicts.between.reasons)
 
@@ -104,7 +104,7 @@ def _named(gate: str, where: str) -> str:
 
 
 def _where(facts: Facts, places: Sequence[Place]) -> str:
-    """Name the places of a reason: a leg stands for its joints, both legs for all."""
+    """Name the places of a reason: a leg represents its joints, both legs for all."""
     sides = [side for side in Side if side in places]
     joints = [joint for joint in places if isinstance(joint, Joint) and joint.side not in sides]
     if not sides and not joints:
@@ -123,13 +123,13 @@ def gravest(facts: Facts) -> list[str]:
     if len(sentences) < 2:
         return sentences
     more = len(sentences) - 1
-    said = tr_n("{count} more finding on page 4.", "{count} more findings on page 4.", more)
-    return [f"{sentences[0]} {said.format(count=more)}"]
+    stated = tr_n("{count} more finding on page 4.", "{count} more findings on page 4.", more)
+    return [f"{sentences[0]} {stated.format(count=more)}"]
 
 
 def to_do(facts: Facts, joint: Joint) -> list[str]:
-    """What makes a joint that is withheld readable the next time."""
-    found = [one.words.to_do for one in causes(facts, (Verdict.WITHHELD,)) if {joint, joint.side} & set(one.places)]
+    """What makes a joint that is not reported readable the next time."""
+    found = [one.words.to_do for one in causes(facts, (Verdict.NOT_REPORTED,)) if {joint, joint.side} & set(one.places)]
     return list(dict.fromkeys(filter(None, found)))[:MAX_TO_DO]
 
 
@@ -147,7 +147,7 @@ def cells(facts: Facts) -> list[tuple[str, str]]:
 
 
 def _without_lag(facts: Facts) -> list[Joint]:
-    """Joints whose motion does not tell a lag from none, so that "none found" would say too much."""
+    """Joints whose motion does not report a lag from none, so that "none found" would say too much."""
 
     def is_unknown(found: JointCalibration) -> bool:
         return found.method is Method.ROBUST and found.lag_sd_s is None and not found.is_clock_shared
@@ -155,8 +155,8 @@ def _without_lag(facts: Facts) -> list[Joint]:
     return [joint for joint, found in facts.calibrated.items() if is_unknown(found)]
 
 
-def _each(facts: Facts, said: Callable[[Side], str]) -> str:
-    parts = [f"{side[0].upper()}\u00a0{said(side)}" for side in Side if side in facts.gait]
+def _each(facts: Facts, stated: Callable[[Side], str]) -> str:
+    parts = [f"{side[0].upper()}\u00a0{stated(side)}" for side in Side if side in facts.gait]
     return ", ".join(parts) or tr("not measured")
 
 
@@ -194,11 +194,11 @@ def _lag(facts: Facts) -> str:
         return NOTHING
     if all(found.is_clock_shared for found in facts.calibrated.values()):
         return tr("none: same clock")
-    untold = _without_lag(facts)
-    if len(untold) == len(facts.calibrated):
+    not_reported = _without_lag(facts)
+    if len(not_reported) == len(facts.calibrated):
         return tr("not resolvable")
-    if untold:
-        return tr("not resolvable at the {joints}").format(joints=joined([name_of(joint) for joint in untold]))
+    if not_reported:
+        return tr("not resolvable at the {joints}").format(joints=joined([name_of(joint) for joint in not_reported]))
     worst_ms = max(abs(found.lag_s) for found in facts.calibrated.values()) * 1000
     return tr("{lag} ms, corrected").format(lag=fixed(worst_ms, 1)) if round(worst_ms, 1) else tr("none found")
 
@@ -213,7 +213,7 @@ def _axes(facts: Facts) -> str:
 
 def _zero(facts: Facts) -> str:
     kinds = {found.zero for found in facts.calibrated.values()}
-    said = {
+    stated = {
         ZeroKind.STANDING: tr("posture"),
         ZeroKind.GONIOMETER: tr("posture, with goniometer value"),
         ZeroKind.NONE: tr("none: no absolute angles"),
@@ -221,7 +221,7 @@ def _zero(facts: Facts) -> str:
     if not kinds:
         return NOTHING
     if len(kinds) == 1:
-        return said[kinds.pop()]
+        return stated[kinds.pop()]
     if ZeroKind.NONE in kinds:
         joints = [name_of(joint) for joint, found in facts.calibrated.items() if found.zero is ZeroKind.NONE]
         return tr("none for the {joints}").format(joints=joined(joints))

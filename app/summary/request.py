@@ -1,4 +1,4 @@
-"""What is a report made of? A visit, the walks that were chosen from it, and what the clinic said to it."""
+"""What is a report made of? A visit, the walks that were chosen from it, and what the clinic stated to it."""
 
 from dataclasses import dataclass
 from datetime import datetime
@@ -9,7 +9,7 @@ from app.wording.recordings import ShownName, shown_names
 from core.results import Analysis, RecordingAnalysis
 from core.samples import Recording, RecordingKind, Session
 
-MAX_CONDITIONS = 3  # more lines in one panel cannot be told apart
+MAX_CONDITIONS = 3  # more lines in one panel cannot be distinguished
 PAPERS = ("a4", "letter")
 
 
@@ -34,7 +34,7 @@ class AnalysedVisit:
         raise KeyError(name)
 
     def recording(self, name: str) -> Recording:
-        """Give the recording as it was told."""
+        """Give the recording as it was reported."""
         return next(recording for recording in self.session.recordings if recording.name == name)
 
     def condition_of(self, name: str) -> str:
@@ -64,7 +64,7 @@ class ReportRequest:
     earlier
         A visit before this one to compare with, in place of the conditions.
     course
-        The patient's visits in order of time, this one the last; of two and more a page tells the course.
+        The patient's visits in order of time, this one the last; of two and more a page reports the course.
     patient_language
         In which language a page for the patient is added, as "de"; empty: none is.
     """
@@ -97,7 +97,7 @@ class ReportRequest:
 def default_walks(visit: AnalysedVisit) -> tuple[str, ...]:
     """Choose of each of the last conditions the walk with most usable strides, of its last strapping.
 
-    Walks without a stride that is used come last, but a report of them still says why. Empty: no walk was analysed.
+    Walks without a stride that is used come last, but a report of them still states why. Empty: no walk was analysed.
     """
     names = visit.walk_names()
     parts = by_condition(visit.analysis, visit.session.recordings).values()

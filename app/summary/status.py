@@ -1,4 +1,5 @@
-"""What may be said, as the files have it: a word per joint, a word per sample, and the verdicts with their reasons."""
+"""What may be stated, as the files have it: a word per joint, a word per sample, and the verdicts with their
+reasons."""
 
 from collections.abc import Iterator
 from typing import NamedTuple
@@ -11,12 +12,12 @@ from core.results import Analysis, RecordingAnalysis
 from core.samples import BoolArray, RecordingKind
 from core.verdicts.model import Assessment, JointVerdicts, Verdict, together
 
-READ, CARE, WITHHELD = str(Verdict.READ), str(Verdict.CARE), str(Verdict.WITHHELD)
+READ, CARE, NOT_REPORTED = str(Verdict.READ), str(Verdict.CARE), str(Verdict.NOT_REPORTED)
 RANGE_ONLY, NO_ZERO = "range_only", "no_zero"
 WITH_HEIGHT = (READ, CARE)
 
 
-class Said(NamedTuple):
+class Stated(NamedTuple):
     """One line of the table of verdicts."""
 
     recording: str
@@ -31,24 +32,24 @@ def joint_status(recording: RecordingAnalysis, joint: Joint) -> str:
 
 
 def status_of(found: JointVerdicts) -> str:
-    """What holds of a joint's angle in one word: read, care, withheld, range_only or no_zero; empty: not measured.
+    """What holds of a joint's angle in one word: read, care, not reported, range_only or no_zero; empty: not measured.
 
-    `range_only`: the sign is not known, so the curve may be mirrored. `no_zero`: its height says nothing.
+    `range_only`: the sign is not known, so the curve may be mirrored. `no_zero`: its height gives nothing.
     """
     if found.shape.verdict is Verdict.NOT_MEASURED:
         return ""
-    if not found.shape.is_told:
-        return WITHHELD
-    if not found.sign.is_told:
+    if not found.shape.is_reported:
+        return NOT_REPORTED
+    if not found.sign.is_reported:
         return RANGE_ONLY
-    return str(together((found.shape, found.height)).verdict) if found.height.is_told else NO_ZERO
+    return str(together((found.shape, found.height)).verdict) if found.height.is_reported else NO_ZERO
 
 
 def why_status(recording: RecordingAnalysis, joint: Joint) -> str:
     """Why a joint's status is no better, in sentences, the gravest first; empty where it can be read."""
     found = recording.verdicts.joint(joint)
     status = joint_status(recording, joint)
-    decisive = {RANGE_ONLY: found.sign, NO_ZERO: found.height, WITHHELD: found.shape}
+    decisive = {RANGE_ONLY: found.sign, NO_ZERO: found.height, NOT_REPORTED: found.shape}
     return why(decisive.get(status, together((found.shape, found.height))))
 
 
@@ -63,22 +64,22 @@ def why(found: Assessment) -> str:
     return " ".join(dict.fromkeys(gate_sentence(reason) for reason in found.reasons))
 
 
-def all_that_is_said(analysis: Analysis) -> Iterator[Said]:
+def all_that_is_stated(analysis: Analysis) -> Iterator[Stated]:
     """Every verdict of every recording: joints, then, of a walk, legs and what compares them."""
     for recording in analysis.recordings:
-        for joint in recording.verdicts.told_joints:
+        for joint in recording.verdicts.reported_joints:
             of_joint = recording.verdicts.joint(joint)
             for name in ("shape", "height", "sign"):
-                yield Said(recording.name, joint.replace("_", " "), name, getattr(of_joint, name))
+                yield Stated(recording.name, joint.replace("_", " "), name, getattr(of_joint, name))
         if recording.kind is RecordingKind.WALKING:
             for side in Side:
                 of_leg = recording.verdicts.leg(side)
                 for name in ("timing", "distance"):
-                    yield Said(recording.name, f"{side} leg", name, getattr(of_leg, name))
-            yield Said(recording.name, "both legs", "between", recording.verdicts.between)
+                    yield Stated(recording.name, f"{side} leg", name, getattr(of_leg, name))
+            yield Stated(recording.name, "both legs", "between", recording.verdicts.between)
         if recording.verdicts.pelvis.verdict is not Verdict.NOT_MEASURED:
-            yield Said(recording.name, "pelvis", "angles", recording.verdicts.pelvis)
+            yield Stated(recording.name, "pelvis", "angles", recording.verdicts.pelvis)
             for side, found in recording.verdicts.abduction.items():
-                yield Said(recording.name, f"{side} hip", "abduction", found)
+                yield Stated(recording.name, f"{side} hip", "abduction", found)
             if recording.kind is RecordingKind.WALKING:
-                yield Said(recording.name, "pelvis", "tilt range", recording.verdicts.pelvis_tilt)
+                yield Stated(recording.name, "pelvis", "tilt range", recording.verdicts.pelvis_tilt)

@@ -39,7 +39,7 @@ class TrendLine:
     before: int
 
     @property
-    def told(self) -> list[TrendValue]:
+    def reported(self) -> list[TrendValue]:
         return [one for one in self.values if math.isfinite(one.value)]
 
 
@@ -51,8 +51,8 @@ def walked_visits(visits: Sequence[CourseVisit], condition: str) -> list[CourseV
 def trend_columns(agreed: AgreedGoals) -> tuple[str, ...]:
     """What has a chart: what goals are of, then the usual measures as far as there is room."""
     own = (goal for goal in agreed.held if goal.of is not GoalOf.BETWEEN and goal.column not in PROTOCOLS)
-    wanted = dict.fromkeys(goal.column for goal in own)
-    few = list(wanted)[:MOST_CHARTS]
+    required = dict.fromkeys(goal.column for goal in own)
+    few = list(required)[:MOST_CHARTS]
     others = [column for column in MEASURES if column not in few][: MOST_CHARTS - len(few)]
     shown = {*few, *others}
     return tuple(column for column in dict.fromkeys((*MEASURES, *few)) if column in shown)
@@ -68,13 +68,13 @@ def trend_lines(
     for column in columns:
         for side in (None,) if is_of_walk(column) else tuple(Side):
             values = [value for number, part in enumerate(at) if (value := _value(part, column, side, number))]
-            told = [value.visit for value in values if math.isfinite(value.value)]
-            if not told:
+            reported = [value.visit for value in values if math.isfinite(value.value)]
+            if not reported:
                 continue
             last = len(at) - 1
-            before = [visit for visit in told if visit < last]
+            before = [visit for visit in reported if visit < last]
             first, previous = (before[0], before[-1]) if before else (0, 0)
-            is_changed = bool(before) and told[-1] == last
+            is_changed = bool(before) and reported[-1] == last
             is_chosen = agreed.is_chosen(column, tuple(Side) if side is None else (side,))
             since = [
                 change(at[last], at[k], column, side, is_chosen_before=is_chosen) if is_changed else None
@@ -92,4 +92,4 @@ def _value(part: CourseCondition, column: str, side: Side | None, number: int) -
     figure = part.figure(column, side)
     if figure is None or figure.verdict is Verdict.NOT_MEASURED:
         return None
-    return TrendValue(number, figure.found.mean if figure.is_told else math.nan, figure.whisker)
+    return TrendValue(number, figure.found.mean if figure.is_reported else math.nan, figure.whisker)

@@ -37,7 +37,7 @@ def trend_of(found: Comparison, row: Compared) -> Trend:
     """The measure of `row`, which is the change to one visit, over all visits that are compared."""
     values = _values(found, row)
     error = row.difference.error
-    is_judged = row.is_told and error > 0
+    is_judged = row.is_reported and error > 0
     band = (row.other.mean - error, row.other.mean + error) if is_judged else None
     known = [value for value in values if math.isfinite(value)]
     drawn = [*known, *(band or ())]
@@ -48,7 +48,7 @@ def trend_of(found: Comparison, row: Compared) -> Trend:
 
 
 def _values(found: Comparison, row: Compared) -> tuple[float, ...]:
-    """As the table tells them; heights above zeros of different kinds make no line."""
+    """As the table reports them; heights above zeros of different kinds make no line."""
     measure, joint = row.measure, row.measure.joint(row.side)
     if joint is not None and measure.needs_height and not found.has_one_zero(joint):
         return (math.nan,) * len(found.parts)

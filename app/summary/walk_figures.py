@@ -1,6 +1,6 @@
 """Which figures of a condition's walks does a clinician read? Peaks, ranges, time, distance, beside a cited group's.
 
-The window and the report show the same rows, so that no number stands in one that the other computes differently.
+The window and the report show the same rows, so that no number is in one that the other computes differently.
 """
 
 from collections import Counter
@@ -27,8 +27,8 @@ class Figure:
     """One row: a figure of each side, or one of both sides together, and the group's mean less and plus 1 SD.
 
     `column` is that of strides.csv, or the name in `BothFeet`. A side whose figure would say nothing is missing in
-    `sides`, and `unknown` says why; `unknown_both` says it of a figure of both sides. `with_care` are the sides whose
-    figure is to be read with care.
+    `sides`, and `unknown` states why; `unknown_both` states it of a figure of both sides. `with_care` are the sides
+    whose figure is to be read with care.
     """
 
     column: str
@@ -78,7 +78,7 @@ PELVIS_ROWS = (
     ("pelvis_lean_deg", later("Mean tilt, forward +")),
     ("pelvis_tilt_range_deg", later("Tilt, range")),
 )
-WITHHELD, MAY_BE_MIRRORED = later("not reported"), later("sign unclear")
+NOT_REPORTED, MAY_BE_MIRRORED = later("not reported"), later("sign unclear")
 NO_ZERO, NO_HEIGHT = later("no standing reference"), later("no absolute angle")
 
 
@@ -93,12 +93,12 @@ def strides_in_words(part: Part, side: Side) -> str:
     if not left_out:
         return tr_n("{side}: {used} stride used.", "{side}: {used} strides used.", used).format(side=letter, used=used)
     reasons = [f"{count} {words}" for words, count in left_out.most_common()] if len(left_out) > 1 else list(left_out)
-    said = tr_n(
+    stated = tr_n(
         "{side}: {used} stride used, {out} excluded ({reasons}).",
         "{side}: {used} strides used, {out} excluded ({reasons}).",
         used,
     )
-    return said.format(side=letter, used=used, out=left_out.total(), reasons=", ".join(reasons))
+    return stated.format(side=letter, used=used, out=left_out.total(), reasons=", ".join(reasons))
 
 
 def few_strides_in_words(part: Part) -> str:
@@ -106,14 +106,14 @@ def few_strides_in_words(part: Part) -> str:
     counts = {side[0].upper(): part.strides(side) for side in part.sides}
     without_mean = [side for side, n in counts.items() if n and not is_mean_enough(n)]
     without_spread = [side for side, n in counts.items() if is_mean_enough(n) and not is_spread_enough(n)]
-    said = []
+    stated = []
     if without_mean:
         none = tr("{sides}: fewer than {count} strides, no mean.")
-        said.append(none.format(sides=joined(without_mean), count=MIN_STRIDES_FOR_MEAN))
+        stated.append(none.format(sides=joined(without_mean), count=MIN_STRIDES_FOR_MEAN))
     if without_spread:
         bare = tr("{sides}: fewer than {count} strides, no SD.")
-        said.append(bare.format(sides=joined(without_spread), count=MIN_STRIDES_FOR_SD))
-    return " ".join(said)
+        stated.append(bare.format(sides=joined(without_spread), count=MIN_STRIDES_FOR_SD))
+    return " ".join(stated)
 
 
 def side_cycle(part: Part, joint: Joint) -> SideCycle:
@@ -126,7 +126,7 @@ def side_cycle(part: Part, joint: Joint) -> SideCycle:
 def peak_figures(part: Part, reference: ReferenceCurves | None) -> dict[str, tuple[Figure, ...]]:
     """Rows of each kind of joint, degrees and percent of the stride; the band by the same windows on its mean curve.
 
-    The band stands where its source has it; None: none may stand beside this walk.
+    The band is where its source has it; None: none may stand beside this walk.
     """
     found: dict[str, tuple[Figure, ...]] = {}
     for kind, rows in ROWS.items():
@@ -137,12 +137,12 @@ def peak_figures(part: Part, reference: ReferenceCurves | None) -> dict[str, tup
         figures = []
         for column, name, window in rows:
             of_joint = f"{kind}_{column}"
-            told = {side: part.assessment(side, of_joint) for side in joints}
-            unknown = {side: doubts.get(side, WITHHELD) for side, one in told.items() if not one.is_told}
+            reported = {side: part.assessment(side, of_joint) for side in joints}
+            unknown = {side: doubts.get(side, NOT_REPORTED) for side, one in reported.items() if not one.is_reported}
             sides = {side: part.value(side, of_joint) for side in joints if side not in unknown}
             unit, decimals = ("%", 0) if column.endswith("_percent") else ("°", 1)
             band = band_of_peak(reference, kind, column, window) if reference is not None and sides else None
-            care = frozenset(side for side, one in told.items() if one.verdict is Verdict.CARE)
+            care = frozenset(side for side, one in reported.items() if one.verdict is Verdict.CARE)
             figures.append(
                 Figure(of_joint, tr(name), unit, decimals, sides, band=band, unknown=unknown, with_care=care)
             )
@@ -157,30 +157,31 @@ def pelvis_figures(part: Part) -> dict[str, tuple[Figure, ...]]:
     figures = []
     for column, name in PELVIS_ROWS:
         found = {side: part.assessment(side, column) for side in part.sides}
-        told = {side: part.value(side, column) for side, one in found.items() if one.is_told}
-        unknown = {side: WITHHELD for side, one in found.items() if not one.is_told}
+        reported = {side: part.value(side, column) for side, one in found.items() if one.is_reported}
+        unknown = {side: NOT_REPORTED for side, one in found.items() if not one.is_reported}
         care = frozenset(side for side, one in found.items() if one.verdict is Verdict.CARE)
-        figures.append(Figure(column, tr(name), "°", 1, told, unknown=unknown, with_care=care))
+        figures.append(Figure(column, tr(name), "°", 1, reported, unknown=unknown, with_care=care))
     return {"pelvis": tuple(figures)}
 
 
 def pelvis_in_words(part: Part) -> list[str]:
-    """Why figures of pelvis and abduction are withheld, what holds alike of both once; how often the body turned."""
+    """Why figures of pelvis and abduction are not reported, what holds alike of both once; how often the body
+    turned."""
     if not part.has_pelvis:
         return []
-    said = part.verdicts
-    withheld: dict[str, list[str]] = {}
+    stated = part.verdicts
+    not_reported: dict[str, list[str]] = {}
     for name, found in (
-        (tr("pelvis"), said.pelvis),
-        *((tr("{side} hip abduction").format(side=side_name(side)), one) for side, one in said.abduction.items()),
-        (tr("pelvic tilt"), said.pelvis_tilt if said.pelvis.is_told else said.pelvis),
+        (tr("pelvis"), stated.pelvis),
+        *((tr("{side} hip abduction").format(side=side_name(side)), one) for side, one in stated.abduction.items()),
+        (tr("pelvic tilt"), stated.pelvis_tilt if stated.pelvis.is_reported else stated.pelvis),
     ):
         for reason in found.reasons[:1]:
-            if reason.verdict is Verdict.WITHHELD:
-                withheld.setdefault(gate_words(reason).why, []).append(name)
-    told = [f"{capitalised(joined(list(dict.fromkeys(names))))}: {why}" for why, names in withheld.items()]
+            if reason.verdict is Verdict.NOT_REPORTED:
+                not_reported.setdefault(gate_words(reason).why, []).append(name)
+    reported = [f"{capitalised(joined(list(dict.fromkeys(names))))}: {why}" for why, names in not_reported.items()]
     turns = sum(len(walk.turns) for walk in part.walks)
-    return [*told, tr_n("{count} turn.", "{count} turns.", turns).format(count=turns)] if turns else told
+    return [*reported, tr_n("{count} turn.", "{count} turns.", turns).format(count=turns)] if turns else reported
 
 
 def time_distance_figures(
@@ -188,24 +189,31 @@ def time_distance_figures(
 ) -> tuple[Figure, ...]:
     """Rows of time and distance beside the group of this speed, None without one.
 
-    What both legs make together stands beside it only where both may be compared with other people's.
+    What both legs make together is beside it only where both may be compared with other people's.
     """
     is_any, is_all = bool(sides_with_band), sides_with_band.issuperset(part.sides)
 
     def row(label: str, name: str, unit: str, decimals: int, band: tuple[float, float] | None = None) -> Figure:
         found = {side: part.assessment(side, name) for side in part.sides}
-        told = {side: part.value(side, name) for side, one in found.items() if one.is_told}
-        withheld = [side for side, one in found.items() if one.verdict is Verdict.WITHHELD]
+        reported = {side: part.value(side, name) for side, one in found.items() if one.is_reported}
+        not_reported = [side for side, one in found.items() if one.verdict is Verdict.NOT_REPORTED]
         care = frozenset(side for side, one in found.items() if one.verdict is Verdict.CARE)
-        unknown = dict.fromkeys(withheld, WITHHELD)
+        unknown = dict.fromkeys(not_reported, NOT_REPORTED)
         return Figure(
-            name, label, unit, decimals, told, band=band if is_any and told else None, unknown=unknown, with_care=care
+            name,
+            label,
+            unit,
+            decimals,
+            reported,
+            band=band if is_any and reported else None,
+            unknown=unknown,
+            with_care=care,
         )
 
     def both(label: str, name: str, unit: str, decimals: int, band: tuple[float, float] | None = None) -> Figure:
         verdict = part.assessment_of_walk(name).verdict
         care = frozenset(part.sides) if verdict is Verdict.CARE else frozenset()
-        why = WITHHELD if verdict is Verdict.WITHHELD else ""
+        why = NOT_REPORTED if verdict is Verdict.NOT_REPORTED else ""
         shown = band if is_all else None
         return Figure(name, label, unit, decimals, {}, part.of_both(name), shown, unknown_both=why, with_care=care)
 
@@ -229,25 +237,27 @@ def time_distance_figures(
 
 
 def doubt_in(found: JointVerdicts) -> str | None:
-    """Why a joint's curve does not say all that a curve can: the gravest of what is withheld; None where nothing is."""
-    if found.shape.verdict is Verdict.WITHHELD:
-        return WITHHELD
-    if found.sign.verdict is Verdict.WITHHELD:
+    """Why a joint's curve does not say all that a curve can: the gravest of what is not reported; None where nothing
+    is."""
+    if found.shape.verdict is Verdict.NOT_REPORTED:
+        return NOT_REPORTED
+    if found.sign.verdict is Verdict.NOT_REPORTED:
         return MAY_BE_MIRRORED
-    if found.height.verdict is not Verdict.WITHHELD:
+    if found.height.verdict is not Verdict.NOT_REPORTED:
         return None
     return NO_ZERO if any(reason.gate == "zero" for reason in found.height.reasons) else NO_HEIGHT
 
 
 def verdict_of(found: JointVerdicts) -> Verdict:
-    """What may be read of a joint's curve as it is drawn; a height that is withheld is said beside it."""
+    """What may be read of a joint's curve as it is drawn; a height that is not reported is stated beside it."""
     parts = (part.verdict for part in (found.shape, found.sign, found.height))
     gravest = worst(part for part in parts if part is not Verdict.NOT_MEASURED)
-    return Verdict.CARE if gravest is Verdict.WITHHELD and doubt_in(found) != WITHHELD else gravest
+    return Verdict.CARE if gravest is Verdict.NOT_REPORTED and doubt_in(found) != NOT_REPORTED else gravest
 
 
 def reason_in_words(found: JointVerdicts) -> str:
-    """The gravest reason against a joint's curve and what to do: of a withheld shape, else of a height, else care."""
+    """The gravest reason against a joint's curve and what to do: of a not reported shape, else of a height, else
+    care."""
     return " ".join(filter(None, _words_of(found)))
 
 
@@ -257,10 +267,10 @@ def why_in_words(found: JointVerdicts) -> str:
 
 
 def _words_of(found: JointVerdicts) -> GateWords:
-    for wanted in (Verdict.WITHHELD, Verdict.CARE):
+    for required in (Verdict.NOT_REPORTED, Verdict.CARE):
         for part in (found.shape, found.height):
             for reason in part.reasons:
-                if reason.verdict is wanted:
+                if reason.verdict is required:
                     return gate_words(reason)
     return GateWords("")
 
@@ -268,7 +278,7 @@ def _words_of(found: JointVerdicts) -> GateWords:
 def band_of_peak(
     reference: ReferenceCurves, kind: str, column: str, window_name: str | None
 ) -> tuple[float, float] | None:
-    """1 SD about the group's mean curve where its peak lies; None for what its mean curve cannot tell."""
+    """1 SD about the group's mean curve where its peak lies; None for what its mean curve cannot report."""
     at = peak_place(reference, kind, column, window_name)
     if at is None:
         return None

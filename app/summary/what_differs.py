@@ -24,9 +24,9 @@ from core.verdicts.quantities import joint_of
 class LegsRow:
     """One measure of both legs.
 
-    A leg whose figure may not be told, or is not known, is missing in `values`, and `unknown` says why. `difference` is
-    the first side's less the second's, as `Facts.first_and_second` orders them. `band` is the cited group's mean less
-    and plus 2 SD. `goals` had been agreed by the walk's day.
+    A leg whose figure may not be reported, or is not known, is missing in `values`, and `unknown` states why.
+    `difference` is the first side's less the second's, as `Facts.first_and_second` orders them. `band` is the cited
+    group's mean less and plus 2 SD. `goals` had been agreed by the walk's day.
     """
 
     column: str
@@ -42,19 +42,19 @@ class LegsRow:
 
     @property
     def is_judged(self) -> bool:
-        """Whether the difference stands against an error."""
-        return self.difference.is_told and self.difference.error > 0
+        """Whether the difference is against an error."""
+        return self.difference.is_reported and self.difference.error > 0
 
 
 def what_differs(facts: Facts) -> tuple[LegsRow, ...]:
-    """Judged differences by how many errors they are large, then those without an error, then those not told."""
+    """Judged differences by how many errors they are large, then those without an error, then those not reported."""
     rows = [_row(facts, column) for column in BETWEEN_LEGS if any(facts.is_worn(side, column) for side in facts.gait)]
     return tuple(sorted(rows, key=_weight))
 
 
 def _weight(row: LegsRow) -> tuple[bool, bool, bool, float]:
-    """What is told first is least: measures with goals, then what is judged by how many errors it is large."""
-    return not row.goals, not row.is_judged, not row.difference.is_told, -row.difference.ratio
+    """What is reported first is least: measures with goals, then what is judged by how many errors it is large."""
+    return not row.goals, not row.is_judged, not row.difference.is_reported, -row.difference.ratio
 
 
 def _row(facts: Facts, column: str) -> LegsRow:
@@ -83,7 +83,7 @@ def _verdict(facts: Facts, side: Side, column: str) -> Verdict:
 
 
 def _unknown(facts: Facts, side: Side, column: str, verdict: Verdict) -> str:
-    if verdict is Verdict.WITHHELD:
+    if verdict is Verdict.NOT_REPORTED:
         joint = joint_of(column, side)
         doubt = doubt_in(facts.verdicts.joint(joint)) if joint is not None else None
         return tr(doubt) if doubt in (NO_ZERO, NO_HEIGHT) else verdict_word(verdict)

@@ -9,7 +9,7 @@ from app.summary import quality
 from app.summary.comparison import Compared, Comparison, Contrast, compare_legs
 from app.summary.facts import KINDS, Facts, joint_of, role
 from app.summary.measure_sentences import (
-    Told,
+    Reported,
     change_sentence,
     leg_beside_leg,
     unit_and_decimals,
@@ -48,7 +48,7 @@ MAX_OFFSET_DEG = 10.0  # laboratories differ by 7 deg in the height of their cur
 
 
 class Since(IntEnum):
-    """What a finding is told against; that which is told first is least."""
+    """What a finding is reported against; that which is reported first is least."""
 
     CHOSEN = 0
     LAST_VISIT = 1
@@ -58,7 +58,7 @@ class Since(IntEnum):
 
 
 class Rank(IntEnum):
-    """Which kind of finding is told first."""
+    """Which kind of finding is reported first."""
 
     SHAPE = 0
     TIMING = 1
@@ -79,39 +79,39 @@ _RANKS = {
 FAMILIES = {KNEE_RANGE: KNEE, ANKLE_RANGE: PUSH_OFF}
 FIRST_OF_ALIKE = (KNEE, "knee_while_loading_deg", STANCE, SPEED)
 Topic = tuple[Joint | Side | None, Rank | None, bool]
-"""A joint, or a leg and a kind of figure, with the direction: of each, one finding is told."""
+"""A joint, or a leg and a kind of figure, with the direction: of each, one finding is reported."""
 
 
 @dataclass(frozen=True, slots=True)
 class Candidate:
-    """A finding that may be told; `ratio` is how many times it is as large as what it has to exceed.
+    """A finding that may be reported; `ratio` is how many times it is as large as what it has to exceed.
 
-    `said` is its sentence, `evidence` a second one that says what it exceeds, where the first does not. `column` is
+    `stated` is its sentence, `evidence` a second one that states what it exceeds, where the first does not. `column` is
     the measure's, empty where it is a band's.
     """
 
     rank: Rank
     ratio: float
     topics: tuple[Topic, ...]
-    said: str
+    stated: str
     evidence: str = ""
     column: str = ""
     since: Since = Since.NOTHING
 
     @property
     def weight(self) -> tuple[Since, Rank, float, int]:
-        """What is told first is least; ratios that are alike leave it to the measure."""
+        """What is reported first is least; ratios that are alike leave it to the measure."""
         among = FIRST_OF_ALIKE.index(self.column) if self.column in FIRST_OF_ALIKE else len(FIRST_OF_ALIKE)
         return self.since, self.rank, -round(self.ratio, 1), among
 
 
 def printed_findings(facts: Facts, comparison: Comparison | None) -> list[Candidate]:
-    """The findings that are told on paper, the weightiest first."""
+    """The findings that are reported on paper, the weightiest first."""
     return ranked_findings(facts, comparison, BANDS_ON_PAPER)
 
 
 def ranked_findings(facts: Facts, comparison: Comparison | None, bands: tuple[str, str]) -> list[Candidate]:
-    """What is told: changes first, then by kind, then what exceeds its error most; one per joint and direction.
+    """What is reported: changes first, then by kind, then what exceeds its error most; one per joint and direction.
 
     `bands` names the cited groups of the curves and of time and distance, inside a sentence.
     """
@@ -122,49 +122,50 @@ def ranked_findings(facts: Facts, comparison: Comparison | None, bands: tuple[st
         *_beyond_band(facts, bands),
         *_heights(facts),
     ]
-    told: list[Candidate] = []
+    reported: list[Candidate] = []
     known: set[Topic] = set()
     for candidate in sorted(_without_family(candidates), key=lambda one: one.weight):
         if known.isdisjoint(candidate.topics):
-            told.append(candidate)
+            reported.append(candidate)
         known.update(candidate.topics)
-    return told[:MAX_FINDINGS]
+    return reported[:MAX_FINDINGS]
 
 
 def _without_family(candidates: list[Candidate]) -> list[Candidate]:
-    """A range and the excursion that makes most of it are one movement: the excursion is told."""
+    """A range and the excursion that makes most of it are one movement: the excursion is reported."""
     movements = {topic for one in candidates if one.column in FAMILIES.values() for topic in one.topics}
     return [one for one in candidates if not (one.column in FAMILIES and movements.intersection(one.topics))]
 
 
 def nothing_found(facts: Facts, comparison: Comparison | None) -> list[str]:
-    """What is said where no finding is told: whether anything exceeds its error, and whether the band holds all."""
+    """What is stated where no finding is reported: whether anything exceeds its error, and whether the band holds
+    all."""
     judged = judged_differences(facts, comparison)
     away = [abs(sd) for side, column in _peaks(facts) if math.isfinite(sd := facts.away_sd(side, column))]
-    said = []
+    stated = []
     has_angles = any(joint_of_column(column, Side.LEFT) is not None for column in judged)
     if any(difference.exceeds for difference in judged.values()):
-        said.append(
+        stated.append(
             tr(
                 "No difference is far enough beyond measurement error to be listed here. The tables mark "
                 "every difference beyond error."
             )
         )
     elif judged and (has_angles or not any(map(facts.is_measured, Joint))):
-        said += _similar_legs(facts)
-        said.append(tr("All judged differences are within measurement error."))
+        stated += _similar_legs(facts)
+        stated.append(tr("All judged differences are within measurement error."))
     elif judged:
-        said.append(
+        stated.append(
             tr("No angle can be compared. All judged differences in timing and steps are within measurement error.")
         )
     if away and max(away) <= MAX_AWAY_SD:
-        said.append(
+        stated.append(
             tr(
                 "All judged peaks are within 2\N{NO-BREAK SPACE}SD of the reference, shifted to the level of "
                 "each curve."
             )
         )
-    return said or [tr("Nothing could be judged.")]
+    return stated or [tr("Nothing could be judged.")]
 
 
 def _similar_legs(facts: Facts) -> list[str]:
@@ -177,22 +178,22 @@ def _similar_legs(facts: Facts) -> list[str]:
         return []
     unit, decimals = unit_and_decimals(column)
     left, right = (fixed(facts.value(side, column).mean, decimals) + unit for side in Side)
-    said = tr("Left and right are similar: {measure} {left} and {right}.")
-    return [said.format(measure=name_in_sentence(column), left=left, right=right)]
+    stated = tr("Left and right are similar: {measure} {left} and {right}.")
+    return [stated.format(measure=name_in_sentence(column), left=left, right=right)]
 
 
 def judged_differences(facts: Facts, comparison: Comparison | None) -> dict[str, Difference]:
-    """Those that are told and have an error, whether they exceed it or not: of each column the largest."""
+    """Those that are reported and have an error, whether they exceed it or not: of each column the largest."""
     found: dict[str, Difference] = {}
     for column, one in _differences(facts, comparison):
-        if one.is_told and one.error > 0 and (column not in found or one.ratio > found[column].ratio):
+        if one.is_reported and one.error > 0 and (column not in found or one.ratio > found[column].ratio):
             found[column] = one
     return found
 
 
 def _differences(facts: Facts, comparison: Comparison | None) -> Iterator[tuple[str, Difference]]:
     if comparison is not None:
-        yield from ((row.measure.column, row.difference) for row in comparison.rows if row.is_told)
+        yield from ((row.measure.column, row.difference) for row in comparison.rows if row.is_reported)
     for line in _course(facts):
         yield from ((line.column, found) for found in (line.since_last, line.since_first) if found is not None)
     if len(facts.gait) == len(Side):
@@ -207,15 +208,15 @@ def _changes(facts: Facts, comparison: Comparison | None) -> Iterator[Candidate]
             and comparison is not None
             and not comparison.is_same_attachment(row.part, row.against)
         )
-        if row.is_told and row.difference.is_worth_a_sentence and not is_height:
+        if row.is_reported and row.difference.is_worth_a_sentence and not is_height:
             column, found = row.measure.column, row.difference
             topic = _topic(None if row.measure.is_of_walk else row.side, column, found.difference > 0)
-            said = _changed(facts, comparison, row)
-            yield Candidate(_rank(column), found.ratio, (topic,), said, column=column, since=Since.CHOSEN)
+            stated = _changed(facts, comparison, row)
+            yield Candidate(_rank(column), found.ratio, (topic,), stated, column=column, since=Since.CHOSEN)
 
 
 def _course(facts: Facts) -> list[TrendLine]:
-    """What the page of the course tells of the condition that is shown, in the same lines."""
+    """What the page of the course reports the condition that is shown, in the same lines."""
     walked, agreed = walked_visits(facts.course, facts.condition), facts.part.agreed
     return trend_lines(walked, facts.condition, (*trend_columns(agreed), *COLUMNS.values()), agreed)
 
@@ -232,10 +233,10 @@ def _since_visits(facts: Facts) -> Iterator[Candidate]:
                 continue
             values = {one.visit: one.value for one in line.values}
             day = tr("on {day}").format(day=date(walked[at].day))
-            now, before = Told(tr("in this visit"), line.values[-1].value), Told(day, values[at])
-            said = _with_error(facts, line.column, line.side, found, now, before)
+            now, before = Reported(tr("in this visit"), line.values[-1].value), Reported(day, values[at])
+            stated = _with_error(facts, line.column, line.side, found, now, before)
             topic = _topic(line.side, line.column, found.difference > 0)
-            yield Candidate(_rank(line.column), found.ratio, (topic,), said, column=line.column, since=since)
+            yield Candidate(_rank(line.column), found.ratio, (topic,), stated, column=line.column, since=since)
 
 
 def _between_legs(facts: Facts) -> Iterator[Candidate]:
@@ -245,14 +246,14 @@ def _between_legs(facts: Facts) -> Iterator[Candidate]:
     first, second = facts.first_and_second
     for column in BETWEEN_LEGS:
         found = compare_legs(facts.part, column, (first, second))
-        if not (found.is_told and found.is_worth_a_sentence) or BY_COLUMN[column].rests_on is QuantityClass.HEIGHT:
+        if not (found.is_reported and found.is_worth_a_sentence) or BY_COLUMN[column].rests_on is QuantityClass.HEIGHT:
             continue
         is_more = found.difference > 0
         topics = (_topic(first, column, is_more), _topic(second, column, not is_more))
         unit, decimals = unit_and_decimals(column)
         evidence = tr("Measurement error between the legs: {error}.").format(error=fixed(found.error, decimals) + unit)
-        said = leg_beside_leg(facts, column, found)
-        yield Candidate(_rank(column), found.ratio, topics, said, evidence, column)
+        stated = leg_beside_leg(facts, column, found)
+        yield Candidate(_rank(column), found.ratio, topics, stated, evidence, column)
 
 
 def _beyond_band(facts: Facts, bands: tuple[str, str]) -> Iterator[Candidate]:
@@ -273,14 +274,14 @@ def _beyond_band(facts: Facts, bands: tuple[str, str]) -> Iterator[Candidate]:
                 "2\N{NO-BREAK SPACE}SD above."
             )
         )
-        said = pattern.format(
+        stated = pattern.format(
             joint=capitalised(name_of(joint_of(kind, side))),
             group=tr(bands[0]),
             peak=tr("at initial contact") if "initial_contact" in column else peak_name(column),
             value=fixed(facts.value(side, column).mean, 1),
             band=band_in_figures((band[0] + offset, band[1] + offset), 1),
         )
-        yield Candidate(Rank.SHAPE, abs(away) / MAX_AWAY_SD, (_topic(side, column, away > 0),), said)
+        yield Candidate(Rank.SHAPE, abs(away) / MAX_AWAY_SD, (_topic(side, column, away > 0),), stated)
     for column in ("stance_percent", "stride_length_m"):
         figure = facts.time_distance[column]
         for side in facts.sides_with_band.intersection(figure.sides):
@@ -296,7 +297,7 @@ def _beyond_band(facts: Facts, bands: tuple[str, str]) -> Iterator[Candidate]:
                     if away < 0
                     else tr("{measure}, {side}: {value}; {group} {band}: more than 2\u00a0SD above.")
                 )
-                said = pattern.format(
+                stated = pattern.format(
                     measure=capitalised(name_in_sentence(column)),
                     side=role(facts, side),
                     group=tr(bands[1]),
@@ -304,7 +305,7 @@ def _beyond_band(facts: Facts, bands: tuple[str, str]) -> Iterator[Candidate]:
                     band=band_in_figures(figure.judged_band, decimals) + unit,
                 )
                 rank = _rank(column)
-                yield Candidate(rank, abs(away) / MAX_AWAY_SD, (_topic(side, column, away > 0),), said)
+                yield Candidate(rank, abs(away) / MAX_AWAY_SD, (_topic(side, column, away > 0),), stated)
 
 
 def _heights(facts: Facts) -> Iterator[Candidate]:
@@ -312,17 +313,17 @@ def _heights(facts: Facts) -> Iterator[Candidate]:
         for kind in KINDS:
             offset = facts.offset_deg(side, kind)
             if abs(offset) > MAX_OFFSET_DEG:
-                said = tr(
+                stated = tr(
                     "{joint}: the whole curve is {offset}° from the reference. Check the standing reference first."
                 ).format(joint=capitalised(name_of(joint_of(kind, side))), offset=signed(offset, 1))
                 topics: tuple[Topic, ...] = ((joint_of(kind, side), Rank.HEIGHT, offset > 0),)
-                yield Candidate(Rank.HEIGHT, abs(offset) / MAX_OFFSET_DEG, topics, said)
+                yield Candidate(Rank.HEIGHT, abs(offset) / MAX_OFFSET_DEG, topics, stated)
 
 
 def caveat(facts: Facts, comparison: Comparison | None) -> list[str]:
-    """The one that weighs most: the gravest of what is withheld, else speed, else height."""
-    if withheld := quality.caveats(facts, (Verdict.WITHHELD,)):
-        return withheld[:1]
+    """The one that weighs most: the gravest of what is not reported, else speed, else height."""
+    if not_reported := quality.caveats(facts, (Verdict.NOT_REPORTED,)):
+        return not_reported[:1]
     speeds = _speeds_apart(comparison)
     if speeds:
         return [tr("Speed {speeds} m/s: part of a difference may be due to speed.").format(speeds=speeds)]
@@ -362,16 +363,18 @@ def _changed(facts: Facts, comparison: Comparison | None, row: Compared) -> str:
     if is_visits:
         now, before = tr("in this visit"), tr("in the earlier visit")
     side = None if row.measure.is_of_walk else row.side
-    told = Told(now, row.value.mean), Told(before, row.other.mean)
-    return _with_error(facts, row.measure.column, side, row.difference, *told)
+    reported = Reported(now, row.value.mean), Reported(before, row.other.mean)
+    return _with_error(facts, row.measure.column, side, row.difference, *reported)
 
 
-def _with_error(facts: Facts, column: str, side: Side | None, found: Difference, now: Told, before: Told) -> str:
+def _with_error(
+    facts: Facts, column: str, side: Side | None, found: Difference, now: Reported, before: Reported
+) -> str:
     """A change, and what it exceeds."""
     who = "" if side is None else who_of_role(facts, side, column)
     unit, decimals = unit_and_decimals(column)
-    said = change_sentence(column, who, found.difference, now, before)
-    return f"{said} {tr('Measurement error: {error}.').format(error=fixed(found.error, decimals) + unit)}"
+    stated = change_sentence(column, who, found.difference, now, before)
+    return f"{stated} {tr('Measurement error: {error}.').format(error=fixed(found.error, decimals) + unit)}"
 
 
 def _peaks(facts: Facts) -> Iterable[tuple[Side, str]]:

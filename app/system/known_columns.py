@@ -1,4 +1,4 @@
-"""What do the columns mean of sensors that send lines of numbers? Told once for each, and kept on this computer."""
+"""What do the columns mean of sensors that send lines of numbers? Reported once for each, and kept on this computer."""
 
 import json
 from collections.abc import Mapping, Sequence
@@ -17,7 +17,7 @@ def _place() -> Path:
 
 
 def known_columns() -> dict[str, Columns]:
-    """By the port's `key`; what cannot be read is left out, and has to be told anew."""
+    """By the port's `key`; what cannot be read is left out, and has to be reported again."""
     try:
         kept = json.loads(_place().read_text(encoding="utf-8"))
     except (OSError, ValueError):

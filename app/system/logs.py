@@ -1,7 +1,7 @@
 """What may be written down of what went wrong, without a word about anybody?
 
 Codes, notes, operators and paths come into messages as arguments and with exceptions, so neither is written: of a
-message the text that stands in our own source, with numbers, ids and our own fixed words in it; of an exception its
+message the text that is in our own source, with numbers, ids and our own fixed words in it; of an exception its
 kind and where in our own source it was raised. Of what other libraries say, only which one it was and where.
 """
 
@@ -46,12 +46,12 @@ def start_logging(folder: Path) -> None:
     handler.setFormatter(NamelessFormatter())
     root = logging.getLogger()
     root.addHandler(handler)
-    root.setLevel(logging.WARNING)  # others are heard when something is wrong
+    root.setLevel(logging.WARNING)  # others are received when something is wrong
     for package in OWN_PACKAGES:
         logging.getLogger(package).setLevel(logging.INFO)
-    sys.excepthook = _tell_end_of_program
-    threading.excepthook = _tell_end_of_thread
-    sys.unraisablehook = _tell_unraisable
+    sys.excepthook = _show_end_of_program
+    threading.excepthook = _show_end_of_thread
+    sys.unraisablehook = _show_unraisable
 
 
 def error_report(folder: Path) -> str:
@@ -66,7 +66,7 @@ def error_report(folder: Path) -> str:
 
 
 def log_qt_messages() -> None:
-    """Note that Qt warned, and how gravely; what it says may hold a path, so that goes to the terminal only."""
+    """Note that Qt warned, and how gravely; what it states may hold a path, so that goes to the terminal only."""
     from PySide6.QtCore import QMessageLogContext, QtMsgType, qInstallMessageHandler
 
     levels = {
@@ -101,17 +101,17 @@ class NamelessFormatter(logging.Formatter):
 
 def pseudonymised(error: BaseException) -> Iterator[str]:
     """An exception, and what it came from, as kinds and places, without what they say."""
-    told: BaseException | None = error
+    reported: BaseException | None = error
     for _ in range(LONGEST_CHAIN):
-        if told is None:
+        if reported is None:
             return
-        yield _kind(told)
-        yield from _places(told)
-        if isinstance(told, BaseExceptionGroup):
-            for part in told.exceptions[:LONGEST_CHAIN]:
+        yield _kind(reported)
+        yield from _places(reported)
+        if isinstance(reported, BaseExceptionGroup):
+            for part in reported.exceptions[:LONGEST_CHAIN]:
                 yield f"  of which: {_kind(part)}"
                 yield from _places(part)
-        told = told.__cause__ or (None if told.__suppress_context__ else told.__context__)
+        reported = reported.__cause__ or (None if reported.__suppress_context__ else reported.__context__)
 
 
 def _kind(error: BaseException) -> str:
@@ -122,7 +122,7 @@ def _kind(error: BaseException) -> str:
 
 
 def _has_known_name(kind: type) -> bool:
-    """Whether the class stands in a module under its name: one made at run time may be called anything."""
+    """Whether the class is in a module under its name: one made at run time may be called anything."""
     return getattr(sys.modules.get(kind.__module__), kind.__name__, None) is kind
 
 
@@ -206,18 +206,18 @@ class _PrivateFile(RotatingFileHandler):
         """Say nothing: the library would print the arguments."""
 
 
-def _tell_end_of_program(kind: type[BaseException], error: BaseException, _traceback: TracebackType | None) -> None:
+def _show_end_of_program(kind: type[BaseException], error: BaseException, _traceback: TracebackType | None) -> None:
     if issubclass(kind, KeyboardInterrupt):
         return
     _log.critical("the program ended early", exc_info=error)
     print(f"Gaitwright ended early. What is known of it, without names, is in {log_folder()}.", file=sys.stderr)
 
 
-def _tell_end_of_thread(ended: threading.ExceptHookArgs) -> None:
+def _show_end_of_thread(ended: threading.ExceptHookArgs) -> None:
     if ended.exc_value is not None:
         _log.critical("a thread ended early", exc_info=ended.exc_value)
 
 
-def _tell_unraisable(met: "sys.UnraisableHookArgs") -> None:
+def _show_unraisable(met: "sys.UnraisableHookArgs") -> None:
     if met.exc_value is not None:
         _log.error("an error where nobody could catch it", exc_info=met.exc_value)

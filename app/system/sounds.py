@@ -19,7 +19,7 @@ from threading import Thread
 from PySide6.QtCore import QObject, Qt, Signal
 from PySide6.QtWidgets import QApplication
 
-# PulseAudio's, PipeWire's and ALSA's own; the first that is there and says that it played is used from then on
+# PulseAudio's, PipeWire's and ALSA's own; the first that is there and states that it played is used from then on
 PLAYERS: Sequence[Sequence[str]] = (
     (("afplay",),) if sys.platform == "darwin" else (("paplay",), ("pw-play",), ("aplay", "-q"))
 )
@@ -41,11 +41,11 @@ class Sound(StrEnum):
 class Loudspeaker(QObject):
     """Plays one sound after the other. Where nothing can play, it lets the desktop beep.
 
-    Of several that are asked for while another sounds only the latest is kept: an old one would tell what is over. Only
-    the tick of a metronome takes no other's place: it says nothing that the next one does not.
+    Of several that are asked for while another sounds only the latest is kept: an old one would report what is over.
+    Only the tick of a metronome takes no other's place: it gives nothing that the next one does not.
     """
 
-    _unheard = Signal()
+    _not_received = Signal()
 
     def __init__(self, players: Sequence[Sequence[str]] = PLAYERS) -> None:
         super().__init__()
@@ -53,10 +53,10 @@ class Loudspeaker(QObject):
         self._players = [list(player) for player in players]
         self._next: Queue[Sound] = Queue(maxsize=1)
         self._thread: Thread | None = None
-        self._unheard.connect(self._on_unheard, Qt.ConnectionType.QueuedConnection)
+        self._not_received.connect(self._on_not_received, Qt.ConnectionType.QueuedConnection)
 
     def play(self, sound: Sound) -> None:
-        """Let `sound` be heard, at once or after the one that sounds; nothing while the bell is off."""
+        """Let `sound` be received, at once or after the one that sounds; nothing while the bell is off."""
         if not self.is_on:
             return
         if self._thread is None:
@@ -74,11 +74,11 @@ class Loudspeaker(QObject):
 
     def _run(self) -> None:
         while True:
-            if not self._is_heard(self._next.get()):
+            if not self._is_received(self._next.get()):
                 with contextlib.suppress(RuntimeError):  # the program has ended meanwhile
-                    self._unheard.emit()
+                    self._not_received.emit()
 
-    def _is_heard(self, sound: Sound) -> bool:
+    def _is_received(self, sound: Sound) -> bool:
         file = str(files("resources") / "sounds" / f"{sound}.wav")
         if sys.platform == "win32":
             return _play_on_windows(file)
@@ -88,7 +88,7 @@ class Loudspeaker(QObject):
             del self._players[0]  # not there, or nothing to play to: the next time would be no better
         return False
 
-    def _on_unheard(self) -> None:
+    def _on_not_received(self) -> None:
         if self.is_on:
             QApplication.beep()
 

@@ -52,7 +52,7 @@ class Icon(StrEnum):
     GRIP = "grip"
     READ = "read"
     CARE = "care"
-    WITHHELD = "withheld"
+    NOT_REPORTED = "withheld"
     LEGS = "legs"
     GROUPS = "groups"
     GOAL = "goal"
@@ -61,7 +61,7 @@ class Icon(StrEnum):
 VERDICT_ICONS = {  # circles speak of the measurement, triangles of the patient
     Verdict.READ: Icon.READ,
     Verdict.CARE: Icon.CARE,
-    Verdict.WITHHELD: Icon.WITHHELD,
+    Verdict.NOT_REPORTED: Icon.NOT_REPORTED,
     Verdict.NOT_MEASURED: Icon.UNCHECKED,
 }
 SEVERITY_ICONS = {Severity.INFO: Icon.INFO, Severity.WARNING: Icon.WARNING, Severity.GRAVE: Icon.GRAVE}

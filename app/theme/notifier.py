@@ -18,7 +18,7 @@ SCALES = (0.8, 0.9, 1.0, 1.1, 1.25, 1.5, 1.75, 2.0)
 
 
 class ThemeNotifier(QObject):
-    """The theme in force. Widgets are given it, draw with `theme`, and draw anew on `changed`."""
+    """The theme in force. Widgets are given it, draw with `theme`, and draw again on `changed`."""
 
     changed = Signal()
 
@@ -52,9 +52,9 @@ class ThemeNotifier(QObject):
         self.changed.emit()
 
     def _put_on(self, app: QApplication) -> None:
-        """Give the application style, palette and fonts, and tell every widget, those within others first.
+        """Give the application style, palette and fonts, and report every widget, those within others first.
 
-        Qt itself would tell them in the order of their addresses, and what is laid out by hand measures its parts.
+        Qt itself would report them in the order of their addresses, and what is laid out by hand measures its parts.
         """
         style = app.style()
         if isinstance(style, ControlStyle):
@@ -73,7 +73,7 @@ class ThemeNotifier(QObject):
         for window in app.topLevelWidgets():
             for change in (QEvent.Type.ApplicationFontChange, QEvent.Type.ApplicationPaletteChange):
                 app.sendEvent(window, QEvent(change))  # which Qt would post, after the new style had been measured by
-            _tell_style_changed(window, style)
+            _show_style_changed(window, style)
 
 
 def _in_points(font: QFont) -> QFont:
@@ -83,9 +83,9 @@ def _in_points(font: QFont) -> QFont:
     return font
 
 
-def _tell_style_changed(widget: QWidget, style: QStyle) -> None:
+def _show_style_changed(widget: QWidget, style: QStyle) -> None:
     for child in widget.findChildren(QWidget, options=Qt.FindChildOption.FindDirectChildrenOnly):
-        _tell_style_changed(child, style)
+        _show_style_changed(child, style)
     style.polish(widget)
     QApplication.sendEvent(widget, QEvent(QEvent.Type.StyleChange))
 

@@ -1,6 +1,6 @@
-"""What is a widget of ours to who hears the screen? Qt knows the roles of its own controls only.
+"""What is a widget of ours to who receives the screen? Qt knows the roles of its own controls only.
 
-A class that paints itself says so by `accessible_role`; every other keeps the role that Qt gives it. Name and
+A class that paints itself reports it by `accessible_role`; every other keeps the role that Qt gives it. Name and
 description are the widget's own.
 """
 
@@ -11,7 +11,7 @@ from PySide6.QtWidgets import QAccessibleWidget, QWidget
 ATTRIBUTE = "accessible_role"
 
 
-def tell_roles() -> None:
+def show_roles() -> None:
     """Let Qt ask for the roles of our widgets; once for the application."""
     QAccessible.installFactory(_interface_of)
 

@@ -40,17 +40,17 @@ Row = Sequence[QWidget]
 
 @dataclass(frozen=True, slots=True)
 class BarAction:
-    """What a button says, and what is done when it is pressed.
+    """What a button states, and what is done when it is pressed.
 
-    `run` is a bound method, not a new function each time: what is equal is not shown anew. `key` is what its cap shows.
-    `is_wished`: pressing it is what we want, so it is filled.
+    `run` is a bound method, not a new function each time: what is equal is not shown again. `key` is what its cap
+    shows. `is_requested`: pressing it is what we want, so it is filled.
     """
 
     text: str
     run: Callable[[], object]
     key: str = ""
     icon: Icon | None = None
-    is_wished: bool = True
+    is_requested: bool = True
     is_enabled: bool = True
 
 
@@ -197,8 +197,8 @@ class ActionBar(Themed):
             button.show_verb(verb, ButtonKind.SECONDARY if takes_place_of_back else ButtonKind.QUIET, is_inverse)
         for button, verb in zip(self._others, _padded(state.others, len(self._others)), strict=True):
             button.show_verb(verb, ButtonKind.SECONDARY, is_inverse)
-        wished = state.primary is not None and (state.primary.is_wished or is_inverse)
-        self.primary.show_verb(state.primary, ButtonKind.PRIMARY if wished else ButtonKind.SECONDARY, is_inverse)
+        requested = state.primary is not None and (state.primary.is_requested or is_inverse)
+        self.primary.show_verb(state.primary, ButtonKind.PRIMARY if requested else ButtonKind.SECONDARY, is_inverse)
         self._clock.setVisible(is_inverse)
         self._title.setText(recording.title if recording is not None else "")
         self._note.setText(recording.note if recording is not None else state.note)
@@ -218,7 +218,7 @@ class ActionBar(Themed):
                 QWidget.setTabOrder(before, after)
             words, verbs = [self._title, self._note], [self.sound, *self._others, self.primary]
             for part in (self._clock, self.back, *self._quiet, *words, *verbs):
-                part.raise_()  # as it is read: Qt tells of the parts as they are stacked
+                part.raise_()  # as it is read: Qt reports the parts as they are stacked
 
     def _colour(self) -> None:
         c = self._look.theme.colours
@@ -271,7 +271,7 @@ class ActionBar(Themed):
             x += size.width() + gap
 
     def _fits(self, width: int) -> bool:
-        """Tell whether the words may stand beside the verbs: not squeezed, and no higher than the bar."""
+        """Return whether the words may stand beside the verbs: not squeezed, and no higher than the bar."""
         px = self._look.theme.px
         texts = [text for text in (self._title, self._note) if text.text()]
         widest = max((text.fontMetrics().horizontalAdvance(text.text()) for text in texts), default=0)
@@ -293,7 +293,7 @@ class ActionBar(Themed):
         return box
 
     def _place_words(self, box: QRect) -> None:
-        """Place title and note: by the primary verb whose price they tell, or after the time of a recording."""
+        """Place title and note: by the primary verb whose price they report, or after the time of a recording."""
         align = Qt.AlignmentFlag.AlignRight if self._state.recording is None else Qt.AlignmentFlag.AlignLeft
         top = box.top() + (box.height() - self._words_height(box.width())) // 2
         for text in (self._title, self._note):

@@ -17,7 +17,7 @@ ABOVE = 12  # clear of the header; gone together with the banner
 
 
 class Banner(Themed):
-    """Hidden until it is told something."""
+    """Hidden until it is reported something."""
 
     accessible_role = QAccessible.Role.AlertMessage
 
@@ -51,8 +51,8 @@ class Banner(Themed):
     def text(self) -> str:
         return " ".join(filter(None, [self._what.text(), self._next.text()]))
 
-    def tell(self, what: str, then: str = "", verb: str = "") -> None:
-        """Show what happened, in bold, and what follows or what to do; `verb` names a way on, which `acted` tells."""
+    def show_message(self, what: str, then: str = "", verb: str = "") -> None:
+        """Show what happened, in bold, and what follows or what to do; `verb` names a way on, which `acted` reports."""
         self.act.setText(verb)
         self.act.setVisible(bool(verb))
         self._what.setText(what)

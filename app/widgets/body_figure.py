@@ -1,4 +1,4 @@
-"""Which sensor sits where on the patient? A drawn person who faces you, like an X-ray: right stands at the left."""
+"""Which sensor sits where on the patient? A drawn person who faces you, like an X-ray: right is at the left."""
 
 from collections.abc import Mapping
 from enum import Enum, auto
@@ -21,7 +21,7 @@ SMALL_BELOW = 100  # px high: lines thin, no pelvis, no joints
 SENTENCE_ROOM = 32
 LETTER_AT = QPointF(108, 36)  # from the middle and the top, units of the drawing
 LEG_LETTER_AT = QPointF(74, 214)
-ABOVE_TILES = 196  # from the top, where something stands beside the legs: a tile that is high begins at the pelvis
+ABOVE_TILES = 196  # from the top, where something is beside the legs: a tile that is high begins at the pelvis
 WORDS_FROM = 0.8  # px to a unit of the drawing; a smaller person has no room for words at the shoulders
 SEGMENT_SLACK = 6  # units of the drawing: a finger hits beside the outline
 
@@ -30,7 +30,7 @@ class SensorMark(Enum):
     """How a place looks. Without a mark it is left bare, for it is not used."""
 
     WORN = auto()
-    LOOK = auto()  # heard, but something about it wants a look: battery, loss
+    LOOK = auto()  # received, but something about it wants a look: battery, loss
     SILENT = auto()
     GAP = auto()  # a sensor is still to come here
 
@@ -106,7 +106,7 @@ class BodyFigure(QWidget):
             self.update()
 
     def set_from_behind(self, is_from_behind: bool) -> None:
-        """Turn the figure's back to you: the patient's right then stands at the right."""
+        """Turn the figure's back to you: the patient's right then is at the right."""
         self._is_from_behind = is_from_behind
         self._name()
         self._refresh()
@@ -116,7 +116,7 @@ class BodyFigure(QWidget):
         self._refresh()
 
     def keep_beside(self, width: int) -> None:
-        """Leave `width` px on either side of the legs for what stands there; the figure is as much smaller."""
+        """Leave `width` px on either side of the legs for what is there; the figure is as much smaller."""
         self._beside = width
         self.update()
 

@@ -116,11 +116,11 @@ class Chips(Themed):
         self.turned.emit()
 
 
-def flow(wanted: Iterable[int], width: int, gap: int, height: int) -> list[QRect]:
-    """Where boxes as wide as `wanted` lie, in lines of `width`; all in pixels."""
+def flow(required: Iterable[int], width: int, gap: int, height: int) -> list[QRect]:
+    """Where boxes as wide as `required` lie, in lines of `width`; all in pixels."""
     places: list[QRect] = []
     x = y = 0
-    for box in wanted:
+    for box in required:
         if x and x + box > width:
             x, y = 0, y + height + gap
         places.append(QRect(x, y, box, height))

@@ -17,7 +17,7 @@ class Choice(QComboBox):
         self._most = 0.0
         self._whole: tuple[str, ...] = ()
         self.setAccessibleName(name)
-        if sys.platform.startswith("linux"):  # there Qt gives the choice in force as the name, and ours is not heard
+        if sys.platform.startswith("linux"):  # there Qt gives the choice in force as the name, and ours is not received
             self.setAccessibleDescription(name)
         self.setSizePolicy(QSizePolicy.Policy.Minimum, QSizePolicy.Policy.Fixed)
         self.setFocusPolicy(Qt.FocusPolicy.StrongFocus)
@@ -46,8 +46,8 @@ class Choice(QComboBox):
         return self.width() < self._width_for(self.currentText())
 
     def sizeHint(self) -> QSize:
-        wanted = super().sizeHint()
-        return wanted if self._least is None else wanted.boundedTo(QSize(self._look.theme.px(self._most), 99_999))
+        required = super().sizeHint()
+        return required if self._least is None else required.boundedTo(QSize(self._look.theme.px(self._most), 99_999))
 
     def minimumSizeHint(self) -> QSize:
         hint = self.sizeHint()
@@ -66,7 +66,7 @@ class Choice(QComboBox):
     def showPopup(self) -> None:
         """Open below the box, above it where there is no room below, and as the style does where there is none at all.
 
-        The style lays the chosen line over the box, so that what comes before it covers what stands above: the tabs.
+        The style lays the chosen line over the box, so that what comes before it covers what is above: the tabs.
         What is cut in the box is whole in its list.
         """
         if self._least is not None:
@@ -86,7 +86,7 @@ class Choice(QComboBox):
         event.ignore()  # who scrolls past must not change what is shown
 
     def _width_for(self, words: str) -> int:
-        """How wide the box is in which these have their room; the widest line of all tells what is around words."""
+        """How wide the box is in which these have their room; the widest line of all gives what is around words."""
         widths = [self.fontMetrics().horizontalAdvance(self.itemText(row)) for row in range(self.count())]
         around = super().sizeHint().width() - max(widths, default=0)
         return around + self.fontMetrics().horizontalAdvance(words)

@@ -18,7 +18,7 @@ from core.hip.results import HipAngle, HipIdentification
 from core.results import AxisSource, JointCalibration, ZeroKind
 from core.verdicts.gates import LIMITS
 
-MARGIN_WANTED = 1.3  # the same as in the findings: below it another answer fits almost as well
+MARGIN_REQUIRED = 1.3  # the same as in the findings: below it another answer fits almost as well
 SHORTEST_LAG_S = 0.0005
 
 AXIS_FROM = {
@@ -53,11 +53,11 @@ def fact_rows(found: Mapping[Joint, JointCalibration]) -> list[TableRow]:
         TableRow(
             (
                 TextCell(tr(question), tone="ink2"),
-                *(_cell(tell(found[joint]), tr(question), joint) for joint in JOINTS if joint in found),
+                *(_cell(show_message(found[joint]), tr(question), joint) for joint in JOINTS if joint in found),
             ),
-            hint=tr(hint).format(wanted=MARGIN_WANTED),
+            hint=tr(hint).format(required=MARGIN_REQUIRED),
         )
-        for question, hint, tell in QUESTIONS
+        for question, hint, show_message in QUESTIONS
     ]
 
 
@@ -72,11 +72,15 @@ def hip_rows(found: Mapping[Joint, HipAngle]) -> list[TableRow]:
         TableRow(
             (
                 TextCell(tr(question), tone="ink2"),
-                *(_cell(tell(found[joint].identification), tr(question), joint) for joint in HIPS if joint in found),
+                *(
+                    _cell(show_message(found[joint].identification), tr(question), joint)
+                    for joint in HIPS
+                    if joint in found
+                ),
             ),
-            hint=tr(hint).format(wanted=LIMITS.pairing_margin),
+            hint=tr(hint).format(required=LIMITS.pairing_margin),
         )
-        for question, hint, tell in HIP_QUESTIONS
+        for question, hint, show_message in HIP_QUESTIONS
         if found
     ]
 
@@ -87,13 +91,13 @@ def _joint_head(joint: Joint) -> TextCell:
 
 def _cell(fact: Fact, question: str, joint: Joint) -> TextCell:
     """One line per comma."""
-    said = f"{name_of(joint)}, {question}: {fact.text}"
+    stated = f"{name_of(joint)}, {question}: {fact.text}"
     return TextCell(
         fact.text.replace(", ", ",\n"),
         align=RIGHT,
         weight=SEMIBOLD if fact.needs_look else REGULAR,
         mark=Icon.WARNING if fact.needs_look else None,
-        spoken=tr("{cell}, needs checking").format(cell=said) if fact.needs_look else said,
+        spoken=tr("{cell}, needs checking").format(cell=stated) if fact.needs_look else stated,
     )
 
 
@@ -111,10 +115,10 @@ def _margin(found: JointCalibration) -> Fact:
     return Fact(tr("unknown"), needs_look=True) if found.sign_margin is None else _margin_of(found.sign_margin)
 
 
-def _margin_of(margin: float, wanted: float = MARGIN_WANTED) -> Fact:
+def _margin_of(margin: float, required: float = MARGIN_REQUIRED) -> Fact:
     if not math.isfinite(margin) or margin >= 100:
         return Fact(tr("over 100"))
-    return Fact(figure_text(margin, ".1f"), margin < wanted)
+    return Fact(figure_text(margin, ".1f"), margin < required)
 
 
 def _direction(found: JointCalibration) -> Fact:
@@ -173,7 +177,7 @@ HIP_QUESTIONS: tuple[tuple[str, str, Callable[[HipIdentification], Fact]], ...] 
     ),
     (
         later("Margin"),
-        later("How much worse the next best solution fits. Below {wanted}, the result is uncertain."),
+        later("How much worse the next best solution fits. Below {required}, the result is uncertain."),
         lambda found: _margin_of(found.margin, LIMITS.pairing_margin),
     ),
     (later("Disagreement"), later("Share of the hip acceleration on which the two sensors disagree."), _disagreement),
@@ -187,7 +191,7 @@ QUESTIONS: tuple[tuple[str, str, Callable[[JointCalibration], Fact]], ...] = (
     (later("Calibration certainty"), later("One standard deviation of the joint axis direction."), _axis_certainty),
     (
         later("Margin"),
-        later("How much worse the next best solution fits. Below {wanted}, the result is uncertain."),
+        later("How much worse the next best solution fits. Below {required}, the result is uncertain."),
         _margin,
     ),
     (later("Direction"), later("Whether flexion and extension can be distinguished."), _direction),

@@ -43,15 +43,15 @@ class Field(Themed):
     Parameters
     ----------
     has_label
-        Without, the label is told to readers of screens only: for fields in a row under one heading.
+        Without, the label is given to readers of screens only: for fields in a row under one heading.
     is_secret
         Shows dots.
     is_code
-        Tells 0 from O.
+        Reports 0 from O.
     most
         Characters, so that what is typed has its room where it is shown.
-    says_wrong
-        Without, what is wrong is said by whoever has more room than a narrow field: see `wrong`.
+    states_wrong
+        Without, what is wrong is stated by whoever has more room than a narrow field: see `wrong`.
     """
 
     edited = Signal(str)  # by the user
@@ -70,11 +70,11 @@ class Field(Themed):
         placeholder: str = "",
         has_label: bool = True,
         most: int | None = None,
-        says_wrong: bool = True,
+        states_wrong: bool = True,
     ) -> None:
         super().__init__()
         self._look, self._label, self._side, self._is_optional = look, label, side, is_optional
-        self._says_wrong = says_wrong
+        self._states_wrong = states_wrong
         self._most, self._is_secret, self._is_too_long = most, is_secret, False
         self._is_pending = False  # edited, not yet committed
         self._caption = Text(look, label, size=14, weight=MEDIUM)
@@ -144,8 +144,8 @@ class Field(Themed):
         """Say what is wrong and what to do; an empty sentence takes it back. What was typed stays."""
         is_news = sentence != self._wrong.text()
         self._wrong.setText(sentence)
-        self._wrong.setVisible(bool(sentence) and self._says_wrong)
-        self._wrong_mark.setVisible(bool(sentence) and self._says_wrong)
+        self._wrong.setVisible(bool(sentence) and self._states_wrong)
+        self._wrong_mark.setVisible(bool(sentence) and self._states_wrong)
         self._box.set_wrong(bool(sentence))
         self._name()
         if sentence and is_news:
@@ -204,7 +204,7 @@ def one_line(text: str) -> str:
 
 
 class NumberField(Field):
-    """A number between `low` and `high`, with a comma or a point; says itself which numbers fit."""
+    """A number between `low` and `high`, with a comma or a point; states itself which numbers fit."""
 
     def __init__(
         self,
@@ -219,7 +219,7 @@ class NumberField(Field):
         side: Side | None = None,
         placeholder: str = "",
         has_label: bool = True,
-        says_wrong: bool = True,
+        states_wrong: bool = True,
     ) -> None:
         super().__init__(
             look,
@@ -229,7 +229,7 @@ class NumberField(Field):
             side=side,
             placeholder=placeholder,
             has_label=has_label,
-            says_wrong=says_wrong,
+            states_wrong=states_wrong,
         )
         self.low, self.high, self.decimals = low, high, decimals
         self._box.setInputMethodHints(Qt.InputMethodHint.ImhFormattedNumbersOnly)
@@ -246,7 +246,7 @@ class NumberField(Field):
         self._judge()
 
     def _on_text_edited(self, text: str) -> None:
-        if self.is_wrong:  # said when the field was left; taken back as soon as it is right
+        if self.is_wrong:  # stated when the field was left; taken back as soon as it is right
             self._judge()
         super()._on_text_edited(text)
 
@@ -258,13 +258,13 @@ class NumberField(Field):
         if not self.text.strip() or self.value is not None:
             self.set_wrong("")
             return
-        wanted = (
+        required = (
             tr("Enter a number from {low} to {high}.") if self.decimals else tr("Enter {low} to {high}, no decimals.")
         )
         unit = self._box.unit
         space = "" if unit in ("", "°", "%") else " "
         low, high = (short_figure(limit, self.decimals).replace("-", MINUS) for limit in (self.low, self.high))
-        self.set_wrong(wanted.format(low=low, high=f"{high}{space}{unit}"))
+        self.set_wrong(required.format(low=low, high=f"{high}{space}{unit}"))
 
 
 class _Box(QLineEdit):

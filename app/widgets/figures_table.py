@@ -56,7 +56,7 @@ def _figure_cells(row: Figure, heading: str) -> tuple[TextCell, ...]:
 def _cell(
     figure: tuple[str, str], row: Figure, heading: str, who: str, side: Side | None = None, span: int = 1
 ) -> TextCell:
-    """A value and what stands smaller behind it; grey where too few strides stand behind it to make a mean."""
+    """A value and what is smaller behind it; grey where too few strides stand behind it to make a mean."""
     value, small = figure
     is_grey = side is not None and side in row.sides and not is_mean_enough(row.sides[side].n)
     return TextCell(
@@ -72,12 +72,12 @@ def _cell(
 
 
 def _in_words(words: str, row: Figure, heading: str, who: str) -> str:
-    """Say a cell with its row, its side and its unit, for who hears one cell at a time."""
+    """Say a cell with its row, its side and its unit, for who receives one cell at a time."""
     name = " ".join(filter(None, [heading, within_sentence(row.name)]))
-    said = f"{words} {row.unit}" if words else tr("no value")
+    stated = f"{words} {row.unit}" if words else tr("no value")
     if words.endswith(CARE_MARK):
-        said = f"{words.removesuffix(CARE_MARK).rstrip()} {row.unit}, {verdict_word(Verdict.CARE)}"
-    return f"{capitalised(name)}, {who}: {said}"
+        stated = f"{words.removesuffix(CARE_MARK).rstrip()} {row.unit}, {verdict_word(Verdict.CARE)}"
+    return f"{capitalised(name)}, {who}: {stated}"
 
 
 def _of_both(row: Figure) -> tuple[str, str]:

@@ -15,7 +15,7 @@ def keep_no_visited_folders() -> None:
     """Let Qt not write down which folders its dialogs were in: their names may hold a patient's code.
 
     To be called at the start and at the end. Where Qt keeps it in a file, from then on it has none; where it is the
-    system's registry or its like, what stands there is removed.
+    system's registry or its like, what is there is removed.
     """
     if sys.platform in ("win32", "darwin"):
         own = QSettings(QSettings.Scope.UserScope, "QtProject")

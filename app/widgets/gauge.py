@@ -17,7 +17,7 @@ from app.wording.body import joint_name
 from app.wording.translation import capitalised, figure_text, name_of, tr
 from core.body import Joint, Side
 from core.calibration.certainty import AXIS_FLOOR_HUMAN_RAD
-from core.live.excitation import ExcitationState, Wanted
+from core.live.excitation import ExcitationState, Required
 
 AXIS_FROM_DEG, CENTRE_FROM_MM = 30.0, 120.0  # where the rings begin
 UNKNOWN = "\N{EN DASH}"
@@ -34,7 +34,7 @@ PADDING = 20
 ROWS_FROM, ROW = CHIP + 10, 26
 ROWS_TO = ROWS_FROM + 2 * ROW
 STATE_FLAGS = int(Qt.AlignmentFlag.AlignVCenter) | int(Qt.TextFlag.TextWordWrap)
-WIDEST = 240  # of the words: what is told and what is wanted are read together
+WIDEST = 240  # of the words: what is reported and what is required are read together
 
 
 class GaugeState(Enum):
@@ -47,23 +47,23 @@ class GaugeState(Enum):
     ABSENT = auto()  # nothing to find, or nothing to find it with
 
 
-CLOSED = (GaugeState.ENOUGH, GaugeState.CENTRE)  # what free motion can tell of the joint it has told
+CLOSED = (GaugeState.ENOUGH, GaugeState.CENTRE)  # what free motion can report of the joint it has reported
 
 
 @dataclass(frozen=True, slots=True)
 class GaugeMeasure:
-    """One figure of a joint: as it is read, what is wanted, and how far its ring is closed (0 to 1)."""
+    """One figure of a joint: as it is read, what is required, and how far its ring is closed (0 to 1)."""
 
     figure: str
     unit: str
-    wanted: str
+    required: str
     share: float
     is_met: bool
 
 
 @dataclass(frozen=True, slots=True)
 class GaugeFace:
-    """`axis` is None where it is not asked for: walking finds an ankle's. `note` says why there is no gauge."""
+    """`axis` is None where it is not asked for: walking finds an ankle's. `note` states why there is no gauge."""
 
     state: GaugeState = GaugeState.OPEN
     axis: GaugeMeasure | None = None
@@ -71,17 +71,17 @@ class GaugeFace:
     note: str = ""
 
 
-def gauge_face(joint: Joint, found: ExcitationState | None, wanted: Wanted, is_now: bool) -> GaugeFace:
-    """Read a gauge off the excitation, without the floors that no motion reduces; None: nothing was heard yet."""
+def gauge_face(joint: Joint, found: ExcitationState | None, required: Required, is_now: bool) -> GaugeFace:
+    """Read a gauge off the excitation, without the floors that no motion reduces; None: nothing was received yet."""
     is_closed = found is not None and found.is_closed
     axis_deg = math.degrees(found.axis_sd_rad) if found is not None else math.inf
     centre_mm = 1000 * found.centre_sd_m if found is not None else math.inf
-    axis_wanted, centre_wanted = math.degrees(wanted.axis_rad), 1000 * wanted.centre_m
-    axis = gauge_measure(axis_deg, axis_wanted, AXIS_FROM_DEG, "°", is_closed) if joint.is_knee else None
-    centre = gauge_measure(centre_mm, centre_wanted, CENTRE_FROM_MM, "mm", is_closed)
+    axis_required, centre_required = math.degrees(required.axis_rad), 1000 * required.centre_m
+    axis = gauge_measure(axis_deg, axis_required, AXIS_FROM_DEG, "°", is_closed) if joint.is_knee else None
+    centre = gauge_measure(centre_mm, centre_required, CENTRE_FROM_MM, "mm", is_closed)
     if found is None:
         return GaugeFace(GaugeState.NOW if is_now else GaugeState.OPEN, axis, centre)
-    if _is_loose(joint, found, wanted) and (is_closed or found.is_plateau):
+    if _is_loose(joint, found, required) and (is_closed or found.is_plateau):
         state = GaugeState.LOOSE
     elif is_closed:
         state = GaugeState.ENOUGH if joint.is_knee else GaugeState.CENTRE
@@ -92,38 +92,38 @@ def gauge_face(joint: Joint, found: ExcitationState | None, wanted: Wanted, is_n
     return GaugeFace(state, axis, centre)
 
 
-def _is_loose(joint: Joint, found: ExcitationState, wanted: Wanted) -> bool:
+def _is_loose(joint: Joint, found: ExcitationState, required: Required) -> bool:
     """Whether a joint that is one axis by construction turns across it as living ones do.
 
     An axis that is merely not certain yet does not make it so, and of an ankle's, which walking finds, nothing is
     known here.
     """
     floor_rad = math.sqrt(max(found.axis_sd_with_floor_rad**2 - found.axis_sd_rad**2, 0.0))
-    return wanted.is_hinge and joint.is_knee and floor_rad > AXIS_FLOOR_HUMAN_RAD
+    return required.is_hinge and joint.is_knee and floor_rad > AXIS_FLOOR_HUMAN_RAD
 
 
 def _words(face: GaugeFace) -> tuple[object, ...]:
     """All of a face but its ring and the figures in it."""
     measures = (face.axis, face.centre)
-    return face.state, face.note, [(one.wanted, one.is_met) if one is not None else None for one in measures]
+    return face.state, face.note, [(one.required, one.is_met) if one is not None else None for one in measures]
 
 
-def two_digits(value: float, wanted: float = math.inf) -> str:
-    """Write a certainty as it is told: 0.8, 2.4, 11. What is not yet as wanted never reads as if it were."""
+def two_digits(value: float, required: float = math.inf) -> str:
+    """Write a certainty as it is reported: 0.8, 2.4, 11. What is not yet as required never reads as if it were."""
     decimals = 1 if round(value, 1) < 10 else 0
-    if value > wanted >= round(value, decimals):
-        return figure_text(wanted + 0.1, ".1f") if wanted < 9.9 else f"{wanted + 1:.0f}"
+    if value > required >= round(value, decimals):
+        return figure_text(required + 0.1, ".1f") if required < 9.9 else f"{required + 1:.0f}"
     return figure_text(value, f".{decimals}f")
 
 
-def gauge_measure(value: float, wanted: float, begins: float, unit: str, is_closed: bool) -> GaugeMeasure:
+def gauge_measure(value: float, required: float, begins: float, unit: str, is_closed: bool) -> GaugeMeasure:
     """Read a figure. A ring is logarithmic: each halving of what is uncertain closes as much of it."""
-    share = math.log(begins / value) / math.log(begins / wanted) if 0 < value < math.inf else 0.0
-    is_met = is_closed or value <= wanted
+    share = math.log(begins / value) / math.log(begins / required) if 0 < value < math.inf else 0.0
+    is_met = is_closed or value <= required
     share = 1.0 if is_met else min(max(share, 0.0), 1.0 - 1 / STEPS)
-    figure = two_digits(value, math.inf if is_met else wanted) if value < begins else UNKNOWN
+    figure = two_digits(value, math.inf if is_met else required) if value < begins else UNKNOWN
     space = "" if unit == "°" else " "
-    return GaugeMeasure(figure, unit, figure_text(wanted, "g") + space + unit, _steps(share), is_met)
+    return GaugeMeasure(figure, unit, figure_text(required, "g") + space + unit, _steps(share), is_met)
 
 
 def _steps(share: float) -> float:
@@ -148,7 +148,7 @@ class Gauge(QWidget):
         return self._face
 
     def show_face(self, face: GaugeFace) -> None:
-        """Show it; painted anew only if it reads otherwise than before."""
+        """Show it; painted again only if it reads otherwise than before."""
         if face == self._face:
             return
         before, self._face = self._face, face
@@ -269,7 +269,7 @@ class Gauge(QWidget):
         beside_main = painter.fontMetrics().horizontalAdvance(main) + px(8)
         painter.setPen(QColor(c.ink2))
         painter.setFont(theme.font(20, MEDIUM))
-        is_unit = face.axis is None  # it stands by its figure; a second figure stands apart
+        is_unit = face.axis is None  # it is by its figure; a second figure is apart
         line = words.adjusted(beside_main if is_unit else 0, 0, 0, -px(10))
         painter.drawText(
             line, bottom | (Qt.AlignmentFlag.AlignLeft if is_unit else Qt.AlignmentFlag.AlignRight), second
@@ -364,13 +364,13 @@ class Gauge(QWidget):
             room = line.width() - px(24 + 6) - painter.fontMetrics().horizontalAdvance(name)
             painter.setPen(QColor(c.ink2))
             painter.setFont(theme.font(14))
-            wanted, short = tr("while walking"), tr("later")  # an ankle's axis
+            required, short = tr("while walking"), tr("later")  # an ankle's axis
             if measure is not None:
-                wanted, short = tr("under {limit}").format(limit=measure.wanted), f"< {measure.wanted}"
-            if painter.fontMetrics().horizontalAdvance(wanted) > room:
-                wanted = short
+                required, short = tr("under {limit}").format(limit=measure.required), f"< {measure.required}"
+            if painter.fontMetrics().horizontalAdvance(required) > room:
+                required = short
                 painter.setFont(self._fitting(short, 14, room, REGULAR))
-            painter.drawText(line, Qt.AlignmentFlag.AlignVCenter | Qt.AlignmentFlag.AlignRight, wanted)
+            painter.drawText(line, Qt.AlignmentFlag.AlignVCenter | Qt.AlignmentFlag.AlignRight, required)
             top += px(ROW)
 
     def _paint_state(self, painter: QPainter, words: QRectF) -> None:
@@ -434,7 +434,7 @@ class Gauge(QWidget):
                 space = "" if measure.unit == "°" else " "
                 known = f"{measure.figure}{space}{measure.unit}" if measure.figure != UNKNOWN else tr("unknown")
                 parts.append(f"{name} {known}")
-                parts.append(tr("under {limit} required").format(limit=measure.wanted))
+                parts.append(tr("under {limit} required").format(limit=measure.required))
         parts.append(face.note or (tr("move now") if face.state is GaugeState.NOW else state_word(face.state)))
         self.setAccessibleName(", ".join(parts))
 

@@ -157,7 +157,7 @@ class ProductMark(QWidget):
         painter.setRenderHint(QPainter.RenderHint.Antialiasing)
         unit = self.width() / 24
         hip = QPointF(12.5 * unit, 2.5 * unit)
-        for side, foot in ((Side.RIGHT, 3.5), (Side.LEFT, 20.5)):  # it faces you: the right leg stands at your left
+        for side, foot in ((Side.RIGHT, 3.5), (Side.LEFT, 20.5)):  # it faces you: the right leg is at your left
             pen = theme.pen(theme.curve(side), 3.4)
             pen.setCapStyle(Qt.PenCapStyle.FlatCap)
             if side is Side.RIGHT:

@@ -1,7 +1,7 @@
-"""In which order are the parts of a widget heard? In that of reading, as its layout has them.
+"""In which order are the parts of a widget received? In that of reading, as its layout has them.
 
-Qt tells assistive technology of them as they are stacked: what came into the widget last is heard last, wherever it
-stands. Layouts are asked for the places of widgets and never for their items: an item that Qt deletes would leave its
+Qt reports assistive technology of them as they are stacked: what came into the widget last is received last, wherever
+it is. Layouts are asked for the places of widgets and never for their items: an item that Qt deletes would leave its
 wrapper behind, and whatever comes to lie at its address next would be taken for it.
 """
 
@@ -11,7 +11,8 @@ from PySide6.QtWidgets import QGridLayout, QLayout, QWidget
 
 
 def hear_as_laid_out(widget: QWidget) -> None:
-    """Let the parts of `widget` be heard from the first of its layout to the last; none of them may cover another."""
+    """Let the parts of `widget` be received from the first of its layout to the last; none of them may cover
+    another."""
     layout = widget.layout()
     if layout is not None:
         for part in _parts(layout, [one for one in widget.children() if isinstance(one, QWidget)]):

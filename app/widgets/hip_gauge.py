@@ -32,7 +32,7 @@ LOW_CHIP, LOW_VALUE = 16, 14
 
 @dataclass(frozen=True, slots=True)
 class HipFace:
-    """`heading` says how surely pelvis and thigh face each other; `note` says why there is nothing to find."""
+    """`heading` states how surely pelvis and thigh face each other; `note` states why there is nothing to find."""
 
     heading: GaugeMeasure | None = None
     is_now: bool = False
@@ -44,11 +44,11 @@ class HipFace:
 
 
 def hip_face(found: HipHeadingState | None, is_now: bool = False) -> HipFace:
-    """Read a gauge off what is known of the heading; None: nothing was heard yet."""
+    """Read a gauge off what is known of the heading; None: nothing was received yet."""
     sd_deg = math.degrees(found.sd_rad) if found is not None and found.is_trusted else math.inf
     is_sure = found is not None and found.is_sure
-    wanted_deg = round(math.degrees(MAX_3D_SD_RAD))
-    return HipFace(gauge_measure(sd_deg, wanted_deg, HEADING_FROM_DEG, "°", is_sure), is_now and not is_sure)
+    required_deg = round(math.degrees(MAX_3D_SD_RAD))
+    return HipFace(gauge_measure(sd_deg, required_deg, HEADING_FROM_DEG, "°", is_sure), is_now and not is_sure)
 
 
 class HipGauge(QWidget):
@@ -69,7 +69,7 @@ class HipGauge(QWidget):
         return self._face
 
     def show_face(self, face: HipFace) -> None:
-        """Show it; painted anew only if it reads otherwise than before."""
+        """Show it; painted again only if it reads otherwise than before."""
         if face != self._face:
             self._face = face
             self._name()
@@ -115,13 +115,13 @@ class HipGauge(QWidget):
             words_right = at.left() - px(10)
         weight = SEMIBOLD if face.is_met or face.is_now else MEDIUM
         words, room = theme.font(12 if self._is_low else 14, weight), words_right - words_left
-        said = self.said
-        height = height_for(said, words, round(room))
+        stated = self.stated
+        height = height_for(stated, words, round(room))
         at = QRectF(words_left, (box.height() - height) / 2, room, height)
-        return [*texts, PaintedText(said, at, words, "ink" if face.is_met or face.is_now else "ink2", wraps=True)]
+        return [*texts, PaintedText(stated, at, words, "ink" if face.is_met or face.is_now else "ink2", wraps=True)]
 
     @property
-    def said(self) -> str:
+    def stated(self) -> str:
         """What would show the hip, or that it is shown."""
         return self._face.note or (
             tr("Enough movement") if self._face.is_met else tr("Walk 15 s with a turn, or lunge")
@@ -186,5 +186,5 @@ class HipGauge(QWidget):
         if face.heading is not None and not face.note:
             is_known = face.heading.figure != UNKNOWN
             figure = f"{face.heading.figure}{face.heading.unit}" if is_known else tr("unknown")
-            parts += [f"{tr('heading')} {figure}", tr("under {limit} required").format(limit=face.heading.wanted)]
-        self.setAccessibleName(", ".join([*parts, self.said]))
+            parts += [f"{tr('heading')} {figure}", tr("under {limit} required").format(limit=face.heading.required)]
+        self.setAccessibleName(", ".join([*parts, self.stated]))

@@ -49,7 +49,7 @@ class PatientLine:
 
 @dataclass(frozen=True, slots=True)
 class SessionLine:
-    """`state` is empty where there is nothing to say; `needs_look` puts a triangle before it, else stands `mark`."""
+    """`state` is empty where there is nothing to say; `needs_look` puts a triangle before it, else is `mark`."""
 
     id: UUID
     when: str
@@ -220,7 +220,7 @@ def _pieces(line: SessionLine) -> tuple[Word, Word, Word, Word]:
 class LineList(CellTable):
     """A list of lines, one of which may be chosen. Enter and a click on a session open it.
 
-    `chosen` and `opened` tell the id of a line; `fitted`: lines may have other heights.
+    `chosen` and `opened` report the id of a line; `fitted`: lines may have other heights.
     """
 
     fitted = Signal()
@@ -247,7 +247,7 @@ class LineList(CellTable):
     def show_lines(self, lines: Sequence[Line], chosen: UUID | None = None, *, stays: bool = False) -> None:
         """Show other lines, with the one that has this id chosen, where it is among them.
 
-        `stays`: the list was only read anew, and is not scrolled.
+        `stays`: the list was only read again, and is not scrolled.
         """
         scrolled = self.verticalScrollBar().value()
         self.lines = tuple(lines)
@@ -256,7 +256,7 @@ class LineList(CellTable):
             PatientCell(line) if isinstance(line, PatientLine) else SessionCell(line, columns) for line in lines
         ]
         self._longest = nlargest(MEASURED, cells, key=lambda cell: len(cell.words))
-        self.selectionModel().reset()  # the line that is chosen now is told, even if it is the same
+        self.selectionModel().reset()  # the line that is chosen now is reported, even if it is the same
         self.show_rows(
             [TableColumn(share=1, widest=EMPTY)],
             [TableRow((cell,), key=cell.line.id) for cell in cells],
@@ -279,7 +279,7 @@ class LineList(CellTable):
         self.fitted.emit()
 
     def paint_ground(self, painter: QPainter, option: QStyleOptionViewItem, index: Index) -> None:
-        """A line under each row; the row that is chosen or under the mouse stands on a round ground."""
+        """A line under each row; the row that is chosen or under the mouse is on a round ground."""
         theme = self._look.theme
         c, px, rect = theme.colours, theme.px, option.rect
         is_chosen = bool(option.state & QStyle.StateFlag.State_Selected)
@@ -315,7 +315,7 @@ class LineList(CellTable):
 
 
 def _are_beside(first: Word, second: Word, room: int, theme: Theme) -> bool:
-    """Tell whether both find room in one row."""
+    """Return whether both find room in one row."""
     return first.width(theme) + theme.px(GAP) + second.width(theme) <= room
 
 
@@ -332,7 +332,7 @@ def _wrapped(word: Word, room: int, theme: Theme) -> list[list[Word]]:
 
 
 def _placed(rows: list[list[Word]], room: int, theme: Theme) -> list[list[Word]]:
-    """Give what stands at the right its place, and leave out what says nothing."""
+    """Give what is at the right its place, and leave out what gives nothing."""
     placed = [
         [replace(word, left=room - word.width(theme)) if word.is_right else word for word in row if word.text]
         for row in rows

@@ -1,4 +1,4 @@
-"""One choice out of a few, all of them in sight. Arrows move, and each says in a second line what it does."""
+"""One choice out of a few, all of them in sight. Arrows move, and each states in a second line what it does."""
 
 from collections.abc import Sequence
 
@@ -93,21 +93,21 @@ class _Segment(Button):
         self._note, self._reason, self._is_brief = note, "", False
         self.setCheckable(True)
         self.setAutoExclusive(True)
-        self._tell()
+        self._show_message()
 
     def set_word(self, word: str) -> None:
         self.setText(word)
-        self._tell()
+        self._show_message()
 
     def set_brief(self, is_brief: bool) -> None:
         self._is_brief = is_brief
-        self._tell()
+        self._show_message()
 
     def set_reason(self, reason: str) -> None:
         self._reason = reason
         self.setEnabled(not reason)
-        self._tell()
+        self._show_message()
 
-    def _tell(self) -> None:
+    def _show_message(self) -> None:
         self.set_face(note=self._reason or ("" if self._is_brief else self._note))
         self.setAccessibleName(", ".join(filter(None, [self.text(), self._reason or self._note])))

@@ -1,4 +1,5 @@
-"""Are all sensors heard? A tile for each round a pair of legs, or round that of the pelvis where one is worn there."""
+"""Are all sensors received? A tile for each round a pair of legs, or round that of the pelvis where one is worn
+there."""
 
 from collections.abc import Collection, Mapping
 
@@ -77,7 +78,7 @@ class SensorStrip(Themed):
             self._arrange()
 
     def set_from_behind(self, is_from_behind: bool) -> None:
-        """Turn the tiles with the figure: from behind, the patient's left stands at the left."""
+        """Turn the tiles with the figure: from behind, the patient's left is at the left."""
         self._is_from_behind = is_from_behind
         self._arrange()
 
@@ -241,7 +242,7 @@ class SensorStrip(Themed):
 
 
 def _order(sites: Collection[Site], is_from_behind: bool) -> list[Site]:
-    """Give the sites from left to right: the patient faces you, so the right leg stands at the left."""
+    """Give the sites from left to right: the patient faces you, so the right leg is at the left."""
     sides = (Side.LEFT, Side.RIGHT) if is_from_behind else (Side.RIGHT, Side.LEFT)
     first, second = ([Site(f"{side}_{segment}") for segment in LEG_SEGMENTS] for side in sides)
     return [*first, *([Site.PELVIS] if Site.PELVIS in sites else []), *second]

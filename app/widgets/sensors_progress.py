@@ -111,7 +111,9 @@ class SensorsProgress(Themed):
             self._bar.setValue(round(shown.share * PER_MILLE))
         self._bar.setAccessibleName(shown.title)
         self._lines.show_lines(shown.lines)
-        self.notice.tell(Icon.WARNING if shown.what else None, shown.what, shown.then, is_caution=bool(shown.what))
+        self.notice.show_message(
+            Icon.WARNING if shown.what else None, shown.what, shown.then, is_caution=bool(shown.what)
+        )
         self.notice.setVisible(bool(shown.what))
         self.stop.setVisible(bool(shown.stop))
         if shown.stop and self.stop.text() != shown.stop:
@@ -138,7 +140,7 @@ class SensorsProgress(Themed):
 
 
 class _SensorLines(Themed):
-    """The sensors one below the other; readers of screens are told all of them."""
+    """The sensors one below the other; readers of screens are reported all of them."""
 
     def __init__(self, look: ThemeNotifier) -> None:
         super().__init__()
@@ -171,9 +173,9 @@ class _SensorLines(Themed):
         texts = []
         for number, line in enumerate(self._shown):
             box = QRectF(px(MARK + GAP), number * px(LINE), self.width() - px(MARK + GAP), px(LINE))
-            said = f"{line.name} · {line.words}" if line.words else line.name
+            stated = f"{line.name} · {line.words}" if line.words else line.name
             tone = "ink2" if line.state is LineState.TO_DO else "ink"
-            texts.append(PaintedText(said, box, theme.font(14, MEDIUM), tone, LEFT))
+            texts.append(PaintedText(stated, box, theme.font(14, MEDIUM), tone, LEFT))
         return texts
 
     def paintEvent(self, _event: QPaintEvent) -> None:

@@ -35,13 +35,13 @@ class ServerFields(QObject):
         return [field.line_edit for field in self.fields]
 
     @property
-    def told(self) -> tuple[str, str, str]:
+    def reported(self) -> tuple[str, str, str]:
         """Address, password and place, as they were typed."""
         return self.address.text.strip(), self.password.text, self.place.text.strip()
 
     @property
     def is_complete(self) -> bool:
-        """Whether what has to be typed is; what is missing is said at its field."""
+        """Whether what has to be typed is; what is missing is stated at its field."""
         missing = [(self.address, tr("Enter the address of the clinic's server."))]
         if not self._is_place_optional:
             missing.append((self.place, tr("Enter a folder that all workstations can access, or s3://bucket/folder.")))

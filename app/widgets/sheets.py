@@ -48,7 +48,7 @@ class Sheets(QWidget):
 
     accessible_role = QAccessible.Role.Document
 
-    sharper_wanted = Signal()
+    sharper_required = Signal()
 
     def __init__(self, look: ThemeNotifier) -> None:
         super().__init__()
@@ -57,7 +57,7 @@ class Sheets(QWidget):
         self._settled = QTimer(self)
         self._settled.setSingleShot(True)
         self._settled.setInterval(SETTLED_AFTER_MS)
-        self._settled.timeout.connect(self.sharper_wanted)
+        self._settled.timeout.connect(self.sharper_required)
         self.setSizePolicy(QSizePolicy.Policy.Expanding, QSizePolicy.Policy.MinimumExpanding)
         self.setAccessibleName(tr("No pages yet"))
         column = QVBoxLayout(self)
@@ -113,13 +113,13 @@ class SmallSheets(Themed):
 
     Signals
     -------
-    wished
+    requested
         The number of a page, from 0.
     """
 
     accessible_role = QAccessible.Role.List
 
-    wished = Signal(int)
+    requested = Signal(int)
 
     def __init__(self, look: ThemeNotifier) -> None:
         super().__init__()
@@ -128,7 +128,7 @@ class SmallSheets(Themed):
         self.number = 0
         self.setFocusPolicy(Qt.FocusPolicy.StrongFocus)
         self.setSizePolicy(QSizePolicy.Policy.Fixed, QSizePolicy.Policy.Expanding)
-        self._tell()
+        self._show_message()
 
     def show_pages(self, pages: Sequence[Sheet]) -> None:
         self._pages = list(pages)
@@ -137,11 +137,11 @@ class SmallSheets(Themed):
     def mark(self, number: int) -> None:
         """Mark the page that is read."""
         self.number = number
-        self._tell()
+        self._show_message()
         self.update()
 
     def place_of(self, number: int) -> QRectF:
-        """Where a small page stands."""
+        """Where a small page is."""
         px, top, width = self._look.theme.px, 0.0, self._small_width()
         for page in self._pages[:number]:
             top += width * page.height_per_width + px(NUMBER + SMALL_GAP)
@@ -198,12 +198,12 @@ class SmallSheets(Themed):
 
     def _go_to(self, number: int) -> None:
         self.mark(number)
-        self.wished.emit(number)
+        self.requested.emit(number)
 
-    def _tell(self) -> None:
+    def _show_message(self) -> None:
         self.setAccessibleName(tr("Pages"))
-        said = tr("Page {page} of {pages}").format(page=self.number + 1, pages=len(self._pages))
-        self.setAccessibleDescription(said if self._pages else "")
+        stated = tr("Page {page} of {pages}").format(page=self.number + 1, pages=len(self._pages))
+        self.setAccessibleDescription(stated if self._pages else "")
 
     def _on_look_changed(self) -> None:
         self.updateGeometry()

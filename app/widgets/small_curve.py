@@ -26,7 +26,7 @@ class SmallCurve(Themed):
         self.setAccessibleName(name)
 
     def show_curve(self, time_s: FloatArray, values: FloatArray) -> None:
-        """(n,) each, thinned already; the lowest value stands at the bottom."""
+        """(n,) each, thinned already; the lowest value is at the bottom."""
         self._time_s, self._values = time_s, values
         self.update()
 

@@ -140,7 +140,7 @@ class _Row:
 class MovementBars(QWidget):
     """A row per worn sensor: L, then R, then by name those whose site nobody knows.
 
-    A row is painted anew only when its figure or its mark changes.
+    A row is painted again only when its figure or its mark changes.
     """
 
     def __init__(self, look: ThemeNotifier) -> None:
@@ -162,7 +162,7 @@ class MovementBars(QWidget):
         moved: Sequence[str],
         silent: Sequence[str],
     ) -> None:
-        """Show each worn sensor's movement; infinite where too little was heard to tell."""
+        """Show each worn sensor's movement; infinite where too little was received to report."""
         sites = [site for site in Site if site in movement_deg_s]
         unplaced = sorted(set(movement_deg_s) - set(sites))
         rows = {

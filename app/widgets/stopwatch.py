@@ -16,7 +16,7 @@ THICK = 5
 
 
 class Stopwatch(QWidget):
-    """Passive: it shows what it is told."""
+    """Passive: it shows what it is reported."""
 
     def __init__(self, look: ThemeNotifier) -> None:
         super().__init__()
@@ -91,8 +91,8 @@ class Stopwatch(QWidget):
         theme = self._look.theme
         minutes = TARGET_S // 60
         small = QFontMetrics(theme.font(12))
-        said = [tr("{minutes} min target exceeded"), tr("of {minutes} min target")]
-        widest = max(small.horizontalAdvance(words.format(minutes=minutes)) for words in said)
+        stated = [tr("{minutes} min target exceeded"), tr("of {minutes} min target")]
+        widest = max(small.horizontalAdvance(words.format(minutes=minutes)) for words in stated)
         large = QFontMetrics(theme.font(self._time_size(), SEMIBOLD))
         time = max(large.horizontalAdvance("00:00"), large.horizontalAdvance(clock(self._elapsed_s, 2)))
         return max(widest + theme.px(2), theme.px(LINE)), time + theme.px(2)

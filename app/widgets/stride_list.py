@@ -36,7 +36,7 @@ HEADS = (
 )
 RANGES = {HIP: JointKind.HIP, KNEE: JointKind.KNEE, ANKLE: JointKind.ANKLE}
 SHAPES = {HIP_SHAPE: JointKind.HIP, KNEE_SHAPE: JointKind.KNEE, ANKLE_SHAPE: JointKind.ANKLE}
-LEAST_SHAPE = 64  # narrower, a curve tells nothing
+LEAST_SHAPE = 64  # narrower, a curve gives nothing
 SHAPE_MARGIN = 5  # between a curve and the lines of its row
 WIDEST = {BEGINS: "000.0", TAKES: "0.00", HIP: "000.0", KNEE: "000.0", ANKLE: "000.0"}
 STATE_WIDTH = 112  # words wrap in it
@@ -44,7 +44,8 @@ STATE_WIDTH = 112  # words wrap in it
 
 @dataclass(frozen=True, slots=True)
 class StrideLine:
-    """One stride of one side, the same one whatever became of it. `reason` says in words why it is left out; empty: it
+    """One stride of one side, the same one whatever became of it. `reason` states in words why it is left out; empty:
+    it
     is used.
 
     Only what is used, or was left out by hand, can be turned. `ranges_deg`: of each kind of joint, NaN where not known;
@@ -90,7 +91,7 @@ class StrideCell(TableCell):
         return str(self.line.number)
 
     @property
-    def said(self) -> str:
+    def stated(self) -> str:
         return self.line.in_words
 
     @property
@@ -131,7 +132,7 @@ class CurveCell(TableCell):
     reach_deg: tuple[float, float]
 
     @property
-    def said(self) -> str:
+    def stated(self) -> str:
         return self.line.in_words
 
     def width(self, theme: Theme) -> int:

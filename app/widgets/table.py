@@ -30,14 +30,14 @@ from app.theme.notifier import ThemeNotifier
 from app.widgets.table_cells import EMPTY, TableCell
 
 ROW, HEAD, PADDING = 28, 32, 6
-LEAST_ROWS = 2.5  # of a list in sight: half a row says that there are more
+LEAST_ROWS = 2.5  # of a list in sight: half a row states that there are more
 Index = QModelIndex | QPersistentModelIndex
 ROOT = QModelIndex()
 
 
 @dataclass(frozen=True, slots=True)
 class TableColumn:
-    """`head` stands above. `share`: its part of what the columns do not need; where none has one, the last takes all.
+    """`head` is above. `share`: its part of what the columns do not need; where none has one, the last takes all.
 
     `widest` is measured in place of all cells, which is for tables of hundreds of rows; `least`: px of the design.
     """
@@ -95,7 +95,7 @@ class TableModel(QAbstractTableModel):
             case Qt.ItemDataRole.DisplayRole:
                 return cell.words
             case Qt.ItemDataRole.AccessibleTextRole:
-                return cell.said
+                return cell.stated
             case Qt.ItemDataRole.ToolTipRole:
                 return self.rows[index.row()].hint or None
             case Qt.ItemDataRole.CheckStateRole if cell.is_checked is not None:
@@ -110,7 +110,7 @@ class TableModel(QAbstractTableModel):
             case Qt.ItemDataRole.DisplayRole:
                 return head.words
             case Qt.ItemDataRole.AccessibleTextRole:
-                return head.said
+                return head.stated
         return None
 
 
@@ -203,7 +203,7 @@ class CellTable(QTableView):
 
     def as_text(self) -> str:
         """Give the table as tab-separated lines."""
-        lines = [[column.head.said for column in self.cells.columns]]
+        lines = [[column.head.stated for column in self.cells.columns]]
         lines += [[cell.words for cell in row.cells] for row in self.cells.rows]
         return "\n".join("\t".join(cells) for cells in lines)
 
@@ -236,7 +236,7 @@ class CellTable(QTableView):
         return rect.adjusted(left, 0, -px(self._padding), 0)
 
     def fit(self) -> None:
-        """Measure all of it anew."""
+        """Measure all of it again."""
         px = self._look.theme.px
         self.setFont(self._look.theme.font(14))
         self.horizontalHeader().setFixedHeight(px(self._head) if self._head else 0)
@@ -308,7 +308,7 @@ class CellTable(QTableView):
             super().keyPressEvent(event)
 
     def is_opening(self, event: QKeyEvent) -> bool:
-        """Tell whether a key opens the row in force."""
+        """Return whether a key opens the row in force."""
         return event.key() in (Qt.Key.Key_Return, Qt.Key.Key_Enter)
 
     def moveCursor(  # noqa: N802  Qt calls it
@@ -340,7 +340,7 @@ class CellTable(QTableView):
 
 
 class _Delegate(QStyledItemDelegate):
-    """Draws the ground of a row, then the cell as its kind says."""
+    """Draws the ground of a row, then the cell as its kind states."""
 
     def __init__(self, table: CellTable) -> None:
         super().__init__(table)

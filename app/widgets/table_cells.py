@@ -1,4 +1,4 @@
-"""The cells of a table: text with what stands beside it, and a difference over the grey strip of its error."""
+"""The cells of a table: text with what is beside it, and a difference over the grey strip of its error."""
 
 import math
 from abc import ABC, abstractmethod
@@ -25,7 +25,7 @@ DOT = 11
 
 
 class TableCell(ABC):
-    """What one cell shows and says. Cells are values: whoever shows others makes others."""
+    """What one cell shows and states. Cells are values: whoever shows others makes others."""
 
     __slots__ = ()
 
@@ -36,12 +36,12 @@ class TableCell(ABC):
 
     @property
     def words(self) -> str:
-        """What is copied, and said where nothing else is."""
+        """What is copied, and stated where nothing else is."""
         return ""
 
     @property
-    def said(self) -> str:
-        """What a screen reader says of the cell alone, so with its row and its column."""
+    def stated(self) -> str:
+        """What a screen reader states of the cell alone, so with its row and its column."""
         return self.words
 
     @property
@@ -67,7 +67,7 @@ class TextCell(TableCell):
     r"""A text in one or several lines ("\n"), with a mark or the chip of a leg before and smaller words behind it.
 
     `align` is LEFT, RIGHT or CENTRE, `tone` the token of the text's colour. `wraps`: it asks for the room of its
-    longest word only. `spoken` stands for its words where these alone would not be understood.
+    longest word only. `spoken` represents its words where these alone would not be understood.
     """
 
     text: str = ""
@@ -88,7 +88,7 @@ class TextCell(TableCell):
         return " ".join(filter(None, [letter, self.text.replace("\n", " "), self.small]))
 
     @property
-    def said(self) -> str:
+    def stated(self) -> str:
         return self.spoken or self.words
 
     def width(self, theme: Theme) -> int:
@@ -186,7 +186,7 @@ class ErrorStrip(TableCell):
         return self.is_judged and abs(self.difference) > self.error
 
     @property
-    def said(self) -> str:
+    def stated(self) -> str:
         return self.spoken
 
     def width(self, theme: Theme) -> int:

@@ -1,11 +1,11 @@
-"""A widget that spaces its parts by the theme: Qt tells it when the style has changed."""
+"""A widget that spaces its parts by the theme: Qt reports it when the style has changed."""
 
 from PySide6.QtCore import QEvent
 from PySide6.QtWidgets import QWidget
 
 
 class Themed(QWidget):
-    """`_on_look_changed` sets margins and sizes; what is painted, Qt paints anew and measures by itself.
+    """`_on_look_changed` sets margins and sizes; what is painted, Qt paints again and measures by itself.
 
     Whoever derives from it calls it once its parts are there.
     """

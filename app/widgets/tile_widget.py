@@ -22,7 +22,7 @@ MARKS = BATTERY_WIDTH + 4 + 18  # battery and movement
 
 
 class TileWidget(QWidget):
-    """One tile. It paints itself anew only when what it says is another."""
+    """One tile. It paints itself again only when what it states is another."""
 
     accessible_role = QAccessible.Role.ListItem
 
@@ -45,7 +45,7 @@ class TileWidget(QWidget):
         self.update()
 
     def set_tight(self, is_tight: bool) -> None:
-        """Let the name have its line for itself: its marks move to the second, where no loss is not told then."""
+        """Let the name have its line for itself: its marks move to the second, where no loss is not reported then."""
         if is_tight != self._is_tight:
             self._is_tight = is_tight
             self.update()
@@ -89,14 +89,14 @@ class TileWidget(QWidget):
         name_right = self.width() - px(8) if self._is_tight else self._marks_left() - px(4)
         name = QRectF(left, chip.top() - px(2), name_right - left, chip.height() + px(4))
         is_short = self._is_tight and state is TileState.FINE
-        said = f"{self._tile.rate_hz:.0f} Hz" if is_short else self._tile.words
+        stated = f"{self._tile.rate_hz:.0f} Hz" if is_short else self._tile.words
         font = self._words_font(is_bold)
         room = self.width() - 2 * pad
-        height = max(height_for(said, font, room), px(18))
+        height = max(height_for(stated, font, room), px(18))
         words = QRectF(pad, min(px(31), self.height() - px(4) - height), room, height)
         return [
             PaintedText(self._segment(), name, self._name_font(), name_tone),
-            PaintedText(said, words, font, tone, wraps=True),
+            PaintedText(stated, words, font, tone, wraps=True),
         ]
 
     def paintEvent(self, _event: QPaintEvent) -> None:
@@ -197,9 +197,9 @@ class TileWidget(QWidget):
     def _name(self) -> None:
         tile = self._tile
         moving = tr("moving") if tile.is_moving else tr("still")
-        is_heard = tile.state not in (TileState.NOT_WORN, TileState.SILENT, TileState.QUIET)
+        is_received = tile.state not in (TileState.NOT_WORN, TileState.SILENT, TileState.QUIET)
         site = capitalised(name_of(tile.site))
-        self.setAccessibleName(", ".join(filter(None, [site, tile.words, moving if is_heard else ""])))
+        self.setAccessibleName(", ".join(filter(None, [site, tile.words, moving if is_received else ""])))
         battery = (
             tr("battery {percent} %").format(percent=round(tile.battery * 100)) if tile.battery is not None else ""
         )
@@ -209,6 +209,6 @@ class TileWidget(QWidget):
 
 
 def _seen(tile: SensorTile) -> tuple[object, ...]:
-    """Give all of a tile that can be seen or heard: what does not show in it needs no painting."""
+    """Give all of a tile that can be seen or received: what does not show in it needs no painting."""
     battery = None if tile.battery is None else round(tile.battery * 100)
     return tile.site, tile.name, battery, tile.words, tile.state, tile.is_moving

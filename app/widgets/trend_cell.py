@@ -21,8 +21,8 @@ LINE = 1.75
 class TrendCell(TableCell):
     """Values at `places` between 0 and 1, over `band` in grey; `edges` are the values below and above.
 
-    NaN is a gap: neighbours are joined, what lies on either side of a gap is not. The last value is the larger point,
-    so that its absence is seen. `side` gives the colour and the dashes of a leg. `goals` are dotted lines.
+    NaN is a gap: adjacent ones are joined, what lies on either side of a gap is not. The last value is the larger
+    point, so that its absence is seen. `side` gives the colour and the dashes of a leg. `goals` are dotted lines.
     """
 
     places: tuple[float, ...]
@@ -34,7 +34,7 @@ class TrendCell(TableCell):
     goals: tuple[float, ...] = ()
 
     @property
-    def said(self) -> str:
+    def stated(self) -> str:
         return self.spoken
 
     def width(self, theme: Theme) -> int:

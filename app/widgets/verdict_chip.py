@@ -21,7 +21,7 @@ GAP = 6
 
 
 class VerdictChip(Themed):
-    """Brief, it leaves out the curve's line and says the verdict in a word."""
+    """Brief, it leaves out the curve's line and states the verdict in a word."""
 
     accessible_role = QAccessible.Role.Graphic
 
@@ -31,7 +31,7 @@ class VerdictChip(Themed):
         self._verdict = Verdict.READ
         self._has_line, self._is_brief = True, False
         self.setSizePolicy(QSizePolicy.Policy.Fixed, QSizePolicy.Policy.Fixed)
-        self.tell(Verdict.READ)
+        self.show_message(Verdict.READ)
 
     @property
     def verdict(self) -> Verdict:
@@ -41,7 +41,7 @@ class VerdictChip(Themed):
         self._is_brief = is_brief
         self._on_look_changed()
 
-    def tell(self, verdict: Verdict, *, has_line: bool = True) -> None:
+    def show_message(self, verdict: Verdict, *, has_line: bool = True) -> None:
         """`has_line`: whether the leg's curve is drawn."""
         self._verdict, self._has_line = verdict, has_line
         self.setAccessibleName(f"{leg_name(self._side)}: {verdict_word(verdict)}")
@@ -53,7 +53,7 @@ class VerdictChip(Themed):
         theme = self._look.theme
         font = theme.font(12, SEMIBOLD)
         left = self._icon_left() + theme.px(ICON + 4)
-        tone = "caution_ink" if self._verdict is Verdict.WITHHELD else "ink"
+        tone = "caution_ink" if self._verdict is Verdict.NOT_REPORTED else "ink"
         box = QRectF(left, 0, self.width() - left - theme.px(PADDING), self.height())
         return [PaintedText(self._word, box, font, tone, LEFT)]
 
@@ -68,7 +68,7 @@ class VerdictChip(Themed):
         painter = QPainter(self)
         fill, line = {
             Verdict.CARE: (c.sunken, c.control),
-            Verdict.WITHHELD: (c.caution, c.caution_edge),
+            Verdict.NOT_REPORTED: (c.caution, c.caution_edge),
         }.get(self._verdict, (c.ground, c.line))
         theme.paint_box(painter, QRectF(self.rect()).adjusted(0.5, 0.5, -0.5, -0.5), fill, line, 1)
         chip, middle = px(CHIP), self.height() / 2
@@ -77,7 +77,7 @@ class VerdictChip(Themed):
             left = px(PADDING) + chip + px(GAP)
             painter.setPen(theme.side_pen(self._side, 2))
             painter.drawLine(left, round(middle), left + px(LINE), round(middle))
-        ink = c.caution_ink if self._verdict is Verdict.WITHHELD else c.ink
+        ink = c.caution_ink if self._verdict is Verdict.NOT_REPORTED else c.ink
         icon = px(ICON)
         box = QRectF(self._icon_left(), middle - icon / 2, icon, icon)
         paint_icon(painter, VERDICT_ICONS[self._verdict], box, ink)

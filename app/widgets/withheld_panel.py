@@ -1,4 +1,4 @@
-"""In place of what is withheld: of which leg, why, and what to do. Hatched, so that nobody takes it for a curve."""
+"""In place of what is not reported: of which leg, why, and what to do. Hatched, so that nobody takes it for a curve."""
 
 from PySide6.QtCore import QRectF, Qt
 from PySide6.QtGui import QAccessible, QBrush, QColor, QPainter, QPaintEvent
@@ -17,7 +17,7 @@ PADDING = 8
 LEAST_WIDTH = 260  # narrower, its sentences have no room in height
 
 
-class WithheldPanel(Themed):
+class NotReportedPanel(Themed):
     """Hidden while there is nothing to say."""
 
     accessible_role = QAccessible.Role.Note
@@ -26,21 +26,21 @@ class WithheldPanel(Themed):
         super().__init__()
         self._look = look
         self.setSizePolicy(QSizePolicy.Policy.Preferred, QSizePolicy.Policy.Preferred)
-        self._word = Text(look, verdict_alone(Verdict.WITHHELD), size=12, weight=SEMIBOLD)
+        self._word = Text(look, verdict_alone(Verdict.NOT_REPORTED), size=12, weight=SEMIBOLD)
         self._why = Text(look, size=12, wraps=True)
         self._row = QHBoxLayout(self)
         self._row.addWidget(Chip(look, side), 0, Qt.AlignmentFlag.AlignVCenter)
         self._row.addWidget(self._word, 0, Qt.AlignmentFlag.AlignVCenter)
         self._row.addWidget(self._why, 1, Qt.AlignmentFlag.AlignVCenter)
         self._on_look_changed()
-        self.tell("")
+        self.show_message("")
 
     @property
     def text(self) -> str:
         return f"{self._word.text()}. {self._why.text()}" if self._why.text() else ""
 
-    def tell(self, why: str) -> None:
-        """Say why; empty: nothing is withheld."""
+    def show_message(self, why: str) -> None:
+        """Say why; empty: nothing is not reported."""
         self._why.setText(why)
         self.setAccessibleName(self.text)
         self.setVisible(bool(why))

@@ -62,7 +62,7 @@ class FetchControl(QObject):
         """What can be done about it; None: nothing has to be."""
         if self.has_failed:
             again = BarAction(tr("Fetch again"), self.go_on, tr("Enter"), Icon.REPEAT)
-            return BarState(primary=again, others=(BarAction(tr("Fetch later"), self.put_off, is_wished=False),))
+            return BarState(primary=again, others=(BarAction(tr("Fetch later"), self.put_off, is_requested=False),))
         return BarState(note=tr("The walk is being fetched.")) if self.is_fetching else None
 
     @property
@@ -112,11 +112,11 @@ def _state(name: str, view: "FetchView") -> LineState:
 def _sentence(view: "FetchView") -> str:
     if not view.sensor:
         return tr("Stopping the sensors and checking what they recorded.")
-    said = tr("{sensor}: {done} of about {of} samples.").format(sensor=view.sensor, done=view.done, of=view.of)
+    stated = tr("{sensor}: {done} of about {of} samples.").format(sensor=view.sensor, done=view.done, of=view.of)
     if view.left_s is None or view.left_s <= SOON_S:
-        return said
+        return stated
     seconds = math.ceil(view.left_s / SOON_S) * round(SOON_S)
-    return said + " " + tr("About {seconds} s left.").format(seconds=seconds)
+    return stated + " " + tr("About {seconds} s left.").format(seconds=seconds)
 
 
 def _share(view: "FetchView", sensors: int) -> float | None:

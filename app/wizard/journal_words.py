@@ -1,16 +1,16 @@
-"""What is said of a recording's journal and of what befell it, every fact of it from the counters of both."""
+"""What is stated about a recording's journal and of what befell it, every fact of it from the counters of both."""
 
 from collections.abc import Mapping
 
-from app.acquisition.heartbeat import Standstill
-from app.storage.journal.disk import TOLD, Trouble
+from app.acquisition.heartbeat import ProcessStall
+from app.storage.journal.disk import REPORTED, Trouble
 from app.storage.journal.writer import SLOW_S, JournalStatus, State
 from app.wizard.losses import NOTHING, Message
 from app.wording.numbers import clock
 from app.wording.translation import tr, tr_n
 
 ENDS = frozenset((Trouble.NO_ROOM, Trouble.DISK_FULL, Trouble.DISK_GONE))  # with these the journal has closed itself
-STANDSTILL_TOLD_S = 15.0
+STANDSTILL_REPORTED_S = 15.0
 SETTLED_S = 1.0  # until what waited at the sources has been read, and what is missing is counted
 
 
@@ -19,11 +19,11 @@ def trouble_message(trouble: Trouble, status: JournalStatus, lost: int = 0) -> M
 
     `lost` counts samples of all sensors that did not come since the recording began.
     """
-    what, remedy = (f"{tr(words)}." for words in TOLD[trouble])
+    what, remedy = (f"{tr(words)}." for words in REPORTED[trouble])
     if trouble is Trouble.DISK_SLOW and not status.dropped_records:
         return _late_message(status, lost, remedy)
     if trouble in (Trouble.DISK_SLOW, Trouble.DROPPED):
-        what, remedy = (f"{tr(words)}." for words in TOLD[Trouble.DROPPED])
+        what, remedy = (f"{tr(words)}." for words in REPORTED[Trouble.DROPPED])
         dropped = tr_n(
             "{count} data packet was lost so far and stays a gap.",
             "{count} data packets were lost so far and stay gaps.",
@@ -49,10 +49,10 @@ def _written(trouble: Trouble, status: JournalStatus) -> str:
     if trouble is Trouble.DISK_GONE:
         return tr("The first {time} are confirmed on the disk.").format(time=clock(status.synced_s))
     if status.dropped_records:
-        said = tr("The first {time} are written; everything after that is lost.")
+        stated = tr("The first {time} are written; everything after that is lost.")
     else:
-        said = tr("The first {time} are written.")
-    return said.format(time=clock(status.written_s))
+        stated = tr("The first {time} are written.")
+    return stated.format(time=clock(status.written_s))
 
 
 def is_written(status: JournalStatus) -> bool:
@@ -85,7 +85,12 @@ def no_row_message(status: JournalStatus) -> Message:
 
 
 def standstill_message(
-    standstill: Standstill, began_s: float, now_s: float, lost: Mapping[str, int], are_heard: bool, are_counted: bool
+    standstill: ProcessStall,
+    began_s: float,
+    now_s: float,
+    lost: Mapping[str, int],
+    are_received: bool,
+    are_counted: bool,
 ) -> Message:
     """Say that the process stood still amid a recording, and what that cost; nothing once it is long past.
 
@@ -95,16 +100,16 @@ def standstill_message(
         The recording's beginning, and now, on the acquisition's clock.
     lost
         How many samples each worn sensor lacks now.
-    are_heard, are_counted
-        Whether all of them have sent since; whether all tell their rate, so that what is missing can be counted.
+    are_received, are_counted
+        Whether all of them have sent since; whether all report their rate, so that what is missing can be counted.
     """
-    if standstill.ended_s < began_s or now_s - standstill.ended_s > STANDSTILL_TOLD_S:
+    if standstill.ended_s < began_s or now_s - standstill.ended_s > STANDSTILL_REPORTED_S:
         return NOTHING
-    said = tr("Gaitwright stalled for {seconds:.0f} s, {time} into the recording.")
+    stated = tr("Gaitwright stalled for {seconds:.0f} s, {time} into the recording.")
     if standstill.was_asleep:
-        said = tr("The computer was asleep for {seconds:.0f} s, {time} into the recording.")
-    what = said.format(seconds=standstill.lasted_s, time=clock(standstill.began_s - began_s))
-    if not are_heard or now_s - standstill.ended_s < SETTLED_S:
+        stated = tr("The computer was asleep for {seconds:.0f} s, {time} into the recording.")
+    what = stated.format(seconds=standstill.lasted_s, time=clock(standstill.began_s - began_s))
+    if not are_received or now_s - standstill.ended_s < SETTLED_S:
         return what, tr("Missing samples are being counted.")
     if any(count > standstill.lost_before.get(name, 0) for name, count in lost.items()):
         # without a figure: live clocks are still settling, and were up to a tenth off the journal's own count

@@ -90,7 +90,7 @@ _OF_CLICKERS = frozenset(
         *(_Key.Key_MediaPlay, _Key.Key_MediaTogglePlayPause, _Key.Key_MediaNext, _Key.Key_MediaPrevious),
     }
 )
-# digits with Shift by their place on the keyboard, as Linux and Windows tell it: what they write is each country's own
+# digits with Shift by their place on the keyboard, as Linux and Windows report it: what they write differs by country
 _FIRST_DIGIT_AT = {"linux": 10, "win32": 2}
 _US_SHIFTED = "!@#$%^&*("
 _BRACKETS = {"[": KeyAction.EARLIER, "]": KeyAction.LATER}  # by what is written: many keyboards have them on AltGr
@@ -150,7 +150,7 @@ class Keys(QObject):
     def __init__(self, root: QWidget, shown: Callable[[], Collection[str]] = tuple) -> None:
         super().__init__(root)
         self._root, self._shown, self._is_running, self._has_clicker = root, shown, False, False
-        self._heard: list[QWidget] = []
+        self._received: list[QWidget] = []
         application = QApplication.instance()
         assert isinstance(application, QApplication)
         application.focusChanged.connect(self._on_focus_changed)
@@ -181,7 +181,7 @@ class Keys(QObject):
             if not event.isAutoRepeat():
                 self.bar_pressed.emit(key)
             return True
-        if event.key() in _ENTER:  # what nobody on its way up from the focus wanted is for the primary verb
+        if event.key() in _ENTER:  # what nobody on its way up from the focus required is for the primary verb
             return watched is self._root.window() and self._emit(Intent(KeyAction.PRIMARY), event)
         if watched is not focused:
             return False
@@ -196,12 +196,12 @@ class Keys(QObject):
         time that a page takes to be made."""
         if not isValid(self._root):
             return  # at the program's end
-        for left in filter(isValid, self._heard):
+        for left in filter(isValid, self._received):
             left.removeEventFilter(self)
-        self._heard = [self._root.window()]
+        self._received = [self._root.window()]
         if focused is not None and focused is not self._root.window():
-            self._heard.append(focused)
-        for widget in self._heard:
+            self._received.append(focused)
+        for widget in self._received:
             widget.installEventFilter(self)
 
     def _bar_key(self, event: QKeyEvent, focused: QWidget) -> str:

@@ -6,8 +6,8 @@ from collections.abc import Mapping, Sequence
 from app.wording.translation import capitalised, name_of, tr, tr_n
 from core.body import Joint, Segment, Side, Site
 
-TOLD_AFTER_S = 2.0
-BACK_TOLD_S = 6.0
+REPORTED_AFTER_S = 2.0
+BACK_REPORTED_S = 6.0
 TOGETHER_S = 2.0  # those that a receiver lost come back one after the other
 
 Message = tuple[str, str]
@@ -15,7 +15,7 @@ NOTHING: Message = "", ""
 
 
 class Losses:
-    """Told how long each sensor has been silent, it remembers for how long one was that is back."""
+    """Reported how long each sensor has been silent, it remembers for how long one was that is back."""
 
     def __init__(self) -> None:
         self._silent_s: dict[Site, float] = {}
@@ -25,14 +25,14 @@ class Losses:
 
     @property
     def silent(self) -> tuple[Site, ...]:
-        """Those that have been silent for long enough to be told."""
+        """Those that have been silent for long enough to be reported."""
         return tuple(site for site in Site if site in self._silent_s)
 
     def update(self, silent_s: Mapping[Site, float], now_s: float) -> tuple[Site, ...]:
-        """Take how long each worn sensor has been silent; returns those that are told from now on."""
+        """Take how long each worn sensor has been silent; returns those that are distinguished from now on."""
         news = []
         for site, seconds in silent_s.items():
-            if seconds >= TOLD_AFTER_S:
+            if seconds >= REPORTED_AFTER_S:
                 if site not in self._silent_s:
                     news.append(site)
                 self._silent_s[site] = seconds
@@ -49,15 +49,15 @@ class Losses:
         """Say it, and what it costs of `joints`, those that have a sensor on both sides."""
         if self._silent_s:
             return self._silent_message(is_recording, joints)
-        if self._back and is_recording and now_s - self._back_s < BACK_TOLD_S:
+        if self._back and is_recording and now_s - self._back_s < BACK_REPORTED_S:
             is_all = 1 < len(self._back) == self._worn
-            said = (
+            stated = (
                 tr("All sensors: signal back after {seconds:.1f} s.")
                 if is_all
                 else tr("{sensor}: signal back after {seconds:.1f} s.")
             )
             names = ", ".join(name_of(site) for site in Site if site in self._back)
-            what = capitalised(said.format(sensor=names, seconds=max(self._back.values())))
+            what = capitalised(stated.format(sensor=names, seconds=max(self._back.values())))
             then = tr("Strides in between are excluded.")
             return what, tr("Only hip angles are missing in between.") if set(self._back) == {Site.PELVIS} else then
         return NOTHING
@@ -88,12 +88,12 @@ class Losses:
             missing = ", ".join([*lost, *feet])
             then = tr("Recording continues. Missing until the signal is back: {missing}.").format(missing=missing)
         elif lost:
-            said = tr_n(
+            stated = tr_n(
                 "Switch the sensor off and on, or continue without these angles: {joints}.",
                 "Switch the sensors off and on, or continue without these angles: {joints}.",
                 count,
             )
-            then = said.format(joints=", ".join(lost))
+            then = stated.format(joints=", ".join(lost))
         else:
             then = tr_n(
                 "Switch the sensor off and on, or continue without it.",

@@ -19,7 +19,7 @@ from devices.live import SourceRefusedError
 if TYPE_CHECKING:
     from devices.live import SourceLostError
 
-SURE_S = 2.0  # of fetching, before it is told how long the rest will take
+SURE_S = 2.0  # of fetching, before it is given how long the rest will take
 
 
 @dataclass(frozen=True, slots=True)
@@ -29,7 +29,7 @@ class FetchView:
     Attributes
     ----------
     sensor
-        Which is sending now; empty while they are still told to end.
+        Which is sending now; empty while they are still asked to end.
     done, of
         Its samples, and about how many there are.
     left_s

@@ -87,7 +87,7 @@ class ReadingBack(QObject):
         return unread_message((self._next or self._waiting[0]).recorder.status, is_tried_again=True)
 
     def add(self, stopped: StoppedRecording) -> None:
-        """Read it back once `begin` is said, or it has been fetched."""
+        """Read it back once `begin` is stated, or it has been fetched."""
         self._waiting.append(stopped)
 
     def begin(self) -> None:
@@ -96,7 +96,7 @@ class ReadingBack(QObject):
             self._read_next()
 
     def leave_in_sensors(self) -> None:
-        """Close the journals of what is still to be fetched: it does not count until it is fetched anew."""
+        """Close the journals of what is still to be fetched: it does not count until it is fetched again."""
         left = self._fetches.give_up()
         self._waiting = [one for one in self._waiting if one.recorder not in left]
         for recorder in left:

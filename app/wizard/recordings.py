@@ -14,7 +14,7 @@ from app.acquisition.recorder import Recorder
 from app.editing.recordings import RecordingEdits
 from app.editing.session_recording import Ongoing, SessionRecording, counted
 from app.storage.edited_fields import recording_fields
-from app.storage.journal.disk import TOLD, Trouble
+from app.storage.journal.disk import REPORTED, Trouble
 from app.storage.stored import StoredRecording, StoredSession
 from app.wizard.journal_words import (
     ENDS,
@@ -139,19 +139,19 @@ class SessionRecordings(QObject):
         return self._of(RecordingKind.WALKING)
 
     @property
-    def told(self) -> tuple[Recording, ...]:
-        """What is told of all of them, in order of time, the one that goes on included."""
+    def reported(self) -> tuple[Recording, ...]:
+        """What is given of all of them, in order of time, the one that goes on included."""
         ongoing = (self.ongoing.details,) if self.ongoing is not None else ()
         return (*(recording.details for recording in self.every), *ongoing)
 
     @property
     def shown_names(self) -> dict[str, ShownName]:
         """What each is called on the screen, by its name."""
-        told = {one.name: one for one in (*self.told[: len(self.every)], *self.in_sensors, *self.told)}
-        return shown_names(tuple(told.values()))
+        reported = {one.name: one for one in (*self.reported[: len(self.every)], *self.in_sensors, *self.reported)}
+        return shown_names(tuple(reported.values()))
 
     def find(self, recording_id: UUID) -> SessionRecording | None:
-        """One that has ended, as it stands on the screen."""
+        """One that has ended, as it is on the screen."""
         return next((one for one in self.every if one.id == recording_id), None)
 
     def called(self, name: str) -> str:
@@ -174,7 +174,7 @@ class SessionRecordings(QObject):
 
     @property
     def is_restrapped(self) -> bool:
-        """Whether sensors were strapped anew since the last recording: what was calibrated holds no longer."""
+        """Whether sensors were strapped again since the last recording: what was calibrated holds no longer."""
         return self._is_restrapped
 
     @property
@@ -191,14 +191,14 @@ class SessionRecordings(QObject):
 
     @property
     def must_move(self) -> bool:
-        """Whether sensors were strapped anew, and the free motion that this asks for is still to come."""
+        """Whether sensors were strapped again, and the free motion that this asks for is still to come."""
         return not self.has_moved and (
             self._is_restrapped or any(recording.details.is_restrapped_before for recording in self.every)
         )
 
     @property
     def since_strapped(self) -> tuple[SessionRecording, ...]:
-        """All recordings since sensors were strapped last: what is said now of who wears what holds for these."""
+        """All recordings since sensors were strapped last: what is stated now of who wears what holds for these."""
         if self._is_restrapped:
             return ()
         strapped = [number for number, recording in enumerate(self.every) if recording.details.is_restrapped_before]
@@ -235,7 +235,7 @@ class SessionRecordings(QObject):
         if self.session is None or self.ongoing is not None:
             raise RuntimeError("a recording needs a session, and is made one at a time")
         name = self._new_name(kind)
-        told = Recording(
+        reported = Recording(
             name=name,
             kind=kind,
             folder=name.replace(" ", "_"),
@@ -246,7 +246,7 @@ class SessionRecordings(QObject):
             alignment=alignment,
             test=test,
         )
-        self.ongoing = Ongoing(told, acquisition.now_s)
+        self.ongoing = Ongoing(reported, acquisition.now_s)
         if self._phase is not RecordingPhase.CLOSED:
             self._phase = RecordingPhase.BEGINNING
         self._must_keep, self._strides = True, None
@@ -258,7 +258,7 @@ class SessionRecordings(QObject):
         def start(opened: "OpenedLibrary", turn: "Future[None]") -> Recorder:
             try:
                 memory = fetched[0] if fetched is not None else None
-                recorder = Recorder.begin(opened, acquisition, session_id, told, self.meet, turn, fetched=memory)
+                recorder = Recorder.begin(opened, acquisition, session_id, reported, self.meet, turn, fetched=memory)
                 begun.set_result(recorder)
             except BaseException as error:
                 begun.set_exception(error)
@@ -369,31 +369,32 @@ class SessionRecordings(QObject):
         self.changed.emit()
 
     def keep(self, recording: SessionRecording, is_kept: bool) -> None:
-        """Say whether a recording counts; nothing is deleted, and it can be said anew at any time."""
+        """Say whether a recording counts; nothing is deleted, and it can be stated again at any time."""
         if recording.details.is_restrapped_before and not is_kept and recording.id == self.every[-1].id:
             self._is_restrapped = True  # what comes next is the first that counts
         is_asked = recording.stored.is_unjudged or not recording.stored.is_decided
         self._put(replace(recording, is_decided=True))
         if is_asked and not self._edits.is_saving(recording.id):
             self._edits.decide(recording.id, is_kept)
-        else:  # also where it seems to be so already: what was said a moment before may still be on its way
-            self.change(recording, lambda told: replace(told, is_kept=is_kept))
+        else:  # also where it seems to be so already: what was stated a moment before may still be on its way
+            self.change(recording, lambda reported: replace(reported, is_kept=is_kept))
 
     def ask_again(self, recording: SessionRecording) -> None:
-        """Ask once more on this screen whether a recording is kept; until that is answered it stays as it was said."""
+        """Ask once more on this screen whether a recording is kept; until that is answered it stays as it was
+        stated."""
         self._put(replace(recording, is_decided=False))
 
-    def said(self, recording: SessionRecording) -> Recording:
-        """What is told of a recording, the last word of it on the screen."""
-        return self._edits.said(self.find(recording.id) or recording)
+    def stated(self, recording: SessionRecording) -> Recording:
+        """What is given of a recording, the last word of it on the screen."""
+        return self._edits.stated(self.find(recording.id) or recording)
 
     def change(self, recording: SessionRecording, corrected: Callable[[Recording], Recording]) -> None:
-        """Correct what was told of a recording; `changed` follows.
+        """Correct what was given of a recording; `changed` follows.
 
         `corrected` is given the last word of it on the screen. What another station changed of the same meanwhile is
-        merged and told, or `asked` about.
+        merged and reported, or `asked` about.
         """
-        shown = self.said(recording)
+        shown = self.stated(recording)
         self._edits.save(recording.id, recording_fields(shown), recording_fields(corrected(shown)))
 
     def counted(self) -> tuple[Recording, ...]:
@@ -411,7 +412,7 @@ class SessionRecordings(QObject):
         return next(name for name in [first, *(f"{word} {k}" for k in range(2, 10_000))] if name not in taken)
 
     def _put(self, recording: SessionRecording) -> None:
-        """Show it as it stands now; a new one in the order of beginning, which that of their ids is."""
+        """Show it as it is now; a new one in the order of beginning, which that of their ids is."""
         if any(other.id == recording.id for other in self.every):
             self.every = tuple(recording if other.id == recording.id else other for other in self.every)
         else:
@@ -461,7 +462,7 @@ class SessionRecordings(QObject):
 
     def _moved(self) -> Message:
         """Say where the recording is kept while its library is gone, or cannot be written."""
-        what, remedy = TOLD[Trouble.MOVED]
+        what, remedy = REPORTED[Trouble.MOVED]
         shelter = self._controller.state.library.shelter if self._controller.state is not None else None
         place = shelter.folder if shelter is not None else ""
         return f"{tr(what)}.", f"{tr(remedy)}.".format(shelter=place)
@@ -478,10 +479,10 @@ class SessionRecordings(QObject):
     @Slot(str, str, bool)
     def _on_not_read(self, what: str, where: str, is_news: bool) -> None:
         """What was recorded is on the disk; the next may begin."""
-        must_tell = is_news or self._phase is RecordingPhase.STOPPING
+        must_show = is_news or self._phase is RecordingPhase.STOPPING
         self._go_on()
         self.changed.emit()
-        if must_tell:
+        if must_show:
             self.refused.emit(what, where)
 
     def _on_waited(self) -> None:
@@ -490,7 +491,7 @@ class SessionRecordings(QObject):
         self.refused.emit(tr("The recording is not loaded yet."), self._reading_back.where)
 
     def _on_not_halted(self, _what: str, _remedy: str) -> None:
-        """Whoever reads it back meets the same, and tells."""
+        """Whoever reads it back meets the same, and reports."""
 
     @Slot(object)
     def _on_saved(self, stored: StoredRecording) -> None:

@@ -55,12 +55,12 @@ def read_analysed(opened: "OpenedLibrary", session_id: UUID, report: Report) -> 
     Strides left out by hand are left out.
     """
     results, stored = opened.library.results, opened.library.sessions.get(session_id)
-    told = evaluated(stored, read_recordings(opened, stored))
-    known = find_analysis(results, session_id, told)
+    reported = evaluated(stored, read_recordings(opened, stored))
+    known = find_analysis(results, session_id, reported)
     if known is None:
-        known = analyse(bare(told), progress=report)
-        keep_analysis(results, session_id, told, known)
-    return _keep_course(opened, stored, told, known)
+        known = analyse(bare(reported), progress=report)
+        keep_analysis(results, session_id, reported, known)
+    return _keep_course(opened, stored, reported, known)
 
 
 def session_to_analyse(opened: "OpenedLibrary", session_id: UUID) -> "tuple[Session, Callable[[bytes], None]] | None":
@@ -69,37 +69,37 @@ def session_to_analyse(opened: "OpenedLibrary", session_id: UUID) -> "tuple[Sess
     What the patient's course needs is kept with it. Raises as `exchange.session_with_samples`.
     """
     stored = opened.library.sessions.get(session_id)
-    told = evaluated(stored, read_recordings(opened, stored))
-    known = find_analysis(opened.library.results, session_id, told)
+    reported = evaluated(stored, read_recordings(opened, stored))
+    known = find_analysis(opened.library.results, session_id, reported)
     if known is not None:
-        _keep_course(opened, stored, told, known)
+        _keep_course(opened, stored, reported, known)
         return None
-    without_samples, inputs = without_imu(told), inputs_of(told)
+    without_samples, inputs = without_imu(reported), inputs_of(reported)
 
     def keep(content: bytes) -> None:
         opened.library.results.keep(session_id, ResultKind.ANALYSIS, inputs, FORMAT, content)
         _keep_course(opened, stored, without_samples, unpacked(content))
 
-    return told, keep
+    return reported, keep
 
 
-def without_imu(told: Session) -> Session:
-    return replace(told, recordings=tuple(replace(recording, imu={}) for recording in told.recordings))
+def without_imu(reported: Session) -> Session:
+    return replace(reported, recordings=tuple(replace(recording, imu={}) for recording in reported.recordings))
 
 
 def _keep_course(
-    opened: "OpenedLibrary", stored: StoredSession, told: Session, known: "Analysis"
+    opened: "OpenedLibrary", stored: StoredSession, reported: Session, known: "Analysis"
 ) -> "tuple[Session, Analysis]":
-    """Keep what stands of a session in the course; the session without its samples, and what may be shown of it."""
-    without_samples = without_imu(told)
-    analysis = leave_out(known, told.recordings)
+    """Keep what is of a session in the course; the session without its samples, and what may be shown of it."""
+    without_samples = without_imu(reported)
+    analysis = leave_out(known, reported.recordings)
     key = course_key(without_samples, stored.recordings)
-    keep_course(opened.library.courses, stored.id, key, course_of(analysis, told.recordings))
+    keep_course(opened.library.courses, stored.id, key, course_of(analysis, reported.recordings))
     return without_samples, analysis
 
 
 def current_course_key(session: StoredSession) -> str:
-    """The key that what is kept of a session's course has to have, to hold as the session is told now."""
+    """The key that what is kept of a session's course has to have, to hold as the session is reported now."""
     read_back = tuple(SessionRecording(one, one.details) for one in session.recordings if one.state in USABLE)
     return course_key(evaluated(session, read_back), session.recordings)
 
@@ -137,11 +137,11 @@ def evaluated(session: StoredSession, recordings: Sequence[SessionRecording]) ->
     return with_limits(replace(session.details, recordings=counted(recordings)), session.limits)
 
 
-def with_limits(told: Session, limits: Limits) -> Session:
-    """With what no sensor shows of the patient's body, to be said wherever the results are."""
+def with_limits(reported: Session, limits: Limits) -> Session:
+    """With what no sensor shows of the patient's body, to be stated wherever the results are."""
     rigid = [joint for joint in LEG_JOINTS if not joint.is_knee and joint.side in limits.without_ankle]
-    said = tuple(Finding("foot_against_shank", Severity.INFO, str(joint)) for joint in rigid)
-    return replace(told, findings=(*told.findings, *said))
+    stated = tuple(Finding("foot_against_shank", Severity.INFO, str(joint)) for joint in rigid)
+    return replace(reported, findings=(*reported.findings, *stated))
 
 
 def read_recordings(opened: "OpenedLibrary", session: StoredSession) -> tuple[SessionRecording, ...]:
@@ -158,7 +158,7 @@ def read_recordings(opened: "OpenedLibrary", session: StoredSession) -> tuple[Se
 
 
 def rests_of(recordings: Sequence[SessionRecording]) -> "dict[str, Rest]":
-    """What each sensor reads at rest, by its name, as the latest standing tells."""
+    """What each sensor reads at rest, by its name, as the latest standing reports."""
     rests: dict[str, Rest] = {}
     for recording in recordings:
         if (

@@ -19,7 +19,7 @@ from devices.live import SourceLostError, SourceRefusedError
 if TYPE_CHECKING:
     from devices.dot.source import DotGroup
 
-SOON_S = 5.0  # so finely, and no later, it is told how long it takes still
+SOON_S = 5.0  # so finely, and no later, it is given how long it takes still
 REASONS = {
     SyncFailure.LOST: later("out of range"),
     SyncFailure.STAYS: later("keeps its old clock"),
@@ -30,7 +30,7 @@ REASONS = {
     SyncFailure.UNKNOWN: later("gives no result"),
     SyncFailure.NOT_BACK: later("did not reconnect"),
     SyncFailure.SILENT: later("does not start measuring"),
-    SyncFailure.NOT_HEARD: later("no signal"),
+    SyncFailure.NOT_RECEIVED: later("no signal"),
     SyncFailure.CUT: later("its data arrive incomplete: use another Bluetooth adapter"),
     SyncFailure.OTHER_CLOCK: later("its clock differs"),
 }
@@ -71,7 +71,7 @@ class SensorSync(QObject):
         super().__init__(parent)
         self.purpose = SyncPurpose.STREAMS
         self.view = SyncView()
-        self._told: tuple[SyncStage, str, float] | None = None  # by the links' thread
+        self._reported: tuple[SyncStage, str, float] | None = None  # by the links' thread
         self._total_s = 0.0
         self._error: Exception | None = None
         self._is_over = threading.Event()
@@ -107,8 +107,8 @@ class SensorSync(QObject):
         if error is None:
             return "", ""
         if isinstance(error, NotSynchronisedError):
-            said = [f"{name} ({tr(REASONS[why])})" for name, why in error.failed.items()]
-            what = tr("Not synchronised: {sensors}.").format(sensors=", ".join(said))
+            stated = [f"{name} ({tr(REASONS[why])})" for name, why in error.failed.items()]
+            what = tr("Not synchronised: {sensors}.").format(sensors=", ".join(stated))
             return what, tr(
                 "Place all sensors side by side near this computer. Switch these off and on, then try again."
             )
@@ -120,7 +120,7 @@ class SensorSync(QObject):
 
     def start(self, group: "DotGroup", purpose: SyncPurpose, before: Callable[[], None] = lambda: None) -> None:
         """Make them ready; `before` is waited for, beside the screen."""
-        self.purpose, self.view, self._told, self._error, self._total_s = purpose, SyncView(), None, None, 0.0
+        self.purpose, self.view, self._reported, self._error, self._total_s = purpose, SyncView(), None, None, 0.0
         wait_for_last, self._is_over = self.over(), threading.Event()
         is_over = self._is_over
 
@@ -142,7 +142,7 @@ class SensorSync(QObject):
 
             wait()
             make = group.make_ready_to_record if purpose is SyncPurpose.MEMORIES else group.stream_again
-            make(self._tell, tick)
+            make(self._show_message, tick)
 
         self._background.start(work)
         self.changed.emit()
@@ -157,7 +157,7 @@ class SensorSync(QObject):
         self.changed.emit()
 
     def forget(self) -> None:
-        """Nobody is told of the last failure any more."""
+        """Nobody is given of the last failure any more."""
         if self._error is not None:
             self._error = None
             self.changed.emit()
@@ -166,13 +166,13 @@ class SensorSync(QObject):
         """Wait for the thread, at the end of the program."""
         self._background.finish()
 
-    def _tell(self, stage: SyncStage, sensor: str, left_s: float) -> None:
-        self._told = stage, sensor, left_s
+    def _show_message(self, stage: SyncStage, sensor: str, left_s: float) -> None:
+        self._reported = stage, sensor, left_s
 
     def _on_progressed(self, _share: float, _what: str) -> None:
-        if self._told is None:
+        if self._reported is None:
             return
-        stage, sensor, left_s = self._told
+        stage, sensor, left_s = self._reported
         before = self.view
         is_again = stage is SyncStage.PREPARING and before.stage is not SyncStage.PREPARING
         attempt = before.attempt + is_again

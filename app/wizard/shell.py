@@ -29,7 +29,7 @@ LOW_BELOW = 480  # of the window, px of the design: tiles would leave the page n
 class StripMode(Enum):
     """FOLDED: a button in the header, which unfolds by itself when a sensor turns bad.
 
-    Where the window is too low for tiles, SHOWN is folded too, and nothing unfolds by itself: the button says it.
+    Where the window is too low for tiles, SHOWN is folded too, and nothing unfolds by itself: the button states it.
     """
 
     SHOWN = auto()
@@ -43,7 +43,7 @@ class WizardShell(Themed):
     Signals
     -------
     room_changed
-        Whether the window is compact, and the width and height that a page has, in px of the design. Told when the
+        Whether the window is compact, and the width and height that a page has, in px of the design. Reported when the
         room or the page is another one.
     """
 
@@ -108,7 +108,7 @@ class WizardShell(Themed):
             self._pages.setCurrentWidget(page)
             self._scroll.verticalScrollBar().setValue(0)
             self._scroll.horizontalScrollBar().setValue(0)
-        self._tell_room()
+        self._show_room()
         self._chain()
         self._focus_page()
 
@@ -164,7 +164,7 @@ class WizardShell(Themed):
         if event.type() in (QEvent.Type.Resize, QEvent.Type.Show, QEvent.Type.Move):
             if watched is self._scroll.viewport():
                 self._fade.setGeometry(self._scroll.viewport().rect())
-                self._tell_room()
+                self._show_room()
             else:
                 self._place_toast()
         return super().eventFilter(watched, event)
@@ -232,9 +232,9 @@ class WizardShell(Themed):
             self.header.fold.setChecked(False)
             self._show_strip()
         self._place_toast()
-        self._tell_room()
+        self._show_room()
 
-    def _tell_room(self) -> None:
+    def _show_room(self) -> None:
         if self.page is None:
             return
         scale = self._look.theme.scale
@@ -300,7 +300,7 @@ class WizardShell(Themed):
     def _on_recording_changed(self, is_recording: bool) -> None:
         """Keep the banner's place free while recording: what is read then must not jump.
 
-        A page that has a place of its own for what is said while recording needs no second one.
+        A page that has a place of its own for what is stated while recording needs no second one.
         """
         policy = self.banner.sizePolicy()
         policy.setRetainSizeWhenHidden(is_recording and not getattr(self.page, "keeps_place_for_messages", False))

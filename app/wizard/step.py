@@ -36,13 +36,13 @@ class Step(QObject):
         The bar, or the step's row in the rail, is another one now.
     done
         Nothing is left to do here: the wizard goes on to the next step.
-    told
+    reported
         What happened, and what follows or what to do: for the banner. Empty: the last word no longer holds.
     jumped
         Another step, by its StepId, is where to go on.
     offered
         Something was done that can be undone: what, for the toast; `undo` takes it back.
-    demonstration_wanted
+    demonstration_required
         A visit of the demonstration's patient is to begin in place of this one.
     """
 
@@ -51,9 +51,9 @@ class Step(QObject):
     changed = Signal()
     done = Signal()
     jumped = Signal(object)
-    told = Signal(str, str)
+    reported = Signal(str, str)
     offered = Signal(str)
-    demonstration_wanted = Signal()
+    demonstration_required = Signal()
 
     def __init__(self, look: ThemeNotifier, visit: "Visit", parent: QObject | None = None) -> None:
         super().__init__(parent)
@@ -121,7 +121,7 @@ class Step(QObject):
         """Called 30 times a second while it is in sight: show what is live."""
 
     def bar(self) -> BarState:
-        """What can be done now: each action says what it does, and does it."""
+        """What can be done now: each action states what it does, and does it."""
         raise NotImplementedError
 
     def on_intent(self, intent: Intent) -> bool:

@@ -1,4 +1,4 @@
-"""One session in progress: whose it is, what is worn, what was recorded, and what that tells.
+"""One session in progress: whose it is, what is worn, what was recorded, and what that reports.
 
 It lives on the screen's thread. Steps read it and ask it; it knows no page. What takes long is done by the library's
 controller or beside the screen, and comes back as a signal.
@@ -76,7 +76,7 @@ class Visit(QObject):
     """
 
     changed = Signal()
-    changed_elsewhere = Signal()  # by another station of the clinic: what stands here is as it was before
+    changed_elsewhere = Signal()  # by another station of the clinic: what is here is as it was before
     deleted_elsewhere = Signal(str, str)
     resumed = Signal()
     earlier_read = Signal(object)
@@ -109,7 +109,7 @@ class Visit(QObject):
         self.comparing = Background(self)
         """Compares the session with an optical system."""
         self.rests: dict[str, Rest] = {}
-        """What each sensor, by name, reads while the patient stands; empty until then."""
+        """What each sensor, by name, reads while the patient is; empty until then."""
         self.placement_before: dict[str, Site] = {}
         """Site by the sensor's name as at the last visit, where the same set-up was asked for."""
         self._began_s: float | None = None
@@ -144,7 +144,7 @@ class Visit(QObject):
 
     @property
     def elapsed_s(self) -> float | None:
-        """Since the session began; it stands still once the results are looked at. None: looked at only."""
+        """Since the session began; it is still once the results are looked at. None: looked at only."""
         if self._began_s is None:
             return None
         return (self._now_s() if self._ended_s is None else self._ended_s) - self._began_s
@@ -164,13 +164,13 @@ class Visit(QObject):
 
     @property
     def details(self) -> Session:
-        """What was said about the session, the last word of it on the screen; without recordings."""
-        return self.record.told
+        """What was stated about the session, the last word of it on the screen; without recordings."""
+        return self.record.reported
 
     @property
     def prosthetic_sides(self) -> frozenset[Side]:
-        said = self.patient.details.prosthetic_side
-        return frozenset(side for side in Side if said in (side, "both"))
+        stated = self.patient.details.prosthetic_side
+        return frozenset(side for side in Side if stated in (side, "both"))
 
     @property
     def without_ankle(self) -> frozenset[Side]:
@@ -198,8 +198,8 @@ class Visit(QObject):
         acquisition = self.sensors.acquisition
         if acquisition is None or not acquisition.is_simulated or self.may_simulate:
             return ""
-        said = tr("These sensors are simulated and {code} is not a demonstration patient. Nothing would be recorded.")
-        return said.format(code=self.patient.details.code)
+        stated = tr("These sensors are simulated and {code} is not a demonstration patient. Nothing would be recorded.")
+        return stated.format(code=self.patient.details.code)
 
     @property
     def cannot_calibrate(self) -> str:
@@ -216,12 +216,12 @@ class Visit(QObject):
 
     @property
     def choices(self) -> tuple[SourceChoice, ...]:
-        """What this patient's sensors can be heard through."""
+        """What this patient's sensors can be received through."""
         offered = [choice for choice in self.known_choices if self.may_simulate or not choice.is_simulated]
         return tuple(choice.for_sides(self.prosthetic_sides) for choice in offered)
 
     def place_sensors(self, only: Side | None = None) -> None:
-        """Tell the library who wears what: what is recorded next takes it, all of it or that of one leg."""
+        """Report the library who wears what: what is recorded next takes it, all of it or that of one leg."""
         if self.session is None:
             return
         session_id = self.session.id
@@ -234,10 +234,10 @@ class Visit(QObject):
         self._controller.run(place, self.record.take, self._on_refused, self)
 
     def _note_lost_clocks(self) -> None:
-        """Where sensors were told to be on one clock and some are not any more, tell the library so."""
-        told = self.session.details.sensors if self.session is not None else {}
+        """Where sensors were given to be on one clock and some are not any more, report the library so."""
+        reported = self.session.details.sensors if self.session is not None else {}
         worn = self.sensors.placed()
-        if any(one.info.clock == "" and site in told and told[site].clock for site, one in worn.items()):
+        if any(one.info.clock == "" and site in reported and reported[site].clock for site, one in worn.items()):
             self.place_sensors()
 
     def resume(self, session_id: UUID) -> None:
@@ -260,7 +260,7 @@ class Visit(QObject):
 
         self._controller.run(read, self._on_looked, self._on_not_looked, self)
 
-    def read_anew(self) -> None:
+    def read_again(self) -> None:
         """Show the session as the library has it now; sensors stay."""
         if self.session is None or not self.recordings.is_idle:
             return
@@ -296,18 +296,18 @@ class Visit(QObject):
         return False
 
     def evaluate(self, with_walk: Recording | None = None) -> None:
-        """Find out what the recordings tell, with a walk that still goes on; `evaluation.done` follows."""
+        """Find out what the recordings report, with a walk that still goes on; `evaluation.done` follows."""
         recordings = self.recordings.counted() + ((with_walk,) if with_walk is not None else ())
         if any(recording.kind is not RecordingKind.STANDING for recording in recordings):
             sensors = self.session.details.sensors if self.session is not None else {}
-            told = with_limits(
+            reported = with_limits(
                 replace(self.details, sensors=sensors, is_simulated=self.is_simulated), self.record.limits
             )
             self._kept_results.is_partial = with_walk is not None
-            self.evaluation.ask(replace(told, recordings=recordings))
+            self.evaluation.ask(replace(reported, recordings=recordings))
 
     def evaluate_if_stale(self) -> None:
-        """Find it out anew where other recordings count, or other samples of them, than when it was found out."""
+        """Find it out again where other recordings count, or other samples of them, than when it was found out."""
         recordings, evaluated = self.recordings.counted(), self.evaluation.session
         is_stale = evaluated is None or not _are_same(evaluated.recordings, recordings)
         if recordings and is_stale and not self.evaluation.is_busy:
@@ -351,7 +351,8 @@ class Visit(QObject):
 
     @property
     def is_saving(self) -> bool:
-        """Whether the library is still to be told, or to answer, what was said of the session and its patient."""
+        """Whether the library is still to be reported, or to answer, what was stated about the session and its
+        patient."""
         return self.record.is_busy or self.worn.is_busy or self.patient.is_saving
 
     def finish(self) -> None:
@@ -379,12 +380,12 @@ class Visit(QObject):
         self.asked.emit(question)
 
     def _on_held(self) -> None:
-        """Find out anew what the recordings tell, where it was found out with other limits, zeros or signs."""
+        """Find out again what the recordings report, where it was found out with other limits, zeros or signs."""
         evaluated, session = self.evaluation.session, self.session
         if evaluated is None or session is None:
             return
-        told = with_limits(session.details, session.limits)
-        if (*_by_hand(evaluated), evaluated.findings) != (*_by_hand(told), told.findings):
+        reported = with_limits(session.details, session.limits)
+        if (*_by_hand(evaluated), evaluated.findings) != (*_by_hand(reported), reported.findings):
             self.evaluate()
 
     def _on_record_changed(self) -> None:
@@ -396,7 +397,7 @@ class Visit(QObject):
         self._put_recordings(session, recordings)
 
     def _on_read(self, read: tuple[StoredSession, tuple[SessionRecording, ...]]) -> None:
-        """Go on from what the library holds now; nothing that is said here still waits to be saved."""
+        """Go on from what the library holds now; nothing that is stated here still waits to be saved."""
         session, recordings = read
         self.record.take_instead(session)
         self._put_recordings(session, recordings)
@@ -484,9 +485,9 @@ class Visit(QObject):
         self.changed.emit()
 
 
-def _by_hand(told: Session) -> tuple[dict[Joint, float], dict[Joint, int]]:
-    """What was said of the joints, zeros and signs."""
-    return dict(told.zero_rad), dict(told.turned_sign)
+def _by_hand(reported: Session) -> tuple[dict[Joint, float], dict[Joint, int]]:
+    """What was stated about the joints, zeros and signs."""
+    return dict(reported.zero_rad), dict(reported.turned_sign)
 
 
 def _day(moment: str) -> str:

@@ -1,4 +1,4 @@
-"""What is to be said of a walk, while it goes on and once it has stopped, apart from sensors that fall silent."""
+"""What is to be stated about a walk, while it goes on and once it has stopped, apart from sensors that fall silent."""
 
 from collections.abc import Collection, Mapping, Sequence
 from typing import TYPE_CHECKING
@@ -17,7 +17,7 @@ STRIDES_FOR_SPREAD = 10
 
 
 def slip_message(slips: Sequence[Slip], began_s: float) -> Message:
-    """Tell of the latest strap that slipped since the walk began."""
+    """Report of the latest strap that slipped since the walk began."""
     since = [slip for slip in slips if slip.from_s > began_s]
     if not since:
         return NOTHING
@@ -29,14 +29,14 @@ def slip_message(slips: Sequence[Slip], began_s: float) -> Message:
 
 
 def implausible_message(joints: Sequence[Joint]) -> Message:
-    """Tell of angles that no joint has, and are not shown."""
+    """Report of angles that no joint has, and are not shown."""
     names = ", ".join(name_of(joint) for joint in joints)
     what = tr("{joints}: angle beyond \N{MINUS SIGN}40\N{DEGREE SIGN} to 160\N{DEGREE SIGN}, not shown.")
     return what.format(joints=capitalised(names)), tr("Check the sensor positions, then record the free motion again.")
 
 
 def bias_message(corrections: Sequence[BiasCorrection]) -> Message:
-    """Tell of the latest gyroscope whose bias from standing was wrong."""
+    """Report of the latest gyroscope whose bias from standing was wrong."""
     if not corrections:
         return NOTHING
     what = tr("The gyroscope offset of the {site} sensor was wrong and is now corrected.")
@@ -71,8 +71,8 @@ def no_foot_message(worn: Collection[Site]) -> Message:
 def recovered_message(walk: str, seconds: float) -> Message:
     """Say how much of a walk the journal holds, and what the end of the program may have cost besides."""
     recovered = tr("{time} of {walk} was recovered, up to the last record on disk.")
-    said, look = recovered.format(time=clock(seconds), walk=walk), tr("Review it, then include or exclude it.")
-    return tr("The program closed during recording."), f"{said} {look} {recovery_costs()}"
+    stated, look = recovered.format(time=clock(seconds), walk=walk), tr("Review it, then include or exclude it.")
+    return tr("The program closed during recording."), f"{stated} {look} {recovery_costs()}"
 
 
 def recovery_costs() -> str:
@@ -93,8 +93,8 @@ def lacks_message(walk: str, lacks: "Sequence[Lack]") -> Message:
         return what, tr("Its button was pressed or its memory is full. Angles from this sensor end there.")
     lost = [one for one in lacks if one.lost]
     if lost:
-        said = ", ".join(f"{one.sensor} {one.lost}" for one in lost)
-        what = tr("Samples of {walk} could not be fetched: {sensors}.").format(walk=walk, sensors=said)
+        stated = ", ".join(f"{one.sensor} {one.lost}" for one in lost)
+        what = tr("Samples of {walk} could not be fetched: {sensors}.").format(walk=walk, sensors=stated)
         return what, tr("They are missing here. The sensors keep the recording until their memory is erased.")
     if lacks:
         what = tr("{sensor} did not report the end of {walk}.").format(sensor=lacks[0].sensor, walk=walk)
@@ -117,10 +117,10 @@ def few_strides_message(counts: Mapping[Side, int]) -> Message:
     left, right = (counts.get(side, STRIDES_FOR_SPREAD) for side in Side)
     if min(left, right) >= STRIDES_FOR_SPREAD:
         return NOTHING
-    said = tr("Only {left} left and {right} right strides; a standard deviation needs {wanted}.")
+    stated = tr("Only {left} left and {right} right strides; a standard deviation needs {required}.")
     if left >= STRIDES_FOR_SPREAD:
-        said = tr("Only {right} right strides; a standard deviation needs {wanted}.")
+        stated = tr("Only {right} right strides; a standard deviation needs {required}.")
     elif right >= STRIDES_FOR_SPREAD:
-        said = tr("Only {left} left strides; a standard deviation needs {wanted}.")
-    what = said.format(left=left, right=right, wanted=STRIDES_FOR_SPREAD)
+        stated = tr("Only {left} left strides; a standard deviation needs {required}.")
+    what = stated.format(left=left, right=right, required=STRIDES_FOR_SPREAD)
     return what, tr("Record another walk, or continue without a standard deviation.")

@@ -57,8 +57,8 @@ class Wizard(QWidget):
     """One visit at a time; beginning another closes the one before."""
 
     left = Signal()
-    help_wanted = Signal(str)
-    settings_wanted = Signal()
+    help_required = Signal(str)
+    settings_required = Signal()
 
     def __init__(self, look: ThemeNotifier, controller: LibraryController, settings: Settings) -> None:
         super().__init__()
@@ -71,7 +71,7 @@ class Wizard(QWidget):
         self._ticks = 0
         self._to_resume: UUID | None = None  # a session that waits for what visits before still save
         self._deaf_until_s = 0.0
-        self._told_of_recording: Message = NOTHING
+        self._reported_of_recording: Message = NOTHING
         self.shell = WizardShell(look)
         column = QVBoxLayout(self)
         column.setContentsMargins(0, 0, 0, 0)
@@ -128,7 +128,7 @@ class Wizard(QWidget):
         self._on_resume_due()
 
     def _on_resume_due(self) -> None:
-        """Take up the session once what was said in visits before is saved, else that would seem to be another's."""
+        """Take up the session once what was stated in visits before is saved, else that would seem to be another's."""
         if self._to_resume is not None and self._visit is not None and not any(one.is_saving for one in self._closing):
             session_id, self._to_resume = self._to_resume, None
             self._visit.resume(session_id)
@@ -178,7 +178,7 @@ class Wizard(QWidget):
         shell.bar.pressed.connect(self._on_bar_pressed)
         shell.bar.sound_pressed.connect(self._on_sound_pressed)
         shell.toast.undone.connect(self._on_undo)
-        shell.banner.acted.connect(self._on_new_state_wished)
+        shell.banner.acted.connect(self._on_new_state_requested)
         shell.room_changed.connect(self._on_room_changed)
         self._keys.pressed.connect(self.act_on)
         self._keys.bar_pressed.connect(shell.bar.press)
@@ -207,16 +207,16 @@ class Wizard(QWidget):
             step.changed.connect(self._on_step_changed)
             step.done.connect(self._on_step_done)
             step.jumped.connect(self.go_to)
-            step.told.connect(self._tell)
+            step.reported.connect(self._show_message)
             step.offered.connect(self._on_offered)
-            step.demonstration_wanted.connect(self._on_demonstration_wanted)
+            step.demonstration_required.connect(self._on_demonstration_required)
         for signal in (visit.changed, visit.sensors.changed, visit.patient.changed, visit.evaluation.done):
             signal.connect(self._on_visit_changed)
         visit.resumed.connect(self._on_resumed)
         visit.changed_elsewhere.connect(self._on_changed_elsewhere)
-        visit.deleted_elsewhere.connect(self._tell)
+        visit.deleted_elsewhere.connect(self._show_message)
         visit.refused.connect(self._on_refused)
-        visit.merged.connect(self._tell)
+        visit.merged.connect(self._show_message)
         visit.asked.connect(self._on_asked)
         visit.recordings.troubled.connect(self._on_troubled)
         visit.recordings.begun.connect(self.shell.banner.hide)
@@ -227,15 +227,15 @@ class Wizard(QWidget):
         return visit
 
     def _listen_no_more(self, visit: Visit) -> None:
-        """What comes of a visit that was left is not the next one's; what is refused is told where one is then."""
+        """What comes of a visit that was left is not the next one's; what is refused is given where one is then."""
         for signal in (visit.changed, visit.sensors.changed, visit.patient.changed, visit.evaluation.done):
             signal.disconnect(self._on_visit_changed)
         visit.resumed.disconnect(self._on_resumed)
         visit.changed_elsewhere.disconnect(self._on_changed_elsewhere)
-        visit.deleted_elsewhere.disconnect(self._tell)
+        visit.deleted_elsewhere.disconnect(self._show_message)
         visit.refused.disconnect(self._on_refused)
         visit.refused.connect(self._controller.refused)
-        visit.merged.disconnect(self._tell)
+        visit.merged.disconnect(self._show_message)
         visit.merged.connect(self._controller.refused)
         visit.recordings.troubled.disconnect(self._on_troubled)
         visit.recordings.begun.disconnect(self.shell.banner.hide)
@@ -245,7 +245,7 @@ class Wizard(QWidget):
         if not self._steps or goal is self._current:
             return
         if reason := self._steps[self._current].cannot_leave or self._steps[goal].cannot_enter:
-            self._tell(reason, "")
+            self._show_message(reason, "")
             return
         self.shell.banner.hide()
         self._steps[self._current].leave()  # which may have something to say over the next
@@ -260,7 +260,7 @@ class Wizard(QWidget):
         self._show()
 
     def _show(self) -> None:
-        """Show what stands round the step: rail, header, bar."""
+        """Show what is round the step: rail, header, bar."""
         if self._visit is None or not self._steps:
             return
         rows = []
@@ -289,9 +289,9 @@ class Wizard(QWidget):
         self.shell.header.show_elapsed(visit.elapsed_s)
         self.shell.strip.show_tiles(worn_tiles(visit.sensors))
 
-    def _tell(self, what: str, then: str) -> None:
+    def _show_message(self, what: str, then: str) -> None:
         if what:
-            self.shell.banner.tell(what, then)
+            self.shell.banner.show_message(what, then)
         else:
             self.shell.banner.hide()
 
@@ -307,17 +307,17 @@ class Wizard(QWidget):
             self._watch_recording()
 
     def _watch_recording(self) -> None:
-        """Say what befalls a recording, as the counters have it by now; on its page a walk says it itself."""
+        """Say what befalls a recording, as the counters have it by now; on its page a walk states it itself."""
         if self._visit is None or not self.is_recording or self._current is StepId.WALKING:
-            self._told_of_recording = NOTHING
+            self._reported_of_recording = NOTHING
             return
         recordings, sensors = self._visit.recordings, self._visit.sensors
         message = recordings.trouble_message()
         if message == NOTHING:
             message = recordings.standstill_message(sensors.site_of or sensors.status)
-        if message != self._told_of_recording:
-            self._told_of_recording = message
-            self._tell(*message)
+        if message != self._reported_of_recording:
+            self._reported_of_recording = message
+            self._show_message(*message)
 
     def _on_prepare(self) -> None:
         """Make the next page before somebody comes to it, who would wait for it then; not amid a recording."""
@@ -356,7 +356,7 @@ class Wizard(QWidget):
             case KeyAction.UNDO:
                 self._on_undo()
             case KeyAction.HELP:
-                self.help_wanted.emit(step.topic)
+                self.help_required.emit(step.topic)
             case KeyAction.LARGER:
                 self._look.grow(1)
             case KeyAction.SMALLER:
@@ -373,7 +373,7 @@ class Wizard(QWidget):
             action.run()
 
     def press_primary(self) -> None:
-        """Do what the bar's main button says, where it can be pressed."""
+        """Do what the bar's main button states, where it can be pressed."""
         if self._steps and (action := self._bar().primary) is not None and action.is_enabled:
             action.run()
 
@@ -404,7 +404,7 @@ class Wizard(QWidget):
     def leave(self) -> None:
         """Go back to the patients; a walk that is being recorded is stopped first, by whoever walks."""
         if self._steps and (reason := self._steps[self._current].cannot_leave):
-            self._tell(reason, "")
+            self._show_message(reason, "")
             return
         self.close_visit()
         self.left.emit()
@@ -417,8 +417,8 @@ class Wizard(QWidget):
     def _on_offered(self, what: str) -> None:
         self.shell.toast.offer(what)
 
-    def _on_demonstration_wanted(self) -> None:
-        """Begin anew with the patient whom simulated recordings are kept for, found or made."""
+    def _on_demonstration_required(self) -> None:
+        """Begin again with the patient whom simulated recordings are kept for, found or made."""
         self.begin(None)
         self._demonstration = self._visit
         self._controller.run(_demonstration_patient, self._on_demonstration_found, self._on_refused, self)
@@ -440,14 +440,14 @@ class Wizard(QWidget):
         elif key == "settings":
             self._want_settings()
         elif key == "help" and self.current is not None:
-            self.help_wanted.emit(self.current.topic)
+            self.help_required.emit(self.current.topic)
 
     def _want_settings(self) -> None:
         """The visit stays as it is meanwhile; what is being recorded is watched to its end first."""
         if reason := self.current.cannot_leave if self.current is not None else "":
-            self._tell(reason, "")
+            self._show_message(reason, "")
         else:
-            self.settings_wanted.emit()
+            self.settings_required.emit()
 
     def _on_step_changed(self) -> None:
         self._show()
@@ -475,27 +475,27 @@ class Wizard(QWidget):
             self.leave()  # the session that was to be shown is not there
             self._controller.refused.emit(what, then)
         else:
-            self._tell(what, then)
+            self._show_message(what, then)
 
     def _on_changed_elsewhere(self) -> None:
-        self.shell.banner.tell(
+        self.shell.banner.show_message(
             tr("Another workstation changed this session."),
             tr("This page shows the earlier version."),
             tr("Show new version"),
         )
 
-    def _on_new_state_wished(self) -> None:
+    def _on_new_state_requested(self) -> None:
         self.shell.banner.hide()
         if self._visit is not None:
-            self._visit.read_anew()
+            self._visit.read_again()
 
     def _on_troubled(self, what: str, then: str) -> None:
         gone_words = self._controller.gone_words
         is_gone_at_rest = not self.is_recording and gone_words == (what, then)
-        is_told_otherwise = gone_words is None and not self.shell.banner.isHidden()
-        is_elsewhere = self._current is not StepId.WALKING  # there a walk's page says it itself
-        if is_elsewhere or is_gone_at_rest or is_told_otherwise:
-            self._tell(what, then)
+        is_reported_otherwise = gone_words is None and not self.shell.banner.isHidden()
+        is_elsewhere = self._current is not StepId.WALKING  # there a walk's page states it itself
+        if is_elsewhere or is_gone_at_rest or is_reported_otherwise:
+            self._show_message(what, then)
 
     def _on_resumed(self) -> None:
         """Land where something is to be answered or seen, else where it goes on."""

@@ -1,4 +1,4 @@
-"""Who wore what in recordings that are kept, said anew: left and right swapped, or all since strapped on."""
+"""Who wore what in recordings that are kept, stated again: left and right swapped, or all since strapped on."""
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
@@ -29,7 +29,7 @@ Seen = Mapping[UUID, UUID | None]
 
 @dataclass(frozen=True, slots=True)
 class Corrected:
-    """The session as the library has it now, and what was said of its recordings."""
+    """The session as the library has it now, and what was stated about its recordings."""
 
     session: StoredSession
     worn: Sequence[Worn]
@@ -41,7 +41,7 @@ class WornCorrections(EditedRecord[Corrected]):
     Signals
     -------
     corrected
-        The session and its recordings, read anew.
+        The session and its recordings, read again.
     """
 
     corrected = Signal(object, object)
@@ -61,11 +61,11 @@ class WornCorrections(EditedRecord[Corrected]):
         return self._is_busy
 
     def place_once_ended(self) -> None:
-        """As `place_as_said_now`, once what is being recorded has ended, though the sensors may be let go before."""
+        """As `place_as_stated_now`, once what is being recorded has ended, though the sensors may be let go before."""
         self._once_ended = self._sensors.placed()
 
     def swap_sides(self) -> None:
-        """Say that left and right were worn the other way round in all recordings; they are read anew.
+        """Say that left and right were worn the other way round in all recordings; they are read again.
 
         Done again, it is undone. So are the sensors that are worn now, and what is recorded next.
         """
@@ -85,8 +85,9 @@ class WornCorrections(EditedRecord[Corrected]):
             worn.append(([recording.id for recording in recordings], other))
         self._correct(worn, self._seen(), self._sensors.placed() or None)
 
-    def place_as_said_now(self) -> None:
-        """Tell the library that all since the sensors were strapped on was worn as it is said now; it is read anew."""
+    def place_as_stated_now(self) -> None:
+        """Report the library that all since the sensors were strapped on was worn as it is stated now; it is read
+        again."""
         self._place(self._sensors.placed())
 
     def _place(self, placed: Mapping[Site, PlacedSensor]) -> None:
@@ -135,7 +136,7 @@ class WornCorrections(EditedRecord[Corrected]):
     def _called(self, stored: Corrected) -> str:
         return tr("The session")
 
-    def _choose(self, stored: Corrected, upon: Values, said: Values) -> None:
+    def _choose(self, stored: Corrected, base: Values, stated: Values) -> None:
         self._correct(stored.worn, _placements(stored.session.recordings))
 
     def _on_refused(self, what: str, remedy: str) -> None:

@@ -39,14 +39,14 @@ class SetUpFirstError(SourceRefusedError):
 
 @dataclass(frozen=True, slots=True)
 class SourceChoice:
-    """Something that sensors can be heard through. `make` may take seconds: it is called beside the screen.
+    """Something that sensors can be received through. `make` may take seconds: it is called beside the screen.
 
     What `is_simulated` or replayed was not measured on this patient: the library keeps it apart from real recordings.
-    `worn` gives the site by the sensor's name where the source tells it, as a stored session does. Of `lines` it has to
-    be told what they mean; they are heard through another choice then. `asks` says whom on the network `make` will ask
-    what, where it asks anybody, and what to do to have it ask: that is said before. `make_prosthetic` is called instead
-    for a patient with a prosthesis on one side. What `make_fleet` gives has to be set up first: `make` is another one's
-    then.
+    `worn` gives the site by the sensor's name where the source reports it, as a stored session does. Of `lines` it has
+    to be given what they mean; they are received through another choice then. `asks` states whom on the network `make`
+    will ask what, where it asks anybody, and what to do to have it ask: that is stated before. `make_prosthetic` is
+    called instead for a patient with a prosthesis on one side. What `make_fleet` gives has to be set up first: `make`
+    is another one's then.
     """
 
     key: str
@@ -69,14 +69,15 @@ class SourceChoice:
 class WornSensors(QObject):
     """`acquisition` is None until a source is open; `site_of` gives the site by the sensor's name.
 
-    Left to the motion (`is_left_to_motion`), sensors have no site until the free motion has told it. `detected`: by the
-    site that a sensor is said to be at, the one where the motion puts it, until that is used or the labels are kept.
+    Left to the motion (`is_left_to_motion`), sensors have no site until the free motion has reported it. `detected`:
+    by the site that a sensor is stated to be at, the one where the motion puts it, until that is used or the labels
+    are kept.
     """
 
     changed = Signal()
     opened = Signal()
     refused = Signal(str, str)
-    set_up_wanted = Signal(str)  # the key of the choice that what was found has to be set up by
+    set_up_required = Signal(str)  # the key of the choice that what was found has to be set up by
 
     def __init__(self, parent: QObject) -> None:
         super().__init__(parent)
@@ -115,7 +116,7 @@ class WornSensors(QObject):
 
     @property
     def are_silent(self) -> bool:
-        """Whether none of the sensors that are worn has been heard for a second or more."""
+        """Whether none of the sensors that are worn has been received for a second or more."""
         worn = [status for name, status in self.status.items() if name in self.site_of]
         return bool(worn) and all(status.silent_s >= SILENT_FROM_S for status in worn)
 
@@ -227,12 +228,13 @@ class WornSensors(QObject):
         self.changed.emit()
 
     def assign_all(self, site_of: Mapping[str, Site]) -> None:
-        """Wear all sensors as said, the others nowhere."""
+        """Wear all sensors as stated, the others nowhere."""
         self.site_of, self.detected = dict(site_of), {}
         self.changed.emit()
 
     def doubt(self, detected: Mapping[Site, Site]) -> None:
-        """Say where the motion puts sensors otherwise than they are said to be; what was kept is not doubted again."""
+        """Say where the motion puts sensors otherwise than they are stated to be; what was kept is not doubted
+        again."""
         groups = [group for group in groups_of(detected) if group not in self._kept_labels]
         doubted = {site: detected[site] for group in groups for site in group}
         if doubted != self.detected:
@@ -254,7 +256,7 @@ class WornSensors(QObject):
         self.assign_all({name: self.detected.get(site, site) for name, site in self.site_of.items()})
 
     def keep_labels(self) -> None:
-        """Wear them as said, whatever the motion says; for the rest of the visit."""
+        """Wear them as stated, whatever the motion states; for the rest of the visit."""
         self._kept_labels |= set(groups_of(self.detected))
         self.doubt({})
 
@@ -265,12 +267,14 @@ class WornSensors(QObject):
         self.changed.emit()
 
     def placed(self) -> dict[Site, PlacedSensor]:
-        """What the library is told of the sensors that are worn."""
+        """What the library is given of the sensors that are worn."""
         status = self.status
         placed = {}
         for sensor, site in self.site_of.items():
-            told = status[sensor].details
-            info = SensorInfo(told.serial, told.model, told.firmware, told.rate_hz, told.rate_kind, told.clock)
+            reported = status[sensor].details
+            info = SensorInfo(
+                reported.serial, reported.model, reported.firmware, reported.rate_hz, reported.rate_kind, reported.clock
+            )
             placed[site] = PlacedSensor(sensor, info)
         return placed
 
@@ -280,8 +284,8 @@ class WornSensors(QObject):
         missing = [site for site in places if site not in worn]
         if missing == [Site.PELVIS]:
             return tr("No sensor on the pelvis: no hip angles.")
-        wanted = [*LEG_JOINTS, *(hip_of(side) for side in Side if Site.PELVIS in places)]
-        lost = [name_of(joint) for joint in wanted if joint not in (*self.joints, *self.hips)]
+        required = [*LEG_JOINTS, *(hip_of(side) for side in Side if Site.PELVIS in places)]
+        lost = [name_of(joint) for joint in required if joint not in (*self.joints, *self.hips)]
         if not lost or not worn:
             return ""
         return tr("No sensor at {sites}: no angles for {joints}.").format(
@@ -301,7 +305,7 @@ class WornSensors(QObject):
     def _on_failed(self, error: Exception) -> None:
         choice, self.choice = self.choice, None
         if isinstance(error, SetUpFirstError):
-            self.set_up_wanted.emit(error.key)
+            self.set_up_required.emit(error.key)
         elif isinstance(error, SourceRefusedError):
             what, remedy = filled(error.what, error.values), filled(error.remedy, error.values)
             self.refused.emit(f"{what}.", f"{remedy}.")

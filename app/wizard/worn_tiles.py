@@ -1,4 +1,4 @@
-"""The tiles of the sensors that are worn, as they stand above every step: heard, silent, moving, their batteries."""
+"""The tiles of the sensors that are worn, as they stand above every step: received, silent, moving, their batteries."""
 
 from collections.abc import Mapping
 from dataclasses import replace
@@ -27,16 +27,16 @@ def _tile(site: Site, sensor: str | None, status: "Mapping[str, SensorStatus]", 
     if sensor is None or sensor not in status:
         nothing = SensorTile(site, sensor or "", None, 0.0, 0.0, 0.0, is_moving=False, is_worn=False)
         return replace(nothing, is_awaited=is_awaited)
-    heard = status[sensor]
+    received = status[sensor]
     return SensorTile(
         site,
         sensor,
-        heard.details.battery,
-        heard.heard_hz,
-        heard.lost_share,
-        heard.silent_s,
-        is_moving=heard.movement_rad_s > MOVES_RAD_S,
+        received.details.battery,
+        received.received_hz,
+        received.lost_share,
+        received.silent_s,
+        is_moving=received.movement_rad_s > MOVES_RAD_S,
         is_worn=True,
-        quiet=heard.details.quiet,
-        is_loss_seen=heard.details.is_loss_seen,
+        quiet=received.details.quiet,
+        is_loss_seen=received.details.is_loss_seen,
     )

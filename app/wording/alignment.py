@@ -1,4 +1,4 @@
-"""What was changed at a prosthesis, in words: signs are said, "½ out, +2° plantar", "4 mm back", "+3 mm"."""
+"""What was changed at a prosthesis, in words: signs are stated, "½ out, +2° plantar", "4 mm back", "+3 mm"."""
 
 from collections.abc import Iterable, Mapping, Sequence
 
@@ -76,10 +76,10 @@ def turns_words(turns: float) -> str:
 def shift_words(part: ProsthesisPart, shift_mm: float) -> str:
     """Say a shift: "4 mm back", or "2 mm inwards" at an inner or outer screw."""
     if part.is_frontal:
-        said = tr("{amount} mm medial") if shift_mm < 0 else tr("{amount} mm lateral")
+        stated = tr("{amount} mm medial") if shift_mm < 0 else tr("{amount} mm lateral")
     else:
-        said = tr("{amount} mm anterior") if shift_mm < 0 else tr("{amount} mm posterior")
-    return said.format(amount=figure_text(abs(shift_mm), "g"))
+        stated = tr("{amount} mm anterior") if shift_mm < 0 else tr("{amount} mm posterior")
+    return stated.format(amount=figure_text(abs(shift_mm), "g"))
 
 
 def height_words(height_mm: float) -> str:
@@ -108,14 +108,14 @@ def since_in_words(change: AlignmentChange | None) -> str:
     """Say a change and since when: "Changed from Alignment A: pylon +3 mm"."""
     if change is None:
         return ""
-    said = change_in_words(change)
+    stated = change_in_words(change)
     if not change.since:
-        return tr("Changed: {changes}").format(changes=said)
-    return tr("Changed from {condition}: {changes}").format(condition=change.since, changes=said)
+        return tr("Changed: {changes}").format(changes=stated)
+    return tr("Changed from {condition}: {changes}").format(condition=change.since, changes=stated)
 
 
 def to_do_in_words(changes: Sequence[NetChange]) -> str:
-    """Say what is to be turned; where a screw is turned its angle comes by itself and is not said.
+    """Say what is to be turned; where a screw is turned its angle comes by itself and is not stated.
 
     "Foot, front screw ½ turn in; foot 4 mm forward; pylon −3 mm".
     """
@@ -135,20 +135,20 @@ def _lines(change: NetChange) -> list[tuple[str, str]]:
 
 
 def _line(changes: Iterable[NetChange], *, has_angle_beside_turns: bool) -> str:
-    said: list[str] = []
+    stated: list[str] = []
     for change in changes:
         has_angle = bool(change.angle_deg) and (has_angle_beside_turns or not change.turns)
         own = [_turn(change.turns)] if change.turns else []
         own += [angle_words(change.part, change.angle_deg)] if has_angle else []
         name, body = within_sentence(part_name(change.part)), within_sentence(_body(change.part))
         if own:
-            said.append(f"{name} {', '.join(own)}")
+            stated.append(f"{name} {', '.join(own)}")
         if change.shift_mm:
-            said.append(f"{body} {shift_words(change.part, change.shift_mm)}")
+            stated.append(f"{body} {shift_words(change.part, change.shift_mm)}")
         if change.height_mm:
-            said.append(f"{body} {height_words(change.height_mm)}")
-        said += [f"{name}: {text}" for text in _texts(change)]
-    return capitalised("; ".join(said))
+            stated.append(f"{body} {height_words(change.height_mm)}")
+        stated += [f"{name}: {text}" for text in _texts(change)]
+    return capitalised("; ".join(stated))
 
 
 def _texts(change: NetChange) -> list[str]:

@@ -73,7 +73,7 @@ def measure_name(column: str, *, is_between: bool = False) -> str:
 
 
 def name_in_sentence(column: str) -> str:
-    """As it stands inside a sentence."""
+    """As it is inside a sentence."""
     return within_sentence(_name(column)) if column in NAMES else _name(column)
 
 
@@ -112,7 +112,7 @@ def unit_name(column: str) -> str:
 
 def spoken_value(column: str, value: str) -> str:
     """A number with its unit, as it is read out."""
-    said = {
+    stated = {
         Unit.DEGREES: tr("{value} degrees"),
         Unit.PERCENT: tr("{value} percent of the gait cycle"),
         Unit.METRES: tr("{value} metres"),
@@ -120,7 +120,7 @@ def spoken_value(column: str, value: str) -> str:
         Unit.CADENCE: tr("{value} steps per minute"),
         Unit.SECONDS: tr("{value} seconds"),
     }
-    return said[_unit(column)].format(value=value)
+    return stated[_unit(column)].format(value=value)
 
 
 def short_unit(column: str) -> str:
@@ -162,7 +162,7 @@ def limit(goal: Goal) -> str:
     return (number.removesuffix(".0") if count == 1 else number) + short_unit(goal.column)
 
 
-def wanted(goal: Goal) -> str:
+def required(goal: Goal) -> str:
     """What the goal asks for: "at least 60°", "at most 2 % apart"."""
     if goal.of is GoalOf.BETWEEN:
         return tr("difference at most {value}").format(value=limit(goal))
@@ -179,7 +179,7 @@ def whose_name(of: GoalOf) -> str:
 def goal_in_words(goal: Goal) -> str:
     """The whole goal: "Knee, stance to swing, left: at least 60°"."""
     who = ", ".join(filter(None, [_name(goal.column), whose_name(goal.of)]))
-    return tr("{who}: {wanted}").format(who=who, wanted=wanted(goal))
+    return tr("{who}: {required}").format(who=who, required=required(goal))
 
 
 def unit_symbol(unit: Unit) -> str:

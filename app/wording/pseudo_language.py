@@ -1,7 +1,7 @@
 """English made as long as German: does every page have the room, and does every sentence pass the catalogue?
 
 Letters are doubled all along until a sentence is 35 % longer, vowels wear a mark that English does not have, and
-brackets show where a sentence begins and ends. What stands in braces is left alone, since it is a figure's name.
+brackets show where a sentence begins and ends. What is in braces is left alone, since it is a figure's name.
 """
 
 import re
@@ -22,11 +22,11 @@ class PseudoLanguage(NullTranslations):
 
 def lengthened(message: str) -> str:
     """Give `message` 35 % longer, as "[Stäärt]"; its fields in braces as they are."""
-    said, done = "", 0
+    stated, done = "", 0
     for piece in FIELD.split(message):
         for part in [piece] if FIELD.fullmatch(piece) else piece:
             done += len(part)
-            wanted = round(LONGER * done) - len(said)
+            required = round(LONGER * done) - len(stated)
             marked = part.translate(MARKED) if len(part) == 1 else part
-            said += marked * 2 if part.isalpha() and wanted >= 2 else marked
-    return f"[{said}]"
+            stated += marked * 2 if part.isalpha() and required >= 2 else marked
+    return f"[{stated}]"

@@ -2,7 +2,7 @@
 
 A recording's own name ("walk 3") is its identity in a session's folder, in tables and for programs; nobody has to know
 it. On the screen and on paper a walk is called "A Barefoot", and "A2 Barefoot" where it is the second of its condition:
-the letter that stands for the condition in every comparison, the words that somebody chose or typed.
+the letter that represents the condition in every comparison, the words that somebody chose or typed.
 """
 
 import re
@@ -27,7 +27,7 @@ _OWN_NAME = re.compile(rf"({'|'.join(OWN_NAMES.values())})(?: (\d+))?")
 class ShownName:
     """`letter`: of the condition, with the walk's number from the second on; empty of all that is no kept walk.
 
-    A walk without a condition is called by its own name, which tells it from all others: "A walk 3" would be no name.
+    A walk without a condition is called by its own name, which reports it from all others: "A walk 3" would be no name.
     """
 
     letter: str
@@ -41,7 +41,7 @@ class ShownName:
 def condition_letters(recordings: Sequence[Recording]) -> dict[str, str]:
     """Give the letter of each kept walk's condition, by the walk's name.
 
-    Letters follow the order in which conditions were first walked; sensors strapped anew begin another, and so does
+    Letters follow the order in which conditions were first walked; sensors strapped again begin another, and so does
     each walk without a condition. What is discarded has none. After Z there are none.
 
     Parameters
@@ -83,12 +83,12 @@ def with_shown_names(finding: Finding, names: Mapping[str, ShownName]) -> Findin
 
 
 def where_shown(where: str, names: Mapping[str, ShownName]) -> str:
-    """Call the recordings as they are shown in what tells parts of the body and recordings in a row."""
+    """Call the recordings as they are shown in what reports parts of the body and recordings in a row."""
     return ", ".join(str(names.get(part, part)) for part in where.split(", "))
 
 
 def _conditions(recordings: Sequence[Recording]) -> dict[str, tuple[str, int]]:
-    """Each kept walk's condition, or its own name, and how often sensors had been strapped anew by then."""
+    """Each kept walk's condition, or its own name, and how often sensors had been strapped again by then."""
     strapped = accumulate(one.is_restrapped_before for one in recordings)
     return {
         one.name: (one.condition or one.name, count)

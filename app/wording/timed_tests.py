@@ -1,6 +1,8 @@
-"""What is said of a timed test, on the screen and on paper: its name, its result, what is missing and how sure it is.
+"""What is stated about a timed test, on the screen and on paper: its name, its result, what is missing and how sure it
+is.
 
-A sentence comes from what was measured: without a time no time is told, without a tape nothing is compared with one.
+A sentence comes from what was measured: without a time no time is reported, without a tape nothing is compared with
+one.
 """
 
 import math
@@ -31,12 +33,12 @@ def planned_words(planned: PlannedTest | None) -> str:
     """Which test a walk is, with the instants of its keys: "10-metre walk, key at the start: 3.2 s"."""
     if planned is None:
         return tr("no test")
-    said = [name_of_test(planned.protocol)]
+    stated = [name_of_test(planned.protocol)]
     if planned.start_key_s is not None:
-        said.append(tr("start key at {at:.1f} s").format(at=planned.start_key_s))
+        stated.append(tr("start key at {at:.1f} s").format(at=planned.start_key_s))
     if planned.end_key_s is not None:
-        said.append(tr("end key at {at:.1f} s").format(at=planned.end_key_s))
-    return ", ".join(said)
+        stated.append(tr("end key at {at:.1f} s").format(at=planned.end_key_s))
+    return ", ".join(stated)
 
 
 def start_words(protocol: TimedProtocol) -> str:
@@ -73,7 +75,7 @@ def reason_words(reason: NotMeasured) -> str:
 
 
 def seconds(value: float) -> str:
-    """A time as it is told: "8.9 s", "2:00"."""
+    """A time as it is reported: "8.9 s", "2:00"."""
     return clock(value) if value >= 100.0 else f"{figure_text(value, '.1f')} s"
 
 
@@ -82,16 +84,16 @@ def result_sentence(test: TimedTest) -> str:
     name = name_of_test(test.protocol)
     if not math.isfinite(test.time_s):
         return tr("{test}: time not measured.").format(test=name)
-    said = []
+    stated = []
     if test.definition.duration_s is not None and math.isfinite(test.distance_m):
-        said = [f"{test.distance_m:.0f} m", f"{figure_text(test.speed_m_s, '.2f')} m/s"]
+        stated = [f"{test.distance_m:.0f} m", f"{figure_text(test.speed_m_s, '.2f')} m/s"]
     elif test.protocol is TimedProtocol.TEN_METRES and math.isfinite(test.speed_m_s):
-        said = [f"{figure_text(test.speed_m_s, '.2f')} m/s", f"{figure_text(test.time_s, '.1f')} s"]
+        stated = [f"{figure_text(test.speed_m_s, '.2f')} m/s", f"{figure_text(test.time_s, '.1f')} s"]
     elif test.definition.duration_s is None:
-        said = [f"{figure_text(test.time_s, '.1f')} s"]
-    if not said:
+        stated = [f"{figure_text(test.time_s, '.1f')} s"]
+    if not stated:
         return tr("{test}: distance not measured.").format(test=name)
-    return tr("{test}: {figures}.").format(test=name, figures=", ".join(said))
+    return tr("{test}: {figures}.").format(test=name, figures=", ".join(stated))
 
 
 def why_sentence(test: TimedTest) -> str:
@@ -113,17 +115,17 @@ def why_sentence(test: TimedTest) -> str:
 
 
 def tape_sentence(test: TimedTest) -> str:
-    """How the sensors' distance compares with the tape's; empty where no key told where the tape is."""
+    """How the sensors' distance compares with the tape's; empty where no key reported where the tape is."""
     apart_m = test.tape_difference_m
     if not math.isfinite(apart_m):
         return ""
     share = 100.0 * apart_m / test.distance_m
-    told = tr("The sensors measured {own:.2f} m, {apart:+.2f} m from the tape ({tape:.2f} m)").format(
+    reported = tr("The sensors measured {own:.2f} m, {apart:+.2f} m from the tape ({tape:.2f} m)").format(
         own=test.sensor_distance_m, apart=apart_m, tape=test.distance_m
     )
     if round(abs(share), 6) <= ALLOWED_PERCENT:
-        return tr("{told}; within the 3 % limit.").format(told=told)
-    return tr("{told}; beyond the 3 % limit. Check the position of the tape.").format(told=told)
+        return tr("{reported}; within the 3 % limit.").format(reported=reported)
+    return tr("{reported}; beyond the 3 % limit. Check the position of the tape.").format(reported=reported)
 
 
 def pauses_sentence(test: TimedTest) -> str:
@@ -131,21 +133,23 @@ def pauses_sentence(test: TimedTest) -> str:
     if not test.pauses_s:
         return ""
     total_s = sum(end - start for start, end in test.pauses_s)
-    told = tr_n("{count} pause, {total:.1f} s.", "{count} pauses, {total:.1f} s in total.", len(test.pauses_s))
-    return told.format(count=len(test.pauses_s), total=total_s)
+    reported = tr_n("{count} pause, {total:.1f} s.", "{count} pauses, {total:.1f} s in total.", len(test.pauses_s))
+    return reported.format(count=len(test.pauses_s), total=total_s)
 
 
 def stairs_sentence(test: TimedTest) -> str:
     """How many strides led up and down, and how long they took; empty where none did."""
-    said = []
+    stated = []
     for is_up, words in (
         (True, tr("strides up: {count}, mean {time:.2f} s")),
         (False, tr("strides down: {count}, mean {time:.2f} s")),
     ):
         times_s = [one.end_s - one.start_s for one in test.stairs if one.is_up is is_up]
         if times_s:
-            said.append(words.format(count=len(times_s), time=sum(times_s) / len(times_s)))
-    return tr("Stair strides, excluded from walking means: {strides}.").format(strides="; ".join(said)) if said else ""
+            stated.append(words.format(count=len(times_s), time=sum(times_s) / len(times_s)))
+    return (
+        tr("Stair strides, excluded from walking means: {strides}.").format(strides="; ".join(stated)) if stated else ""
+    )
 
 
 def course_sentence(test: TimedTest) -> str:
@@ -176,7 +180,7 @@ def error_words(error: KnownError) -> str:
 
 
 def _source_words(error: KnownError) -> str:
-    """Who says so: of a paper what was measured, and the paper as it is cited."""
+    """Who reports it: of a paper what was measured, and the paper as it is cited."""
     if error.courses:
         return tr("worst of {count} simulated runs").format(count=error.courses)
     return ", ".join(filter(None, [tr(MEASURED[error.how]) if error.how else "", error.paper]))

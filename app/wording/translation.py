@@ -1,8 +1,8 @@
-"""What do we tell the clinician? Every message: what happened, then what to do or what follows.
+"""What do we report the clinician? Every message: what happened, then what to do or what follows.
 
 At most two sentences, the part first and its side before it, numbers with units, no blame. English is the source; other
 languages come from the gettext catalogues in `resources/locale`, which `packaging/catalogue.py` gathers from the code:
-whatever is shown stands as it is inside `tr` or `tr_n`, or inside `later` where it is written down before it is shown.
+whatever is shown is as it is inside `tr` or `tr_n`, or inside `later` where it is written down before it is shown.
 To add a finding's message, add its key to `SENTENCES`: the figures in braces are those that the finding carries in its
 `numbers`.
 """
@@ -357,7 +357,7 @@ NAMES = {
     },
 }
 
-WHOLE_SESSION = "session"  # what a finding about no part in particular says as its place
+WHOLE_SESSION = "session"  # what a finding about no part in particular states as its place
 
 
 class _CommaFormatter(Formatter):
@@ -408,7 +408,7 @@ def languages() -> tuple[str, ...]:
 
 
 def spoken_in(language: str) -> Callable[[str], str]:
-    """Give what says a message in another language than the user's, as a page for somebody else; else English."""
+    """Give what states a message in another language than the user's, as a page for somebody else; else English."""
     catalogue = gettext.translation(DOMAIN, LOCALE, languages=[language], fallback=True)
     return lambda message: _spoken(catalogue.gettext(message), language)
 
@@ -443,7 +443,7 @@ def short_figure(value: float, decimals: int) -> str:
 
 
 def later(message: str) -> str:
-    """Tell the catalogue of a message that is written here but shown, through `tr`, later: as a constant is."""
+    """Report the catalogue of a message that is written here but shown, through `tr`, later: as a constant is."""
     return message
 
 
@@ -452,24 +452,24 @@ PURPOSE = later("Research use. Not a medical device.")  # stays on every screen,
 
 def filled(message: str, values: Mapping[str, object]) -> str:
     """Give what was refused elsewhere in the user's language, its braces filled; none are looked for without values."""
-    said = tr(message)
-    return said.format(**values) if values else said
+    stated = tr(message)
+    return stated.format(**values) if values else stated
 
 
 def sentence(finding: Finding) -> str:
     """Give a finding in words: where, what happened, what to do or what follows.
 
-    A finding whose sentence is missing, or lacks a figure, is still told, by its key and its figures.
+    A finding whose sentence is missing, or lacks a figure, is still reported, by its key and its figures.
     """
-    known = {name: _said(name, value) for name, value in finding.numbers.items() if _is_known(value)}
+    known = {name: _stated(name, value) for name, value in finding.numbers.items() if _is_known(value)}
     if reasons := _reasons(finding):
         known["reasons"] = reasons
     try:
-        said = tr(SENTENCES[finding.key]).format_map(known)
+        stated = tr(SENTENCES[finding.key]).format_map(known)
     except (KeyError, ValueError):  # ValueError: a name where the sentence wants a figure
         figures = ", ".join(f"{name} {value}" for name, value in known.items())
-        said = " ".join(filter(None, [finding.key.replace("_", " "), figures])) + "."
-    return capitalised(f"{place(finding.where)}: {said}" if finding.where not in ("", WHOLE_SESSION) else said)
+        stated = " ".join(filter(None, [finding.key.replace("_", " "), figures])) + "."
+    return capitalised(f"{place(finding.where)}: {stated}" if finding.where not in ("", WHOLE_SESSION) else stated)
 
 
 def _reasons(finding: Finding) -> str:
@@ -518,7 +518,7 @@ def capitalised(text: str) -> str:
 
 
 def within_sentence(name: str) -> str:
-    """Give a name that begins with a capital as it stands inside a sentence; German nouns keep theirs."""
+    """Give a name that begins with a capital as it is inside a sentence; German nouns keep theirs."""
     return name if _language == "de" else name[:1].lower() + name[1:]
 
 
@@ -533,7 +533,7 @@ def _is_known(value: float | int | str) -> bool:
     return isinstance(value, str) or math.isfinite(value)
 
 
-def _said(name: str, value: float | int | str) -> float | int | str:
+def _stated(name: str, value: float | int | str) -> float | int | str:
     if not isinstance(value, str):
         return value
     if value in NAMES.get(name, {}):

@@ -1,4 +1,4 @@
-"""Why is a figure read with care, or withheld, and what is to be done? For each gate of `core.verdicts.gates`."""
+"""Why is a figure read with care, or not reported, and what is to be done? For each gate of `core.verdicts.gates`."""
 
 from typing import NamedTuple
 
@@ -8,7 +8,7 @@ from core.verdicts.model import GateReason, Verdict
 VERDICTS = {
     Verdict.READ: later("good"),
     Verdict.CARE: later("caution"),
-    Verdict.WITHHELD: later("not reported"),
+    Verdict.NOT_REPORTED: later("not reported"),
     Verdict.NOT_MEASURED: later("not measured"),
 }
 SHARES = ("hip_disagreement",)  # gates whose figures are shares of one, written in percent
@@ -180,12 +180,12 @@ def gate_sentence(reason: GateReason) -> str:
 
 
 def verdict_word(verdict: Verdict) -> str:
-    """A verdict as it stands beside a quantity's name."""
+    """A verdict as it is beside a quantity's name."""
     return tr(VERDICTS[verdict])
 
 
 def verdict_alone(verdict: Verdict) -> str:
-    """The same where it stands alone, as in a cell, a chip or a title."""
+    """The same where it is alone, as in a cell, a chip or a title."""
     return capitalised(verdict_word(verdict))
 
 

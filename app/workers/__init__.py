@@ -1,1 +1,1 @@
-"""What runs beside the screen. A worker knows no widget; it tells its news by signals and waits for nobody."""
+"""What runs beside the screen. A worker knows no widget; it reports its news by signals and waits for nobody."""

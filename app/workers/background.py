@@ -17,14 +17,14 @@ Work = Callable[[Report], object]
 
 
 class Stopped(Exception):  # noqa: N818  being stopped is no error
-    """Raised inside the work by its report when it was told to stop."""
+    """Raised inside the work by its report when it was given to stop."""
 
 
 class Background(QObject):
     """Runs one piece of work at a time; a newer one takes the older one's place.
 
     Signals of a piece that was stopped or replaced never arrive, but for `stopped`, once it has ended: whether it came
-    to its end all the same, before its next report could stop it. `idle` tells when the last thread has ended.
+    to its end all the same, before its next report could stop it. `idle` gives when the last thread has ended.
     """
 
     progressed = Signal(float, str)
@@ -64,7 +64,7 @@ class Background(QObject):
         thread.start()
 
     def stop(self) -> None:
-        """Let the running work end at its next report. Nothing more is heard of it."""
+        """Let the running work end at its next report. Nothing more is known of it."""
         if self._current is not None:
             self._current.requestInterruption()
             self._current.is_stopped = True
@@ -111,7 +111,7 @@ class _WorkThread(QThread):
     def __init__(self, work: Work, parent: QObject) -> None:
         super().__init__(parent)
         self._work = work
-        self._told_s, self._told = 0.0, ""
+        self._reported_s, self._reported = 0.0, ""
         self.is_stopped = self.is_done = False
 
     def run(self) -> None:
@@ -130,6 +130,6 @@ class _WorkThread(QThread):
     def _report(self, share: float, what: str) -> None:
         if self.isInterruptionRequested():
             raise Stopped
-        if what != self._told or monotonic() - self._told_s >= PROGRESS_EVERY_S:
-            self._told_s, self._told = monotonic(), what
+        if what != self._reported or monotonic() - self._reported_s >= PROGRESS_EVERY_S:
+            self._reported_s, self._reported = monotonic(), what
             self.progressed.emit(self, share, what)

@@ -1,4 +1,4 @@
-"""Threads that do one job after the other and tell whoever asked, as long as they are still there.
+"""Threads that do one job after the other and report whoever asked, as long as they are still there.
 
 What a job holds of Qt, as a page that is closed meanwhile, must end on the screen's thread (`garbage.py`). So that
 thread keeps every job until the one that did it has let it go.
@@ -42,7 +42,7 @@ def nothing() -> None:
 class JobThread(QThread):
     """Does one job after the other until `finish`, and nothing after it; begins with the first."""
 
-    told = Signal(object, object)  # the job, and what came of it
+    reported = Signal(object, object)  # the job, and what came of it
     _let_go = Signal()  # the eldest job that is kept
 
     def __init__(
@@ -84,7 +84,7 @@ class JobThread(QThread):
                 outcome = job.call()
             except Exception as error:  # the edge of the thread: beyond it nobody could catch it
                 outcome = refusal_of(error)
-            self.told.emit(job, outcome)
+            self.reported.emit(job, outcome)
             del job, outcome  # not held until the next one comes
             self._let_go.emit()
             self._after_each()

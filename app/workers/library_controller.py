@@ -58,7 +58,7 @@ class LibraryController(QObject):
         self._calls = JobThread(self, lambda: self._holder.do_left_over(), lambda: self._holder.close())
         self._recordings = JobThread(self)
         for lane in (self._calls, self._recordings):
-            lane.told.connect(self._on_told)
+            lane.reported.connect(self._on_reported)
         self._state: OpenedState | None = None
         self._watch: LibraryWatch | None = None
         self.gone_words: Refusal | None = None  # for whoever comes later; None: the library is where it was opened
@@ -102,7 +102,7 @@ class LibraryController(QObject):
     ) -> None:
         """Let the thread make `call`, then call `done(result)` or `failed(what, remedy)` as long as `owner` is there.
 
-        Both are bound methods. Without `failed` a refusal is told by the signal `refused`.
+        Both are bound methods. Without `failed` a refusal is given by the signal `refused`.
         """
         self._ask(self._calls, Job(lambda: call(self._holder.library), weak(done), weak(failed), ref(owner)))
 
@@ -118,7 +118,7 @@ class LibraryController(QObject):
         The `Future` that `call` is given is done when all that was asked before has been.
         """
         if self._state is None:
-            self._tell_refusal(Job(nothing, None, weak(failed), ref(owner)), *nothing_open())
+            self._show_refusal(Job(nothing, None, weak(failed), ref(owner)), *nothing_open())
             return
         library, turn = self._state.library, Future[None]()
         self._ask(self._calls, Job(lambda: turn.set_result(None), None, None, ref(self)))
@@ -134,7 +134,7 @@ class LibraryController(QObject):
     ) -> None:
         """Do what takes long, an import or a backup, beside the calls; one at a time, and `stop_long` ends it.
 
-        Nothing more is heard of what was stopped.
+        Nothing more is known of what was stopped.
         """
         job = Job(nothing, weak(done), weak(failed), ref(owner))
         begin = partial(self._begin_long, work, job, weak(progressed))
@@ -144,7 +144,8 @@ class LibraryController(QObject):
             begin()
 
     def stop_long(self, ended: Callable[[bool], object] | None = None) -> None:
-        """End what takes long; `ended` is told, once it has ended, whether it was done before it could be stopped."""
+        """End what takes long; `ended` is reported, once it has ended, whether it was done before it could be
+        stopped."""
         if self._long.is_busy:
             self._long_ended = weak(ended)
         self._long.stop()
@@ -248,17 +249,17 @@ class LibraryController(QObject):
         """Let the thread do what closes the library, and opens it again."""
         job = Job(lambda: work(report), done, failed, ref(owner))
         if self._state is None:
-            self._tell_refusal(job, *nothing_open())
+            self._show_refusal(job, *nothing_open())
             return
         if self._long.is_busy:
-            self._tell_refusal(job, tr("Another task is still running."), tr("Wait until it has finished, or stop it."))
+            self._show_refusal(job, tr("Another task is still running."), tr("Wait until it has finished, or stop it."))
             return
         if self.gone_words is not None:
-            self._tell_refusal(job, *self.gone_words)
+            self._show_refusal(job, *self.gone_words)
             return
 
         def report(share: float, _what: str) -> None:
-            self._calls.told.emit(job, _Progress(share, progressed))
+            self._calls.reported.emit(job, _Progress(share, progressed))
 
         self._end_watch()
         self._calls.ask(Job(self._recordings.passed().wait, None, None, ref(self)))
@@ -343,10 +344,10 @@ class LibraryController(QObject):
         progressed: "WeakMethod[Callable[[float, str], object]] | None",
     ) -> None:
         if self._state is None:
-            self._tell_refusal(job, *nothing_open())
+            self._show_refusal(job, *nothing_open())
             return
         if self._long.is_busy:  # what was stopped is waited for by the next
-            self._tell_refusal(job, tr("Another task is still running."), tr("Wait until it has finished, or stop it."))
+            self._show_refusal(job, tr("Another task is still running."), tr("Wait until it has finished, or stop it."))
             return
         self._long_job, self._long_progressed = job, progressed
         library, lock = self._state.library, self._holder.long_work
@@ -382,9 +383,9 @@ class LibraryController(QObject):
             self._calls.ask(Job(self._recordings.passed().wait, None, None, ref(self)))
         self._state = self._reopening = self._opening = None
 
-    def _on_told(self, job: Job, outcome: object) -> None:
+    def _on_reported(self, job: Job, outcome: object) -> None:
         if isinstance(outcome, Refusal):
-            self._tell_refusal(job, outcome.what, outcome.remedy)
+            self._show_refusal(job, outcome.what, outcome.remedy)
         elif isinstance(outcome, OpenedState | NotOpened) and job is not self._opening:
             pass  # another was asked for meanwhile, or none: it is closed again, or will be at once
         elif isinstance(outcome, OpenedState):
@@ -392,7 +393,7 @@ class LibraryController(QObject):
             self._begin_watch(outcome)
             self.opened.emit(outcome)
         elif isinstance(outcome, _Progress):
-            if progressed := job.listening(outcome.heard):
+            if progressed := job.listening(outcome.received):
                 progressed(outcome.share, "")
         elif isinstance(outcome, Unlocked):
             self._ask_held()
@@ -485,11 +486,11 @@ class LibraryController(QObject):
             return
         self._begin_watch(outcome.state)
         if outcome.result is None:
-            self._tell_refusal(job, *outcome.refusal)
+            self._show_refusal(job, *outcome.refusal)
         elif done := job.listening(job.done):
             done(outcome.result)
 
-    def _tell_refusal(self, job: Job, what: str, remedy: str) -> None:
+    def _show_refusal(self, job: Job, what: str, remedy: str) -> None:
         if job.failed is None:
             self.refused.emit(what, remedy)
         elif failed := job.listening(job.failed):
@@ -514,9 +515,9 @@ class LibraryController(QObject):
         job, self._long_job = self._long_job, None
         if job is not None:
             refusal = refusal_of(error)
-            self._tell_refusal(job, refusal.what, refusal.remedy)
+            self._show_refusal(job, refusal.what, refusal.remedy)
 
 
 class _Progress(NamedTuple):
     share: float
-    heard: "WeakMethod[Callable[[float, str], object]] | None"
+    received: "WeakMethod[Callable[[float, str], object]] | None"

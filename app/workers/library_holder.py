@@ -64,7 +64,7 @@ class LibraryHolder:
                 ends.enter_context(library)
                 state = replace(_look_through(library, ends), rollback=self._look_back(library))
                 self._library, self._ends = library, ends.pop_all()
-        except Exception as error:  # told where the library was to be opened
+        except Exception as error:  # reported where the library was to be opened
             is_away = station is not None and isinstance(error, ServerSilentError) and is_station(station)
             return NotOpened(*refusal_of(error), isinstance(error, KeyRefusedError), is_away)
         self._is_to_be_tidied = True
@@ -145,7 +145,7 @@ class LibraryHolder:
                 return _end_access(library, _operator_of(library), leaving)
 
         def change() -> ChangedKey:
-            refuse_change(library)  # before anybody is said to work here no longer
+            refuse_change(library)  # before anybody is stated to work here no longer
             return change_data_key(library, _staying(library, leaving), report)
 
         return self._reopened_after(change)
@@ -170,7 +170,7 @@ class LibraryHolder:
     def join(self, folder: Path, address: str, password: str, place: str) -> Joined:
         try:
             join(folder, with_password(address, password), place)
-        except Exception as error:  # told where the server was named
+        except Exception as error:  # reported where the server was named
             place = error.place if isinstance(error, PlaceUnconfirmedError) else ""
             return Joined(refusal_of(error), isinstance(error, PlaceMissingError), place)
         return Joined(None)
@@ -182,7 +182,7 @@ class LibraryHolder:
         with self.long_work:
             try:
                 result = work()
-            except Exception as error:  # told where it was asked for
+            except Exception as error:  # reported where it was asked for
                 refusal = refusal_of(error)
             is_open = library.library.operator is not None
             if result is None and is_open and not (library.folder / MOVING).exists():
@@ -202,7 +202,7 @@ class LibraryHolder:
         self._ends.close()
         with ExitStack() as ends:
             library = ends.enter_context(logged_in(before.folder, key, code))
-            # held anew: where the disk was mounted anew meanwhile, the watch held it, which has ended
+            # held again: where the disk was mounted again meanwhile, the watch held it, which has ended
             ends.enter_context(held_alone(library.folder))
             begin_station(library)
             self._library, self._ends = library, ends.pop_all()
@@ -249,7 +249,7 @@ class LibraryHolder:
 
     @staticmethod
     def gone_words(library: OpenedLibrary) -> Refusal:
-        """What is said of a library whose folder is gone, whether something is being recorded or not."""
+        """What is stated about a library whose folder is gone, whether something is being recorded or not."""
         if library.shared is not None and library.is_there:
             return Refusal(
                 tr("The clinic's server does not respond."),
@@ -288,7 +288,7 @@ def _look_through(library: OpenedLibrary, ends: ExitStack) -> OpenedState:
     brought: frozenset[UUID] = frozenset()
     try:
         brought = bring_home(library)
-    except OSError as error:  # the watch tries again, and says so
+    except OSError as error:  # the watch tries again, and reports it
         _log.warning("what is in the shelter cannot be brought home", exc_info=error)
     return OpenedState(
         library,
@@ -349,7 +349,7 @@ def _end_access(library: OpenedLibrary, operator: Operator, leaving: str) -> Reo
     try:
         _staying(library, leaving)
         slots_of(library.folder).remove(leaving)
-    except Exception as error:  # told where it was asked for
+    except Exception as error:  # reported where it was asked for
         return Reopened(state, None, refusal_of(error))
     what = tr("{code} no longer has access.").format(code=leaving)
     then = tr(

@@ -1,4 +1,4 @@
-"""What stands between a key and an open library? Somebody logged in, what is overdue, a demonstration's patients."""
+"""What is between a key and an open library? Somebody logged in, what is overdue, a demonstration's patients."""
 
 import logging
 from datetime import datetime

@@ -1,4 +1,5 @@
-"""What the library's thread tells the screen: a library that is open, or a folder's; what became of what was asked."""
+"""What the library's thread reports the screen: a library that is open, or a folder's; what became of what was
+asked."""
 
 from dataclasses import dataclass, field
 from pathlib import Path
@@ -63,7 +64,7 @@ class OpenedState:
 
 @dataclass(frozen=True, slots=True)
 class LibraryPlace:
-    """What a folder says before its library is opened. `remembered`: operators whom the keyring may let in.
+    """What a folder states before its library is opened. `remembered`: operators whom the keyring may let in.
 
     `server`: the name of the clinic's server that it is a station of; empty where the server is this computer, None
     where the library is in the folder itself.

@@ -79,7 +79,7 @@ class LibraryWatch(QThread):
                     self.came_back.emit(brought)
 
     def _listen(self) -> bool:
-        """Whether the clinic's server answers, as it was heard a moment ago; true where there is none."""
+        """Whether the clinic's server answers, as it was received a moment ago; true where there is none."""
         if self._library.shared is None or time.monotonic() < self._listen_from_s:
             return self._does_answer
         try:
@@ -112,7 +112,7 @@ class LibraryWatch(QThread):
             self._is_left_here = False
 
     def _look_for_server(self) -> None:
-        """Tell, once, a station that works without its server that it answers again."""
+        """Report, once, a station that works without its server that it answers again."""
         station = self._library.away_from
         if station is None or self._has_server_answered or time.monotonic() < self._listen_from_s:
             return
@@ -125,7 +125,7 @@ class LibraryWatch(QThread):
             self.server_back.emit()
 
     def _took_back(self, ends: ExitStack) -> bool:
-        """Go on with the same library in another folder at its place: its disk was mounted anew, or it is a copy."""
+        """Go on with the same library in another folder at its place: its disk was mounted again, or it is a copy."""
         root = self._library.library.root
         if root is None or not root.is_another():
             return False

@@ -20,11 +20,11 @@ DRIFT_WALK_RAD = np.deg2rad(0.3)  # per square root of a second
 GAP_RAD = np.deg2rad(5.0)  # how far interpolated rates may be off after a gap
 SLOPE_RAD_S = np.deg2rad(1.5)  # what may be left of two biases
 SCALE, SWING_HZ = 0.01, 0.05  # of the gyroscopes; slower than this, a swing is drift
-MAX_ELEVATION_RAD = np.deg2rad(45.0)  # an axis that stands steeper does not show the scales
+MAX_ELEVATION_RAD = np.deg2rad(45.0)  # an axis that is steeper does not show the scales
 SD_FACTOR = 2.0  # the covariance of the fit alone holds too little
 SD_STEP_S = 0.5  # it changes slowly
 CLIPPED_BEYOND_RAD_S, SAME_RAD_S = 1.5, 1e-9  # the narrowest range of a gyroscope is 125 deg/s
-CORRELATION_S = 0.1  # accelerations nearer in time tell the same
+CORRELATION_S = 0.1  # accelerations nearer in time report the same
 SAMPLES_PER_S = 20.0
 MIN_SCALE_M_S2 = 0.02
 STEPS = 6
@@ -72,7 +72,7 @@ def hinge_angle_and_sd(
     force_1 = pair.a1[chosen] - unknowns[6:9] - lever_acceleration(pair.g1[chosen], pair.dg1[chosen], unknowns[0:3])
     force_2 = pair.a2[chosen] - unknowns[9:12] - lever_acceleration(pair.g2[chosen], pair.dg2[chosen], unknowns[3:6])
     z1, z2 = in_plane(force_1, j1), in_plane(force_2, j2)
-    # the true drift turns z2 exp(i from_rates) into z1; a long z tells its direction better than a short one
+    # the true drift turns z2 exp(i from_rates) into z1; a long z reports its direction better than a short one
     ahead = z1 * np.conj(z2 * np.exp(1j * from_rates[chosen]))
     length = np.sqrt(np.abs(ahead))
     causes = _causes(pair, j1, from_rates)

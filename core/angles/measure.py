@@ -51,7 +51,7 @@ class Twist:
     """One joint over one recording. Angles (n,) on the recording's clock, radians, NaN where unknown, without jumps.
 
     `added_sd_rad` (n,) is what adds to the uncertainty here and there: a hinge's drift, and gaps, for an orientation
-    that starts anew amid a movement has to find the vertical first. The others are thinned samples (m, ...) while the
+    that starts again amid a movement has to find the vertical first. The others are thinned samples (m, ...) while the
     joint's segments move: the angle, and each sensor's own rate about its own axis; and, of those of them at which they
     turn (`is_turning`), all of the off-axis rate and what of it is above 3 Hz.
     `lean_1_rad`, `lean_2_rad` (n,): how both segments stand to the vertical, as `lean_about` has it; of knees only.
@@ -71,7 +71,7 @@ class Twist:
 
 
 def pairs_of(tracks: SensorTracks, recording: Recording, joint: Joint, block: Block, lag_s: float) -> list[Pair]:
-    """All stretches of one block in which both sensors of a joint were heard.
+    """All stretches of one block in which both sensors of a joint were received.
 
     Parameters
     ----------
@@ -96,7 +96,7 @@ def pairs_of(tracks: SensorTracks, recording: Recording, joint: Joint, block: Bl
 
 
 def paired(proximal: list[OrientedTrack], distal: list[OrientedTrack], lag_s: float) -> list[Pair]:
-    """All stretches in which both sensors of a joint were heard, the distal one's stamps moved by a lag.
+    """All stretches in which both sensors of a joint were received, the distal one's stamps moved by a lag.
 
     Parameters
     ----------
@@ -185,7 +185,7 @@ def measure(
 
 
 def is_anchored(pair: Pair) -> bool:
-    """Whether enough of a stretch is known to say where its angle stands."""
+    """Whether enough of a stretch is known to say where its angle is."""
     return int(np.count_nonzero(pair.is_known)) * pair.step_s >= MIN_KNOWN_S
 
 
@@ -200,7 +200,7 @@ def _north_pairs(tracks: SensorTracks, recording: Recording, joint: Joint, block
 def place(
     into: FloatArray, values: FloatArray, pair: Pair, time_s: FloatArray, clock_offset_s: float, block: Block
 ) -> None:
-    """Write a pair's values at the stamps they belong to, where both sensors were heard.
+    """Write a pair's values at the stamps they belong to, where both sensors were received.
 
     Parameters
     ----------
@@ -220,9 +220,9 @@ def place(
     position = np.clip((time_s[first:last] - start_s) / pair.step_s, 0, len(values) - 1)
     whole = np.round(position)
     position = np.where(np.abs(position - whole) < 1e-3, whole, position)
-    is_heard = pair.is_measured[np.floor(position).astype(int)] & pair.is_measured[np.ceil(position).astype(int)]
+    is_received = pair.is_measured[np.floor(position).astype(int)] & pair.is_measured[np.ceil(position).astype(int)]
     placed = at_positions(values[:, None], position)[:, 0]
-    into[first:last] = np.where(is_heard, placed, into[first:last])
+    into[first:last] = np.where(is_received, placed, into[first:last])
 
 
 def unwrap_over_gaps(angle_rad: FloatArray) -> None:
@@ -233,6 +233,6 @@ def unwrap_over_gaps(angle_rad: FloatArray) -> None:
     angle_rad : (n,)
         NaN in gaps; changed in place.
     """
-    heard = np.flatnonzero(np.isfinite(angle_rad))
-    if len(heard):
-        angle_rad[heard] = np.unwrap(angle_rad[heard])
+    received = np.flatnonzero(np.isfinite(angle_rad))
+    if len(received):
+        angle_rad[received] = np.unwrap(angle_rad[received])

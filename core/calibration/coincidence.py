@@ -94,7 +94,7 @@ def coincidence_design(data: Datasets, rotation_12: FloatArray) -> FloatArray:
 
 @dataclass(frozen=True, slots=True)
 class JointForces:
-    """What both sensors of a joint feel of it, low-passed, at those samples of a data set where both were heard.
+    """What both sensors of a joint feel of it, low-passed, at those samples of a data set where both were received.
 
     `chosen` (n,) are the samples' numbers, `terms_1` and `terms_2` (7, 3, n) as in `JointForce`.
     """
@@ -113,7 +113,7 @@ def joint_forces(data: Datasets, room_s: float = 0.0) -> JointForces:
     Parameters
     ----------
     room_s
-        How much earlier and later the distal sensor has to be heard as well.
+        How much earlier and later the distal sensor has to be received as well.
 
     Returns
     -------
@@ -125,9 +125,9 @@ def joint_forces(data: Datasets, room_s: float = 0.0) -> JointForces:
         mine = data.stretch == s
         one, two = (track.joint_force for track in pair.tracks)
         own_s = data.time_s[mine]
-        is_clear[mine] = one.is_heard_at(own_s)
+        is_clear[mine] = one.is_received_at(own_s)
         for shift_s in (-room_s, 0.0, room_s) if room_s else (0.0,):
-            is_clear[mine] &= two.is_heard_at(own_s - pair.lag_s - shift_s)
+            is_clear[mine] &= two.is_received_at(own_s - pair.lag_s - shift_s)
     if np.count_nonzero(is_clear) < MIN_CLEAR:
         is_clear[:] = True
     chosen = np.flatnonzero(is_clear)

@@ -25,7 +25,7 @@ STEPS = 6
 MIN_RATE_SCALE_RAD_S = 0.01
 MIN_NEUTRAL_SCALE_RAD = np.deg2rad(0.3)
 
-# An axis that stands upright (lying on the side, seated sideways) shows no heading; then the accelerations of the joint
+# An axis that is upright (lying on the side, seated sideways) shows no heading; then the accelerations of the joint
 # have to. On horizontal axes they do slightly more harm than good.
 STEEP_RAD = np.deg2rad(58.0)
 MIN_FORCE_SCALE_M_S2 = 0.15

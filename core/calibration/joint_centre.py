@@ -22,12 +22,12 @@ from core.signal.rotations import cross, cross_matrix, joint_frame
 MIN_SCALE_M_S2 = 0.02
 NORM_STEPS = 10
 # A sensor's shift in step with the limb looks the same in every sample: its energy, counted in residuals, divides the
-# information, however long the motion lasts. With the factor below nine of ten centres that are told lie within twice
+# information, however long the motion lasts. With the factor below nine of ten centres lie within twice
 # the standard deviation (240 simulated joints, stopped at random times as in tests/benchmarks/excitation.py).
 IN_STEP_M = 0.0004
 SD_FACTOR_HUMAN = 2.5
 # What the residuals themselves show, hanging together over a second, counts beside it: four times their standard
-# deviation, with which nine of ten centres of 190 simulated sessions with walks lie within twice what is told.
+# deviation, with which nine of ten centres of 190 simulated sessions with walks lie within twice what is reported.
 SEEN_SHARE = (4.0 / 2.5) ** 2
 SD_FACTOR_HINGE = 8.0  # scale errors, and what noise in the angular accelerations pretends to know of a still segment
 MIN_SD_HINGE_M = 0.002

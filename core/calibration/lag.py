@@ -105,7 +105,7 @@ def smoothest_lag(data: Datasets, knots_rad: FloatArray) -> Lag:
 def sharpest_lag(data: Datasets, knots_rad: FloatArray) -> Lag:
     """Where the accelerations of a hinge coincide best, in whole samples.
 
-    Nothing rings there, and the sharpest changes tell most: the accelerations are taken as they are.
+    Nothing rings there, and the sharpest changes report most: the accelerations are taken as they are.
 
     Parameters
     ----------
@@ -177,12 +177,13 @@ def _lowest(costs_of: Callable[[FloatArray], FloatArray], step_s: float, indepen
 
 
 def _share_of_sample(time_s: FloatArray) -> float:
-    """What each of the samples at instants (n,) tells, where neighbours within a tenth of a second tell the same."""
+    """What each of the samples at instants (n,) reports, where adjacent ones within a tenth of a second report the
+    same."""
     return min(1.0, float(np.median(np.diff(time_s))) / CORRELATION_S)
 
 
 def _with_room(data: Datasets, reach: int) -> Datasets:
-    """The samples whose neighbours within `reach` are all known."""
+    """The samples whose adjacent ones within `reach` are all known."""
     keep = np.ones(len(data), dtype=bool)
     for s, pair in enumerate(data.pairs):
         mine = data.stretch == s

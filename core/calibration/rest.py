@@ -6,7 +6,7 @@ import numpy as np
 
 from core.samples import FloatArray, ImuBlock
 from core.signal.pair import moving_mean
-from core.signal.tracks import BLOCK_S, is_heard, nominal_step_s
+from core.signal.tracks import BLOCK_S, is_received, nominal_step_s
 
 WINDOW_S = 0.5
 MAX_SPREAD_RAD_S = 0.06  # sway and trembling of a standing person; a step is ten times that
@@ -28,7 +28,7 @@ def rest_of(block: ImuBlock) -> Rest | None:
     """What a sensor reads while it is still in the first ten minutes; None where it never is for half a second."""
     first = slice(0, int(np.searchsorted(block.time_s, block.time_s[0] + BLOCK_S))) if len(block) else slice(0)
     time_s, gyr, acc = block.time_s[first], block.gyr_rad_s[first], block.acc_m_s2[first]
-    is_there = is_heard(time_s, gyr, acc)
+    is_there = is_received(time_s, gyr, acc)
     time_s, gyr, acc = time_s[is_there], gyr[is_there], acc[is_there]
     if len(time_s) < 5:
         return None

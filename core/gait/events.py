@@ -11,10 +11,10 @@ One definition of each event, for any speed and sampling rate; levels follow eac
 A foot that lands with its forefoot is turned the other way by the floor: toes up, by a heel that comes down. Its full
 contact is where it ceases to sink, be the heel on the floor or not.
 
-Where a foot hardly rolls, or comes down flat while it goes on (shuffling, dragging), the pitch says nothing of contact
-and toe-off; how the sole travels over the floor does (`core.gait.sole`). What neither tells stays unknown, that event
+Where a foot hardly rolls, or comes down flat while it goes on (shuffling, dragging), the pitch gives nothing of contact
+and toe-off; how the sole travels over the floor does (`core.gait.sole`). What neither reports stays unknown, that event
 alone. Each event carries its source and a standard deviation.
-Where the sensor shakes on its foot, the rate of one swing says little; the foot's mean swing does.
+Where the sensor shakes on its foot, the rate of one swing states little; the foot's mean swing does.
 """
 
 from dataclasses import dataclass, replace
@@ -47,7 +47,7 @@ FLAT_SHARE = 0.15  # of the greatest speed: below, a foot that does not roll is 
 
 
 class EventSource(StrEnum):
-    """What told when an event was."""
+    """What reported when an event was."""
 
     UNKNOWN = ""
     PITCH = "pitch"
@@ -57,7 +57,7 @@ class EventSource(StrEnum):
 
 SOURCES = tuple(EventSource)
 EVENTS = ("heel_rise_s", "toe_off_s", "initial_contact_s", "full_contact_s")  # the order of columns
-# Standard deviations, s, of EVENTS by what told them, besides what was extrapolated. Pitch: initial contact and toe-off
+# Standard deviations, s, of EVENTS by what found them, besides what was extrapolated. Pitch: initial contact and toe-off
 # against optics and force plates (10-14 and 3-8 ms), the others on simulated feet; sole: simulated flat, dragging feet
 SD_S = {
     EventSource.PITCH: (0.020, 0.010, 0.012, 0.020),
@@ -116,7 +116,8 @@ class FootEvents:
     is_measured
         False where samples were missing between heel rise and full contact.
     source, sd_s : (k, 4)
-        What told each event, an index into SOURCES, and its standard deviation; columns as EVENTS, NaN where unknown.
+        What reported each event, an index into SOURCES, and its standard deviation; columns as EVENTS, NaN where
+        unknown.
     """
 
     heel_rise_s: FloatArray
@@ -216,7 +217,7 @@ def detect_events(motion: FootMotion, is_measured: BoolArray, is_rigid: bool = F
 
 
 def _time_by_sole(timing: Timing, sole: SoleTravel, is_lifted: bool, is_landed: BoolArray) -> None:
-    """Time toe-offs of a foot that is lifted, and contacts that the pitch does not tell, by the sole; in place.
+    """Time toe-offs of a foot that is lifted, and contacts that the pitch does not report, by the sole; in place.
 
     A heel rise that comes later than its toe-off is not known.
     """
@@ -248,8 +249,8 @@ def _as_events(motion: FootMotion, timing: Timing, is_measured: BoolArray) -> Fo
     missing = np.concatenate([[0], np.cumsum(~is_measured)])
     by_source = np.array([SD_S.get(source, (np.nan,) * len(EVENTS)) for source in SOURCES])
     sd_s = np.hypot(by_source[timing.source, np.arange(len(EVENTS))], REACH_SHARE * motion.step_s * timing.reach)
-    is_heard = missing[swings.anchor_after + 1] == missing[swings.anchor_before]
-    sd_s[~is_heard] = np.hypot(sd_s[~is_heard], MAX_REPORTED_GAP_S)  # the event may lie where samples are missing
+    is_received = missing[swings.anchor_after + 1] == missing[swings.anchor_before]
+    sd_s[~is_received] = np.hypot(sd_s[~is_received], MAX_REPORTED_GAP_S)  # the event may lie where samples are missing
     return FootEvents(
         heel_rise_s=times[:, HEEL_RISE],
         toe_off_s=times[:, TOE_OFF],
@@ -260,7 +261,7 @@ def _as_events(motion: FootMotion, timing: Timing, is_measured: BoolArray) -> Fo
         climb_m=motion.climb_m,
         turn_rad=motion.turn_rad,
         is_certain=np.full(len(swings), motion.is_direction_certain),
-        is_measured=is_heard,
+        is_measured=is_received,
         source=timing.source,
         sd_s=sd_s,
     )

@@ -4,14 +4,15 @@ The definitions and their constants are those of the offline events. What offlin
 on the way: the usual peaks from the last steps, the pitch axis from all turning so far. As long as the delay allows,
 an event waits until its peak has passed, so that it is the same peak as offline.
 
-A rate alone does not tell a push-off from a heel lifted on the spot: from stance to stance the specific force is
-integrated, and a foot that gains no speed has not left the floor. What cannot be known in time is told late
+A rate alone does not report a push-off from a heel lifted on the spot: from stance to stance the specific force is
+integrated, and a foot that gains no speed has not left the floor. What cannot be known in time is reported late
 (`LiveEvent.is_late`): the heel rise of a step from standing, with its toe-off, since one who shifts weight lifts the
 heel as well; flat landings, and steps of a foot that hardly rolls, once the foot is calm again; and the heel rises of
-a sensor that shakes on its foot, whose stances have shown that it does. The full contact of a flat landing is not told.
+a sensor that shakes on its foot, whose stances have shown that it does. The full contact of a flat landing is not
+reported.
 
-A foot that lands with its forefoot is told its contact when its toes come down in the air, 0.1 to 0.2 s too early.
-All this is about walking: a foot that is moved about in the air is told steps too, until it has not stood
+A foot that lands with its forefoot is given its contact when its toes come down in the air, 0.1 to 0.2 s too early.
+All this is about walking: a foot that is moved about in the air is reported steps too, until it has not stood
 for long.
 """
 
@@ -68,7 +69,7 @@ class LiveEventSettings:
     min_flat_s
         A foot stays flat longer than this; a loading shock does not.
     standing_s
-        A foot that is flat for longer stands. Source: at 0.3 m/s, the slowest, a foot is flat for 0.7 s of each stride.
+        A foot that is flat for longer is. Source: at 0.3 m/s, the slowest, a foot is flat for 0.7 s of each stride.
     max_push_s
         From the end of push-off until the foot has speed; after longer the heel was lifted on the spot.
     first_load_share
@@ -124,24 +125,25 @@ PHASE_AFTER = {
 
 @dataclass(frozen=True, slots=True)
 class LiveEvent:
-    """`time_s` is when it happened, `told_s` the sample that told."""
+    """`time_s` is when it happened, `reported_s` the sample that reported."""
 
     event: FootEvent
     time_s: float
-    told_s: float
+    reported_s: float
 
     @property
     def is_late(self) -> bool:
-        return self.told_s - self.time_s > SETTINGS.max_delay_s
+        return self.reported_s - self.time_s > SETTINGS.max_delay_s
 
 
 @dataclass(frozen=True, slots=True)
 class PhaseChange:
-    """The sample at `told_s` put the foot into a phase, or told an event: it has been in this phase since `since_s`."""
+    """The sample at `reported_s` put the foot into a phase, or reported an event: it has been in this phase since
+    `since_s`."""
 
     phase: Phase
     since_s: float
-    told_s: float
+    reported_s: float
 
 
 class LiveEvents:
@@ -150,7 +152,7 @@ class LiveEvents:
     Parameters
     ----------
     pitch_axis : (3,) or None
-        About which the foot mostly turns, in sensor axes, either sign, if a calibration tells; it is followed on.
+        About which the foot mostly turns, in sensor axes, either sign, if a calibration reports; it is followed on.
     """
 
     def __init__(self, pitch_axis: FloatArray | None = None) -> None:
@@ -159,7 +161,7 @@ class LiveEvents:
         self._events: list[LiveEvent] = []
         self._changes: list[PhaseChange] = []
         self._phase = Phase.UNKNOWN
-        self._path: list[Sample] = []  # since the phase began, or since the rate last said that it cannot end yet
+        self._path: list[Sample] = []  # since the phase began, or since the rate last stated that it cannot end yet
         self._pushes: deque[float] = deque(maxlen=SETTINGS.memory)
         self._loads: deque[float] = deque(maxlen=SETTINGS.memory)
         self._contacts_s: deque[float] = deque(maxlen=SETTINGS.memory + 1)
@@ -190,7 +192,7 @@ class LiveEvents:
     def changes(self) -> list[PhaseChange]:
         """What the samples of the last update made of the phase.
 
-        Between two phases told by one sample it may have passed others: its events name them.
+        Between two phases reported by one sample it may have passed others: its events name them.
         """
         return self._changes
 
@@ -202,7 +204,7 @@ class LiveEvents:
         return 120.0 / median(end - start for start, end in pairwise(self._contacts_s))
 
     def update(self, time_s: FloatArray, gyr_rad_s: FloatArray, acc_m_s2: FloatArray) -> list[LiveEvent]:
-        """Take the next samples; returns what they tell, in the order of telling.
+        """Take the next samples; returns what they report, in the order of telling.
 
         Parameters
         ----------
@@ -230,13 +232,13 @@ class LiveEvents:
     def _since_s(self, now_s: float) -> float:
         """Since when the foot is in the phase that the sample at `now_s` put it into."""
         last = self._events[-1] if self._events else None
-        is_by_event = last is not None and last.told_s == now_s and PHASE_AFTER[last.event] is self._phase
+        is_by_event = last is not None and last.reported_s == now_s and PHASE_AFTER[last.event] is self._phase
         return last.time_s if last is not None and is_by_event else now_s
 
     def _forget_the_step(self) -> None:
         self._phase, self._path, self._waiting, self._flat_since_s = Phase.UNKNOWN, [], [], -math.inf
         self._contacts_s.clear()
-        self._motion.start_anew()
+        self._motion.start_again()
 
     def _take(self, gyr: Vector, acc: Vector) -> None:
         motion = self._motion
@@ -265,7 +267,7 @@ class LiveEvents:
                 self._advance((then_s, dot(rate, axis)), speed_m_s)
 
     def _arrive(self, travelled: Travelled) -> None:
-        """The foot is calm again. Had it hardly rolled, its speed tells when it left and landed."""
+        """The foot is calm again. Had it hardly rolled, its speed gives when it left and landed."""
         speeds = speeds_of(travelled)
         fastest = max(range(len(speeds)), key=lambda k: speeds[k][1])
         level = FLAT_SHARE * speeds[fastest][1]
@@ -277,12 +279,12 @@ class LiveEvents:
         if is_reported or speeds[fastest][1] < MIN_SWING_M_S or way_of_m(travelled) < MIN_SWING_M:
             return
         rises = [pair for pair in pairwise(speeds[: fastest + 1]) if pair[0][1] <= level < pair[1][1]]
-        self._tell(FootEvent.TOE_OFF, _crossing(*rises[-1], level) if rises else speeds[0][0])
-        self._tell(FootEvent.INITIAL_CONTACT, on_s)
+        self._show_message(FootEvent.TOE_OFF, _crossing(*rises[-1], level) if rises else speeds[0][0])
+        self._show_message(FootEvent.INITIAL_CONTACT, on_s)
         self._stand(self._time_s)
 
     def _rest(self) -> None:
-        """The foot lies flat: whatever was missed, it stands."""
+        """The foot lies flat: whatever was missed, it is."""
         if not self._pushes:
             self._motion.forget_axis()
         else:
@@ -291,20 +293,20 @@ class LiveEvents:
             self._end_landing()
 
     def _end_landing(self) -> None:
-        """Tell what is still to be told of a foot that has come down."""
+        """Report what is still to be given of a foot that has come down."""
         if self._phase is Phase.SWING and self._dip:
             self._touch_down(self._contact(self._dip, -self._peak), self._dip)
         elif self._phase is Phase.SWING and not math.isnan(self._slow_s):
-            self._tell(FootEvent.INITIAL_CONTACT, self._slow_s)
+            self._show_message(FootEvent.INITIAL_CONTACT, self._slow_s)
         if self._phase is Phase.LOADING and self._full_s is not None:
-            self._tell(FootEvent.FULL_CONTACT, self._full_s)
+            self._show_message(FootEvent.FULL_CONTACT, self._full_s)
         is_landing = self._phase in (Phase.SWING, Phase.LOADING)
         self._stand(self._time_s if is_landing else self._flat_since_s)
 
     def _stand(self, since_s: float) -> None:
         self._phase, self._path, self._flat_since_s = Phase.FOOT_FLAT, [], since_s
 
-    def _tell(self, event: FootEvent, time_s: float) -> None:
+    def _show_message(self, event: FootEvent, time_s: float) -> None:
         self._events.append(LiveEvent(event, time_s, self._time_s))
         if event is FootEvent.INITIAL_CONTACT:
             if time_s - self._contact_s > MAX_STRIDE_S:
@@ -315,7 +317,7 @@ class LiveEvents:
             self._loads.append(-self._peak)
 
     def _is_due(self, time_s: float) -> bool:
-        """Would the next sample be too late to tell?"""
+        """Would the next sample be too late to report?"""
         return self._time_s + self._step_s - time_s > SETTINGS.max_delay_s
 
     def _advance(self, now: Sample, speed_m_s: float) -> None:
@@ -373,8 +375,8 @@ class LiveEvents:
         self._sway *= SETTINGS.sway_memory
         self._still = max(MIN_STILL_RAD_S, STILL_SHARE * median(self._pushes))
         if not self._is_rise_reported:
-            self._tell_rise(self._rise(self._still))
-        self._tell(FootEvent.TOE_OFF, self._off_s)
+            self._show_rise(self._rise(self._still))
+        self._show_message(FootEvent.TOE_OFF, self._off_s)
         self._phase, self._path = Phase.SWING, []
         self._left_s, self._slow_s, self._fastest_m_s = self._off_s, math.nan, 0.0
         self._peak, self._dip = 0.0, []
@@ -384,12 +386,12 @@ class LiveEvents:
             return
         rise_s = self._rise(self._still)
         if -now[1] > SETTINGS.sure_ratio * self._still or self._is_due(rise_s):
-            self._tell_rise(rise_s)
+            self._show_rise(rise_s)
 
     def _rise(self, still: float) -> float:
         """Where a rate that falls to the peak of push-off began to, extrapolated from two low levels.
 
-        While it has not reached the second, its growth with the power 1.75 of time tells as well.
+        While it has not reached the second, its growth with the power 1.75 of time reports as well.
         """
         low, high = self._path[0][0], None
         for last, now in pairwise(self._path):
@@ -406,8 +408,8 @@ class LiveEvents:
             reach_s = ONSET_RATIO * (high - low)
         return max(low - reach_s, self._flat_since_s)
 
-    def _tell_rise(self, rise_s: float) -> None:
-        self._tell(FootEvent.HEEL_RISE, rise_s)
+    def _show_rise(self, rise_s: float) -> None:
+        self._show_message(FootEvent.HEEL_RISE, rise_s)
         self._is_rise_reported = True
 
     def _land(self, now: Sample, speed_m_s: float) -> None:
@@ -452,7 +454,7 @@ class LiveEvents:
         return min(whole_s, half_s + LANDED_S)
 
     def _touch_down(self, contact_s: float, path: list[Sample]) -> None:
-        self._tell(FootEvent.INITIAL_CONTACT, contact_s)
+        self._show_message(FootEvent.INITIAL_CONTACT, contact_s)
         self._phase, self._path = Phase.LOADING, []
         self._peak, self._half_s, self._full_s = 0.0, None, None
         for sample in path:
@@ -476,7 +478,7 @@ class LiveEvents:
         usual = median(self._loads) if self._loads else math.inf
         is_sure = -self._peak > SETTINGS.passed_share * usual and now[0] > self._full_s
         if is_sure or self._is_due(self._full_s):
-            self._tell(FootEvent.FULL_CONTACT, self._full_s)
+            self._show_message(FootEvent.FULL_CONTACT, self._full_s)
             self._stand(self._full_s)
 
 

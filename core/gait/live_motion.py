@@ -67,7 +67,7 @@ class LiveMotion:
     travelled
         Time and velocity from the moment the foot was no longer calm, on the sample when it is calm again; else empty.
     has_turned_round
-        On the sample that says that the toes are on the other side than was thought.
+        On the sample that states that the toes are on the other side than was thought.
     """
 
     def __init__(self, pitch_axis: FloatArray | None) -> None:
@@ -81,9 +81,9 @@ class LiveMotion:
         self.pitch_axis: Vector | None = None
         self._turning = self._calmest = UNTURNED
         self._fastest_m_s = 0.0
-        self.start_anew()
+        self.start_again()
 
-    def start_anew(self) -> None:
+    def start_again(self) -> None:
         """After a gap the foot may be anywhere."""
         self._up: Vector | None = None
         self._restless = SHOCK_RATIO * self._limit
@@ -229,7 +229,8 @@ class LiveMotion:
         self._fastest_m_s = 0.0
 
     def _vote(self, step: Turning) -> None:
-        """The last step says where the toes are: its swing was mostly toes down or, if it hardly rolled, toes first."""
+        """The last step states where the toes are: its swing was mostly toes down or, if it hardly rolled, toes
+        first."""
         turned, tilted, lasted_s = step
         if self._fastest_m_s < VOTING_M_S or lasted_s < MIN_STEP_S or self.pitch_axis is None:
             return
@@ -238,8 +239,8 @@ class LiveMotion:
         heel_up_rad = 0.5 * dot(turned, self.pitch_axis) - dot(tilted, self.pitch_axis) / lasted_s
         up, velocity = self._fastest
         toes_first = dot(_cross(up, self.pitch_axis), velocity)
-        said = heel_up_rad if abs(heel_up_rad) > ROLLING_RAD else toes_first
-        self._votes = VOTE_MEMORY * self._votes + math.copysign(weight, said)
+        stated = heel_up_rad if abs(heel_up_rad) > ROLLING_RAD else toes_first
+        self._votes = VOTE_MEMORY * self._votes + math.copysign(weight, stated)
         if self._votes < 0.0:
             x, y, z = self.pitch_axis
             self.pitch_axis, self._votes = (-x, -y, -z), -self._votes

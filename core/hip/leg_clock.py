@@ -68,7 +68,7 @@ def leg_clock(left: ThighClock, right: ThighClock, is_proven: bool) -> LegClock:
     Parameters
     ----------
     is_proven
-        The session says, or the stamps prove, that both legs share one clock; then nothing is moved.
+        The session states, or the stamps prove, that both legs share one clock; then nothing is moved.
     """
     offset_s = left.lag_s - right.lag_s
     moving_s = min(left.moving_s, right.moving_s)
@@ -81,7 +81,7 @@ def leg_clock(left: ThighClock, right: ThighClock, is_proven: bool) -> LegClock:
         and not (left.is_at_border or right.is_at_border)
     )
     if not is_found:
-        return LegClock(offset_s, float("nan"), ClockStatus.WITHHELD)
+        return LegClock(offset_s, float("nan"), ClockStatus.NOT_REPORTED)
     return LegClock(offset_s, SD_S if moving_s < LONG_S else LONG_SD_S, ClockStatus.FOUND)
 
 

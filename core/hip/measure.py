@@ -50,12 +50,12 @@ Knees = Mapping[Joint, JointCalibration]
 
 
 def is_trusted(found: HipFit | HipIdentification) -> bool:
-    """Whether both sensors moved as neighbours of one hip do, beyond doubt about the heading."""
+    """Whether both sensors moved as adjacent segments of one hip do, beyond doubt about the heading."""
     return found.margin >= MIN_MARGIN and found.disagreement < MAX_DISAGREEMENT
 
 
 def is_by_cardan_angles(fit: HipFit) -> bool:
-    """Whether its heading is sure enough for Cardan angles, and is one of neighbours at all."""
+    """Whether its heading is sure enough for Cardan angles, and is one of adjacent ones at all."""
     return fit.sd_rad <= MAX_3D_SD_RAD and is_trusted(fit)
 
 
@@ -223,8 +223,8 @@ def with_sd(flexion_rad: FloatArray) -> tuple[FloatArray, FloatArray]:
     (n,) and (n,)
         rad, and its sd in rad; NaN where unknown.
     """
-    heard = flexion_rad[np.isfinite(flexion_rad)]
-    median = float(np.median(heard)) if len(heard) else 0.0
+    received = flexion_rad[np.isfinite(flexion_rad)]
+    median = float(np.median(received)) if len(received) else 0.0
     flexion_rad = flexion_rad - 2 * np.pi * np.round(median / (2 * np.pi))
     sd_rad = SD_RAD + SD_SHARE * np.abs(flexion_rad - wrap(np.array(median)))
     return flexion_rad, np.where(flexion_rad > DEEP_RAD, sd_rad + DEEP_SD_RAD, sd_rad)
@@ -241,7 +241,7 @@ def _angles(pair: Pair, fit: HipFit, frames: HipFrames, side: Side) -> tuple[Flo
 
 
 def _with_places(hips: dict[Joint, HipAngle], frames: HipFrames) -> dict[Joint, HipAngle]:
-    """The same, told how far the left hip's centre lies to the left of the right one."""
+    """The same, reported how far the left hip's centre lies to the left of the right one."""
     if len(hips) < len(Side):
         return hips
     left, right = (-frames.pelvis @ hips[hip_of(side)].identification.centre_proximal_m for side in Side)
@@ -263,9 +263,9 @@ def _pelvis(
             here, position = _positions(
                 worn.track.start_s, worn.track.step_s, len(turned), time_s, from_pelvis_s, block
             )
-            is_heard = worn.track.is_measured[np.round(position).astype(int)]
+            is_received = worn.track.is_measured[np.round(position).astype(int)]
             for into, found in zip((tilt, obliquity, heading), values, strict=True):
-                into[here] = np.where(is_heard, at_positions(found[:, None], position)[:, 0], into[here])
+                into[here] = np.where(is_received, at_positions(found[:, None], position)[:, 0], into[here])
     unwrap_over_gaps(heading)
     return PelvisAngles(tilt, obliquity, np.full(len(time_s), np.nan)), heading
 

@@ -36,11 +36,11 @@ def turns_of(time_s: FloatArray, heading_rad: FloatArray) -> tuple[PelvisTurn, .
     tuple of PelvisTurn
         In order of time, angles in rad, to the left positive.
     """
-    heard = np.flatnonzero(np.isfinite(heading_rad))
-    if len(heard) < 3:
+    received = np.flatnonzero(np.isfinite(heading_rad))
+    if len(received) < 3:
         return ()
     step_s = nominal_step_s(time_s)
-    even = np.interp(time_s, time_s[heard], heading_rad[heard])
+    even = np.interp(time_s, time_s[received], heading_rad[received])
     smooth = gaussian_filter1d(even, HALF_POWER / TURN_HZ / step_s, mode="nearest")
     rate = np.gradient(smooth, time_s)
     turns: list[PelvisTurn] = []
@@ -70,11 +70,11 @@ def rotation_of(
         rad.
     """
     rotation = np.full(len(time_s), np.nan)
-    heard = np.flatnonzero(np.isfinite(heading_rad))
-    if not np.isfinite(stride_s) or len(heard) < 3:
+    received = np.flatnonzero(np.isfinite(heading_rad))
+    if not np.isfinite(stride_s) or len(received) < 3:
         return rotation
     step_s = nominal_step_s(time_s)
-    even = np.interp(time_s, time_s[heard], heading_rad[heard])
+    even = np.interp(time_s, time_s[received], heading_rad[received])
     rotation = even - moving_mean(even, max(1, round(2.0 * stride_s / step_s)))
     rotation[~np.isfinite(heading_rad)] = np.nan
     for turn in turns:

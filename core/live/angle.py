@@ -26,7 +26,7 @@ from core.signal.rotations import wrap
 
 BEAT_S = 0.1  # what moves slowly is looked at once in this time, on the proximal grid
 WITNESS_STEP_S = 0.05
-WITNESS_S = 5.0  # of movement, whose off-axis rate says how sure the angle is
+WITNESS_S = 5.0  # of movement, whose off-axis rate states how sure the angle is
 CERTAINTY_BEATS = 5  # from one word on that to the next
 BLEND_S = 1.0  # from one calibration to the next
 
@@ -40,16 +40,16 @@ SETTLED_RAD = np.deg2rad(0.5)
 SETTLING_KNEE_S, SETTLING_ANKLE_S = 4.0, 8.0  # after which the twist is better than a human joint's integral
 START_RESTING_RAD = np.deg2rad(2.0)
 RESTING_FORCE_M_S2 = (9.4, 10.2)  # of a sensor that hardly moves
-MAX_START_RAD = np.deg2rad(6.0)  # no angle is told as long as its start is less sure
+MAX_START_RAD = np.deg2rad(6.0)  # no angle is reported as long as its start is less sure
 
-MAX_STEEPNESS = 0.99  # sine; an axis that stands upright shows no heading at all
+MAX_STEEPNESS = 0.99  # sine; an axis that is upright shows no heading at all
 
 
 @dataclass(frozen=True, slots=True)
 class AngleSamples:
     """Flexion or dorsiflexion on the proximal sensor's grid, radians, and its standard deviation; NaN in gaps.
 
-    All (n,). `tick` is the proximal stream's: where it jumps, that sensor was not heard for long.
+    All (n,). `tick` is the proximal stream's: where it jumps, that sensor was not received for long.
     """
 
     tick: IntArray
@@ -100,7 +100,7 @@ class LiveAngle:
         self._integral: Integral | None = None
         self._started_s, self._start_sd_rad = 0.0, START_MOVING_RAD
         self._beat, self._next = 0, -1
-        self._last: float | None = None  # the angle told last in this stretch
+        self._last: float | None = None  # the angle reported last in this stretch
         self._is_switched = False
         self._blend: tuple[float, float] | None = None  # since when, and how far ahead of the new calibration then
 
@@ -113,7 +113,7 @@ class LiveAngle:
     def recalibrate(self, calibration: JointCalibration) -> None:
         """Go over to another calibration of the same joint, from the next sample on.
 
-        The angle goes on from where it is and reaches what the new calibration says after BLEND_S, on half a cosine.
+        The angle goes on from where it is and reaches what the new calibration states after BLEND_S, on half a cosine.
         """
         old, new = self._geometry, JointGeometry(calibration)
         if (new.j1 @ old.j1) * (new.j2 @ old.j2) < 0:  # paired the other way round: so are the headings
@@ -195,7 +195,7 @@ class LiveAngle:
         return np.hypot(left, SETTLED_RAD)
 
     def _heading_part(self, frames: JointFrames) -> FloatArray:
-        """What the heading's uncertainty makes of the angle's (n,): the more, the steeper the axis stands.
+        """What the heading's uncertainty makes of the angle's (n,): the more, the steeper the axis is.
 
         An axis that is wrong shows a heading that is wrong, by the tangent of its steepness, and stays so.
         """
@@ -208,12 +208,12 @@ class LiveAngle:
         is_moving_start = self._start_sd_rad > START_RESTING_RAD
         settling_s = SETTLING_KNEE_S if self._geometry.calibration.joint.is_knee else SETTLING_ANKLE_S
         is_settling = is_moving_start and self._geometry.has_centre and time_s < self._started_s + settling_s
-        is_wanted = self._geometry.is_hinge or is_settling
-        if is_wanted and (self._integral is None or self._is_switched):
+        is_required = self._geometry.is_hinge or is_settling
+        if is_required and (self._integral is None or self._is_switched):
             is_unknown = is_moving_start and time_s == self._started_s
             start = None if is_unknown else start_sd_rad
             self._integral = Integral(self._geometry, self._step_s, time_s, twist_rad, start)
-        elif not is_wanted and self._integral is not None:
+        elif not is_required and self._integral is not None:
             self._integral, self._is_switched = None, True
 
     def _blended(
@@ -232,7 +232,7 @@ class LiveAngle:
         self._seen.append((complex(seen.sum()), float(time_s.sum()), len(seen)))
 
     def _look(self, start_sd_rad: float) -> None:
-        """What the beat that has ended tells of the slow things."""
+        """What the beat that has ended reports the slow things."""
         seen, time_s, count = (sum(part) for part in zip(*self._seen, strict=True)) if self._seen else (0j, 0.0, 0)
         self._seen = []
         if count:

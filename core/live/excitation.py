@@ -26,7 +26,7 @@ from core.signal.pair import MOVING_RAD_S
 from core.signal.robust import robust_sd
 
 MIN_SETS = 10  # a second of movement; before, nothing is known
-REFIT_SETS, SELDOM_SETS = 10, 20  # the best hypothesis is found anew each second, later each other second
+REFIT_SETS, SELDOM_SETS = 10, 20  # the best hypothesis is found again each second, later each other second
 LAG_PRIOR_S = 0.03
 MAX_LAG_S = 1.5 * NODE_S  # farther the parabola through three instants does not reach
 FIRST_STEPS = 10
@@ -42,7 +42,7 @@ SHARED = 0.25  # of the least certain direction
 
 
 @dataclass(frozen=True, slots=True)
-class Wanted:
+class Required:
     """What closes a joint, what no motion can reduce, and how far its sensors move against their segments.
 
     Attributes
@@ -65,7 +65,7 @@ class Wanted:
     is_hinge: bool
 
 
-HUMAN = Wanted(
+HUMAN = Required(
     axis_rad=np.deg2rad(1.5),
     centre_m=0.010,
     axis_floor_rad=float(AXIS_FLOOR_HUMAN_RAD),
@@ -75,7 +75,7 @@ HUMAN = Wanted(
     wobble=0.06,
     is_hinge=False,
 )
-PROSTHESIS = Wanted(
+PROSTHESIS = Required(
     axis_rad=np.deg2rad(0.5),
     centre_m=0.005,
     axis_floor_rad=float(AXIS_FLOOR_HINGE_RAD),
@@ -96,7 +96,7 @@ class Movement(StrEnum):
 
 @dataclass(frozen=True, slots=True)
 class Missing:
-    """The motion that would tell most: of the segment that carries `site`."""
+    """The motion that would report most: of the segment that carries `site`."""
 
     site: Site
     movement: Movement
@@ -144,14 +144,16 @@ class ExcitationState:
 class Excitation:
     """The excitation of one joint during a free motion; an ankle's axis, which walking closes, is not asked for."""
 
-    def __init__(self, joint: Joint, closes_at: Wanted = HUMAN) -> None:
-        self._joint, self._wanted = joint, closes_at
+    def __init__(self, joint: Joint, closes_at: Required = HUMAN) -> None:
+        self._joint, self._required = joint, closes_at
         self._collector = SetCollector()
         self._axis = _AxisInformation(closes_at.tilt_rad, closes_at.wobble)
         self._centre = _CentreInformation(closes_at.shift_m)
         self._used = 0
         self._next_refit = MIN_SETS + LEG_JOINTS.index(joint)  # not all joints at the same moment
-        self._heading_in_force = 0  # of the sets that tell the axis: where an orientation began anew, the longer part
+        self._heading_in_force = (
+            0  # of the sets that report the axis: where an orientation began again, the longer part
+        )
         self._wanting: deque[float] = deque(maxlen=PROGRESS_OVER + 1)
         self._is_closed = False
         shank = joint.distal if joint.is_knee else joint.proximal
@@ -182,7 +184,7 @@ class Excitation:
             yield self._state
 
     def _add(self) -> bool:
-        """Take the newest set; whether the best hypothesis was found anew."""
+        """Take the newest set; whether the best hypothesis was found again."""
         self._used += 1
         if self._used < self._next_refit:
             newest = self._collector.newest
@@ -200,32 +202,32 @@ class Excitation:
         return True
 
     def _judged(self, is_refitted: bool = False) -> ExcitationState:
-        profile, wanted = self._axis.profile, self._wanted
+        profile, required = self._axis.profile, self._required
         axis_rad = self._axis.sd_rad()
         covariance = self._centre.covariance()
-        if (self._joint.is_knee or wanted.is_hinge) and profile is not None:
+        if (self._joint.is_knee or required.is_hinge) and profile is not None:
             covariance = profile.across @ covariance @ profile.across
         of_each = np.linalg.eigvalsh(np.stack([covariance[:3, :3], covariance[3:, 3:]]))
         centre_m = math.sqrt(of_each[:, -1].max())
         margin = profile.margin if profile is not None else 1.0
 
-        axis_wanting = axis_rad / wanted.axis_rad if self._joint.is_knee else 0.0
-        wanting = max(axis_wanting, centre_m / wanted.centre_m)
+        axis_wanting = axis_rad / required.axis_rad if self._joint.is_knee else 0.0
+        wanting = max(axis_wanting, centre_m / required.centre_m)
         limit = REOPENS_AT if self._is_closed else 1.0
         self._is_closed = profile is not None and wanting <= limit and (margin >= MIN_MARGIN or not self._joint.is_knee)
         if self._used:
             self._wanting.append(wanting)
         if is_refitted:  # not more often: nobody can follow a hint that changes ten times a second
             self._missing = self._hint(axis_wanting, wanting, margin, covariance)
-        loose = self._axis.looseness if wanted.is_hinge else 0.0
+        loose = self._axis.looseness if required.is_hinge else 0.0
         trend = 1 - wanting / self._wanting[0] if len(self._wanting) > PROGRESS_OVER else 1.0
         is_plateau = not self._is_closed and self._used >= PLATEAU_AFTER and trend < MIN_PROGRESS
         return ExcitationState(
             axis_sd_rad=axis_rad,
             centre_sd_m=centre_m,
-            axis_sd_with_floor_rad=math.hypot(axis_rad, wanted.axis_floor_rad, loose),
+            axis_sd_with_floor_rad=math.hypot(axis_rad, required.axis_floor_rad, loose),
             centre_sd_with_floor_m=math.hypot(
-                SD_FACTOR_HUMAN * centre_m, wanted.centre_floor_m, CENTRE_PRIOR_M * loose
+                SD_FACTOR_HUMAN * centre_m, required.centre_floor_m, CENTRE_PRIOR_M * loose
             ),
             sign_margin=margin,
             wanting=wanting,
@@ -237,10 +239,10 @@ class Excitation:
         )
 
     def _hint(self, axis_wanting: float, wanting: float, margin: float, covariance: FloatArray) -> Missing:
-        """The motion that would tell most now."""
+        """The motion that would report most now."""
         proximal, distal = self._joint.proximal, self._joint.distal
-        # a foot bends too little about one line to tell where its joint lies
-        is_bending_enough = self._joint.is_knee or self._wanted.is_hinge
+        # a foot bends too little about one line to report where its joint lies
+        is_bending_enough = self._joint.is_knee or self._required.is_hinge
         bending = Missing(distal, Movement.BEND if is_bending_enough else Movement.CIRCLE)
         profile = self._axis.profile
         if profile is None:
@@ -289,7 +291,7 @@ class _AxisInformation:
         """Standard deviation of an axis at the best heading.
 
         The principal direction of rates that scatter by s across it and amount to A along it is uncertain by s /
-        sqrt(A) where A stands out; a tilt in step with the motion adds to every sample alike.
+        sqrt(A) where A is out; a tilt in step with the motion adds to every sample alike.
         """
         if self.profile is None or not self.count:
             return AXIS_PRIOR_RAD

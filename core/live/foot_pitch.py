@@ -22,10 +22,10 @@ MAX_REST_RAD_S = 1.0  # a foot that never turns more slowly in a stance was not 
 
 @dataclass(frozen=True, slots=True)
 class FootStrike:
-    """`pitch_rad` at the initial contact at `time_s`, toes up positive; `told_s`: the sample that told it."""
+    """`pitch_rad` at the initial contact at `time_s`, toes up positive; `reported_s`: the sample that reported it."""
 
     time_s: float
-    told_s: float
+    reported_s: float
     pitch_rad: float
 
 
@@ -39,7 +39,7 @@ class FootPitch:
     def update(
         self, time_s: FloatArray, samples: OrientedSamples, events: Iterable[LiveEvent], axis: FloatArray | None
     ) -> tuple[FootStrike, ...]:
-        """Take what is new of the foot, and what its samples told.
+        """Take what is new of the foot, and what its samples reported.
 
         Parameters
         ----------
@@ -58,7 +58,7 @@ class FootPitch:
             elif event.event is FootEvent.INITIAL_CONTACT:
                 pitch_rad = None if axis is None else self._pitch_at(event.time_s, axis)
                 if pitch_rad is not None:
-                    strikes.append(FootStrike(event.time_s, event.told_s, pitch_rad))
+                    strikes.append(FootStrike(event.time_s, event.reported_s, pitch_rad))
                 self._contact_s, self._off_s = event.time_s, math.nan
         if len(self._time_s):
             first = int(np.searchsorted(self._time_s, self._time_s[-1] - KEPT_S))

@@ -20,7 +20,7 @@ STEP_RAD = np.deg2rad(7.5)
 HEADINGS = np.arange(0.0, 2 * np.pi, STEP_RAD)
 # A heading r times as costly as the best counts r^-2.7: at the offline margin of doubt, 1.3, half as much as the best.
 COST_EXPONENT = 2.7
-NEAR_RAD = np.deg2rad(30.0)  # within, headings are told apart by the information about the axes, not by their costs
+NEAR_RAD = np.deg2rad(30.0)  # within, headings are distinguished by the information about the axes, not by their costs
 
 
 @dataclass(frozen=True, slots=True)

@@ -50,7 +50,7 @@ class LiveHip:
         self._step_s = pelvis_step_s
         self._per_beat = max(1, round(BEAT_S / pelvis_step_s))
         self._pairing = Pairing(pelvis_step_s, thigh_step_s, found.lag_s)
-        self._form = self._wanted = _Form(found, None)
+        self._form = self._required = _Form(found, None)
         self._coming: deque[HipHeadingState] = deque()
         self._beat, self._next = 0, -1
         self._started_s, self._start_sd_rad = 0.0, START_MOVING_RAD
@@ -70,11 +70,11 @@ class LiveHip:
 
     def recalibrate(self, found: HipIdentification) -> None:
         """Go over to other frames of the same hip, from the next beat on, without a jump."""
-        self._wanted = _Form(found, self._wanted.heading_rad)
+        self._required = _Form(found, self._required.heading_rad)
         self._pairing.lag_s = found.lag_s
 
     def expect(self, states: Iterable[HipHeadingState]) -> None:
-        """Take what is told of the heading, in order; each counts from BEHIND_S after its last sample on."""
+        """Take what is given of the heading, in order; each counts from BEHIND_S after its last sample on."""
         self._coming.extend(states)
 
     def update(self, pelvis: OrientedSamples, thigh: OrientedSamples) -> AngleSamples:
@@ -100,7 +100,7 @@ class LiveHip:
         """Angle and standard deviation (n,) of samples of one beat that follow each other."""
         if rows.tick[0] != self._next:
             self._start(rows)
-            self._form = self._wanted
+            self._form = self._required
         elif beat != self._beat:
             self._look(rows)
         self._beat, self._next = beat, int(rows.tick[-1]) + 1
@@ -128,11 +128,11 @@ class LiveHip:
         self._start_sd_rad = START_RESTING_RAD if is_resting else START_MOVING_RAD
         while self._coming and self._coming[0].until_s < self._started_s:
             self._coming.popleft()  # of orientations that are no more
-        self._wanted = self._wanted.turned(None)
+        self._required = self._required.turned(None)
         self._blend, self._sum, self._count = None, 0.0, 0
 
     def _look(self, rows: PairedSamples) -> None:
-        """What the beat that has ended tells of the slow things."""
+        """What the beat that has ended reports the slow things."""
         if self._count:
             mean, share = self._sum / self._count, 1 - np.exp(-self._count * self._step_s / POSTURE_S)
             self._usual = mean if self._usual is None else self._usual + share * (mean - self._usual)
@@ -141,11 +141,11 @@ class LiveHip:
         while self._coming and self._coming[0].until_s + BEHIND_S <= time_s:
             state = self._coming.popleft()
             if state.until_s > self._started_s:
-                self._wanted = self._wanted.turned(state.heading_rad if state.is_sure else None)
-        if self._wanted is not self._form:
+                self._required = self._required.turned(state.heading_rad if state.is_sure else None)
+        if self._required is not self._form:
             first = rows.part(slice(0, 1))
-            ahead = self._form.flexion(first) + self._ahead(first.time_s) - self._wanted.flexion(first)
-            self._form, self._blend = self._wanted, (time_s, float(wrap(ahead)[0]))
+            ahead = self._form.flexion(first) + self._ahead(first.time_s) - self._required.flexion(first)
+            self._form, self._blend = self._required, (time_s, float(wrap(ahead)[0]))
 
     def _ahead(self, time_s: FloatArray) -> FloatArray | float:
         """How far (n,) what is shown is still ahead of the form in force; 0 where it is not."""

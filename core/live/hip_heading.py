@@ -31,7 +31,7 @@ GRAVITY_M_S2_UP = np.array([[0.0], [0.0], [GRAVITY_M_S2]])
 
 @dataclass(frozen=True, slots=True)
 class HipHeadingState:
-    """What the movement so far tells of the heading of the thigh's earth in the pelvis's.
+    """What the movement so far reports the heading of the thigh's earth in the pelvis's.
 
     Attributes
     ----------
@@ -57,7 +57,7 @@ class HipHeadingState:
 
     @property
     def is_trusted(self) -> bool:
-        """Whether both move as neighbours of one hip do, beyond doubt about the heading."""
+        """Whether both move as adjacent segments of one hip do, beyond doubt about the heading."""
         is_long = self.moved_s >= MIN_MOVING_S
         return is_long and self.margin >= MIN_MARGIN and self.disagreement < MAX_DISAGREEMENT
 
@@ -88,31 +88,31 @@ class HipHeading:
         shared = min(int(end.instant[-1]) for end in ends)
         first = max(int(end.instant[0]) for end in ends) // PER_BATCH
         self._next = first if self._next is None else max(self._next, first)
-        told = []
+        reported = []
         while (self._next + 1) * PER_BATCH - 1 <= shared:
-            told += self._take(self._next)
+            reported += self._take(self._next)
             self._next += 1
         self._ends = [_latest(_since(end, self._next * PER_BATCH)) for end in ends]
-        return told
+        return reported
 
     def _take(self, batch: int) -> list[HipHeadingState]:
         one, two = (_between(end, batch * PER_BATCH, (batch + 1) * PER_BATCH) for end in self._ends)
         if len(one) != PER_BATCH or len(two) != PER_BATCH:
             _, at_1, at_2 = np.intersect1d(one.instant, two.instant, assume_unique=True, return_indices=True)
             one, two = one.part(at_1), two.part(at_2)
-        told = []
+        reported = []
         edges = np.flatnonzero(np.diff(one.stretch) | np.diff(two.stretch)) + 1
         for a, b in pairwise([0, *edges.tolist(), len(one)]):
             if b > a:
-                told += self._add(one.part(slice(a, b)), two.part(slice(a, b)))
-        return told
+                reported += self._add(one.part(slice(a, b)), two.part(slice(a, b)))
+        return reported
 
     def _add(self, one: FeltForces, two: FeltForces) -> list[HipHeadingState]:
-        """Instants between which no orientation began anew."""
-        told = []
+        """Instants between which no orientation began again."""
+        reported = []
         if (stretch := (int(one.stretch[0]), int(two.stretch[0]))) != self._stretch:
             if self._moved_s:
-                told.append(UNKNOWN_HEADING)
+                reported.append(UNKNOWN_HEADING)
             self._stretch, self._moments, self._moved_s, self._batches = stretch, _Moments(), 0.0, 0
             self.state = UNKNOWN_HEADING
         moving = []
@@ -121,7 +121,7 @@ class HipHeading:
             moving.append(sum(self._speeds) > MOVING_RAD_S * len(self._speeds))
         is_used = np.array(moving) & one.is_clear & two.is_clear
         if not is_used.any():
-            return told
+            return reported
         self._moments.add(one.terms[is_used], two.terms[is_used])
         self._moved_s += SPACING_S * np.count_nonzero(is_used)
         self._batches += 1
@@ -131,8 +131,8 @@ class HipHeading:
             found = self._moments.state(SPACING_S * float(one.instant[-1]), self._moved_s)
             limit_rad = LOST_SD_RAD if self.state.is_sure else MAX_3D_SD_RAD
             self.state = replace(found, is_sure=found.is_trusted and found.sd_rad <= limit_rad)
-            told.append(self.state)
-        return told
+            reported.append(self.state)
+        return reported
 
 
 class _Moments:
@@ -191,7 +191,7 @@ class _Moments:
             self._margin = rival / max(float(_loss(self._square)), 1e-9)
 
     def state(self, until_s: float, moved_s: float) -> HipHeadingState:
-        """What the solution tells."""
+        """What the solution reports."""
         assert self._heading is not None
         return HipHeadingState(
             until_s=until_s,

@@ -16,7 +16,7 @@ TOGETHER_S = 0.09  # so much is taken at once: three of a screen's frames, which
 
 
 @dataclass(frozen=True, slots=True)
-class HipTold:
+class HipReported:
     """What is new of one hip; `is_provisional` as of `LiveHip`."""
 
     samples: AngleSamples
@@ -29,7 +29,7 @@ class LiveHips:
     Parameters
     ----------
     found
-        Of the hips whose angles are wanted; headings are followed of all.
+        Of the hips whose angles are required; headings are followed of all.
     """
 
     def __init__(
@@ -60,7 +60,7 @@ class LiveHips:
                 self._angles[joint] = LiveHip(found[joint], *steps_s)
                 self._angles[joint].expect([self._headings[joint].state])
 
-    def update(self, turned: Mapping[Site, OrientedSamples]) -> dict[Joint, HipTold]:
+    def update(self, turned: Mapping[Site, OrientedSamples]) -> dict[Joint, HipReported]:
         """Take what is new of all sensors; returns what is new of the hips that are shown, now and then nothing."""
         self.follow(turned)
         if not self._angles:
@@ -71,11 +71,11 @@ class LiveHips:
             return {}
         held, self._held, self._held_s = self._held, [], 0.0
         pelvis = joined([new[Site.PELVIS] for new in held if Site.PELVIS in new])
-        told = {}
+        reported = {}
         for joint, angle in self._angles.items():
             thigh = joined([new[joint.distal] for new in held if joint.distal in new])
-            told[joint] = HipTold(angle.update(pelvis, thigh), angle.is_provisional)
-        return told
+            reported[joint] = HipReported(angle.update(pelvis, thigh), angle.is_provisional)
+        return reported
 
     def follow(self, turned: Mapping[Site, OrientedSamples]) -> dict[Joint, HipHeadingState]:
         """Take what is new of all sensors; returns what is known of each hip's heading by now."""

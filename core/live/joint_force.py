@@ -17,7 +17,7 @@ from core.samples import BoolArray, FloatArray, IntArray
 from core.signal.joint_force import CUTOFF_HZ
 from core.signal.pair import angular_acceleration
 
-SPACING_S = 0.05  # between the instants that are told: motion below 4 Hz needs no more
+SPACING_S = 0.05  # between the instants that are reported: motion below 4 Hz needs no more
 AT_ONCE_S = 1.0  # so much is filtered at once
 SETTLES_S = 0.5  # after a gap, until what was missing has left the filter
 EDGE = 2  # samples on either side that an angular acceleration needs
@@ -40,7 +40,7 @@ class FeltForces:
     is_clear : (k,)
         Whether nothing was missing shortly before.
     stretch : (k,)
-        Counts up where the orientation begins anew.
+        Counts up where the orientation begins again.
     """
 
     instant: IntArray
@@ -96,7 +96,7 @@ class LiveJointForce:
         self._next: int | None = None  # instant
 
     def update(self, samples: OrientedSamples) -> FeltForces:
-        """Take what is new; most calls only keep it, and tell nothing."""
+        """Take what is new; most calls only keep it, and report nothing."""
         if len(samples):
             self._waiting.append(samples)
             self._count += len(samples)
@@ -104,9 +104,9 @@ class LiveJointForce:
             return NO_FORCES
         every, self._waiting, self._count = joined(self._waiting), [], 0
         borders = [0, *(np.flatnonzero(np.diff(every.tick) > 1) + 1).tolist(), len(every)]
-        return joined_forces([self._told(every.part(slice(a, b))) for a, b in pairwise(borders)])
+        return joined_forces([self._reported(every.part(slice(a, b))) for a, b in pairwise(borders)])
 
-    def _told(self, samples: OrientedSamples) -> FeltForces:
+    def _reported(self, samples: OrientedSamples) -> FeltForces:
         """Samples without a jump among them."""
         if len(self._kept) and samples.tick[0] != self._kept.tick[-1] + 1:
             self._kept, self._state, self._last = NOTHING, None, NO_ROWS

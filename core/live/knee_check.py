@@ -25,7 +25,7 @@ class KneeCheck:
     def __init__(self) -> None:
         self._contacts_s: deque[float] = deque(maxlen=32)
         self._odd_s: deque[float] = deque(maxlen=STEPS)  # when each step was over; NaN of one that was as it should be
-        self._start_anew()
+        self._start_again()
 
     @property
     def is_doubtful(self) -> bool:
@@ -45,11 +45,11 @@ class KneeCheck:
         self._contacts_s.extend(contacts_s)
         for time_s, angle_rad in zip(knee.time_s.tolist(), knee.angle_rad.tolist(), strict=True):
             if math.isnan(angle_rad):
-                self._start_anew()
+                self._start_again()
             else:
                 self._follow(time_s, angle_rad)
 
-    def _start_anew(self) -> None:
+    def _start_again(self) -> None:
         """What the knee did meanwhile is not known."""
         self._odd_s.clear()
         self._highest, self._lowest = (-math.inf, -math.inf), math.inf
@@ -66,7 +66,7 @@ class KneeCheck:
             return
         self._lowest = min(self._lowest, angle_rad)
         if time_s - self._last_s > MAX_STRIDE_S:
-            self._odd_s.clear()  # it stands
+            self._odd_s.clear()  # it is
             self._bend_rad = MIN_BEND_RAD
         if angle_rad > self._lowest + self._bend_rad:
             self._is_bending, self._highest = True, (angle_rad, time_s)

@@ -78,8 +78,8 @@ def joined(parts: list[OrientedSamples]) -> OrientedSamples:
 class LiveOrientation:
     """The orientation of one sensor.
 
-    Of rates that the device has averaged over the past interval each is told one sample late: the rate at an instant
-    is the mean of the intervals around it.
+    Of rates that the device has averaged over the past interval each is reported one sample late: the rate at an
+    instant is the mean of the intervals around it.
     """
 
     def __init__(self, bias_rad_s: FloatArray, rate_kind: RateKind, step_s: float) -> None:
@@ -91,7 +91,7 @@ class LiveOrientation:
         self._must_skip = False
         self._held = NOTHING  # the last sample, whose rate the next one completes
 
-    def begin_anew(self, bias_rad_s: FloatArray, rest: EvenSamples) -> None:
+    def begin_again(self, bias_rad_s: FloatArray, rest: EvenSamples) -> None:
         """Go on with another bias (3,), settled in the rest that showed it: as after a gap of one sample."""
         rates = rest.gyr_rad_s - bias_rad_s
         self._filter.resetState()

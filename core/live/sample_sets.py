@@ -12,13 +12,13 @@ from core.signal.pair import FAST_RAD_S, MOVING_RAD_S, MOVING_WINDOW_S, lever_ma
 from core.signal.rotations import cross_matrix
 
 SPACING_S = 0.1
-# Rates are read this far apart: 30 ms damp their noise in angular accelerations tenfold against neighbouring samples
+# Rates are read this far apart: 30 ms damp their noise in angular accelerations tenfold against adjacent samples
 # and still follow what a leg does. The same span carries the distal sensor's lag.
 NODE_S = 0.03
 NODES = NODE_S * np.arange(-3, 4)
 MAX_SETS = 400  # forty seconds of movement
 DROPPED_AT_ONCE = 100
-MAX_GAP_S = 0.05  # between two samples that are read between; after more, the orientation may have begun anew
+MAX_GAP_S = 0.05  # between two samples that are read between; after more, the orientation may have begun again
 KEPT_S = 10.0  # so long samples of one sensor wait for the other's
 
 
@@ -119,7 +119,7 @@ class SetCollector:
         self._count = 0
         self._same_heading = 0  # the first set since both orientations began
         self._stretches = 0, 0
-        self.headings = 0  # counts up where an orientation begins anew
+        self.headings = 0  # counts up where an orientation begins again
 
     @property
     def sets(self) -> Sets:
@@ -127,7 +127,7 @@ class SetCollector:
 
     @property
     def of_one_heading(self) -> Sets:
-        """The last sets between which neither orientation began anew."""
+        """The last sets between which neither orientation began again."""
         return self._kept.part(slice(self._same_heading, self._count))
 
     @property
@@ -160,7 +160,7 @@ class SetCollector:
     def _take(self, at_s: float) -> bool:
         one, two = (end.read(at_s) for end in self._ends)
         stretches = self._ends[0].stretch, self._ends[1].stretch
-        if stretches != self._stretches:  # an orientation has begun anew
+        if stretches != self._stretches:  # an orientation has begun again
             self._stretches, self._same_heading = stretches, self._count
             self.headings += 1
         g1, g2 = one.gyr_rad_s, two.gyr_rad_s
@@ -256,11 +256,11 @@ class _Recent:
         while self._starts and self._starts[0] <= at_s:
             self._starts.popleft()
             self.stretch += 1
-        wanted_s, time_s = at_s + NODES, self._samples.time_s
-        right = np.minimum(np.maximum(np.searchsorted(time_s, wanted_s), 1), len(time_s) - 1)
+        required_s, time_s = at_s + NODES, self._samples.time_s
+        right = np.minimum(np.maximum(np.searchsorted(time_s, required_s), 1), len(time_s) - 1)
         left_s = time_s[right - 1]
         apart_s = time_s[right] - left_s
         before, after = self._samples.signals[right - 1], self._samples.signals[right]
-        share = (wanted_s - left_s) / apart_s
+        share = (required_s - left_s) / apart_s
         is_measured = self._samples.is_measured[right[0] - 1 : right[-1] + 1].all()
         return _Reading(before + share[:, None] * (after - before), bool(is_measured and apart_s.max() < MAX_GAP_S))

@@ -77,7 +77,7 @@ class LiveSensors:
                 bias_rad_s = rest.gyr_rad_s.mean(axis=0)
                 off_rad_s = float(np.linalg.norm(bias_rad_s - self.sensors[site].gyro_bias_rad_s))
                 self.corrections += (BiasCorrection(site, float(part.time_s[-1]), off_rad_s),)
-                orientation.begin_anew(bias_rad_s, rest)
+                orientation.begin_again(bias_rad_s, rest)
         return joined([*parts, orientation.update(even)]) if len(even) else joined(parts)
 
     @property

@@ -1,4 +1,4 @@
-"""Whether the patient stands still, which sensor moved, and what the sensors read meanwhile.
+"""Whether the patient is still, which sensor moved, and what the sensors read meanwhile.
 
 The limits of stillness are those of `core.calibration.rest`; what is found is what that module finds in the samples
 since the last movement.
@@ -15,9 +15,9 @@ from core.calibration.rest import MAX_ACC_SPREAD_M_S2, MAX_BIAS_RAD_S, MAX_SPREA
 from core.samples import BoolArray, FloatArray, ImuBlock
 from core.signal.tracks import is_possible
 
-WANTED_S = 3.0
-WINDOW_S = 0.25  # how soon a movement is told
-KEPT_S = 10.0  # who stands longer is measured over the last nine or ten seconds,
+REQUIRED_S = 3.0
+WINDOW_S = 0.25  # how soon a movement is reported
+KEPT_S = 10.0  # who is longer is measured over the last nine or ten seconds,
 REST_EVERY_S = 1.0  # once a second
 SILENT_S = 0.5
 SAME_BOUT_S = 1.0  # movements less far apart are one
@@ -33,22 +33,22 @@ class StandingState(Generic[Sensor]):
     Attributes
     ----------
     still_s
-        How long all sensors have been heard and still.
+        How long all sensors have been received and still.
     moved
-        Sensors that moved in the last window of any; the count has begun anew after them.
+        Sensors that moved in the last window of any; the count has begun again after them.
     silent
-        Sensors not heard for half a second, or that repeat one value; without them nothing counts.
+        Sensors not received for half a second, or that repeat one value; without them nothing counts.
     rest
-        Bias and specific force of each sensor, once the wanted time was still.
+        Bias and specific force of each sensor, once the required time was still.
     movement
         Of each sensor in its last window, as a share of the limit: from 1 on it moves. Infinite where too little was
-        heard.
+        received.
     restarts
         How often somebody who stood has moved.
     """
 
     still_s: float
-    wanted_s: float
+    required_s: float
     moved: tuple[Sensor, ...] = ()
     silent: tuple[Sensor, ...] = ()
     rest: Mapping[Sensor, Rest] = field(default_factory=dict)
@@ -69,13 +69,15 @@ class LiveStanding(Generic[Sensor]):
         Sensors that nothing waits for while they are silent; the rest is then that of the others.
     """
 
-    def __init__(self, sensors: Iterable[Sensor], wanted_s: float = WANTED_S, optional: Container[Sensor] = ()) -> None:
+    def __init__(
+        self, sensors: Iterable[Sensor], required_s: float = REQUIRED_S, optional: Container[Sensor] = ()
+    ) -> None:
         self._optional = optional
         self._watches = {sensor: _StillnessWatch() for sensor in sensors}
         self._bouts = _Bouts()
         self._rest_of = np.inf, np.inf
         self._found: Mapping[Sensor, Rest] = {}
-        self._state: StandingState[Sensor] = StandingState(0.0, wanted_s)
+        self._state: StandingState[Sensor] = StandingState(0.0, required_s)
 
     @property
     def state(self) -> StandingState[Sensor]:
@@ -97,32 +99,32 @@ class LiveStanding(Generic[Sensor]):
 
     def _state_now(self) -> StandingState[Sensor]:
         watches = self._watches
-        latest_s = max((watch.heard_s for watch in watches.values()), default=-np.inf)
-        silent = tuple(s for s, w in watches.items() if w.is_stuck or not latest_s - w.heard_s <= SILENT_S)
+        latest_s = max((watch.received_s for watch in watches.values()), default=-np.inf)
+        silent = tuple(s for s, w in watches.items() if w.is_stuck or not latest_s - w.received_s <= SILENT_S)
         begun_s = min((watch.begun_s for watch in watches.values()), default=np.inf)
         state = replace(
             self._state,
-            movement={sensor: w.movement for sensor, w in watches.items() if np.isfinite(w.heard_s)},
+            movement={sensor: w.movement for sensor, w in watches.items() if np.isfinite(w.received_s)},
             restarts=self._bouts.count_after(begun_s + SAME_BOUT_S),
         )
-        heard = {sensor: watch for sensor, watch in watches.items() if sensor not in silent}
-        if any(sensor not in self._optional for sensor in silent) or not heard:
-            # a sensor that is not heard may be moving: the count waits for it and begins anew
+        received = {sensor: watch for sensor, watch in watches.items() if sensor not in silent}
+        if any(sensor not in self._optional for sensor in silent) or not received:
+            # a sensor that is not received may be moving: the count waits for it and begins again
             return replace(state, still_s=0.0, moved=(), silent=silent, rest={})
-        watches = heard
+        watches = received
         since_s = max(watch.still_since_s for watch in watches.values())
         until_s = min(watch.judged_s for watch in watches.values())
         still_s = until_s - since_s
-        rest = self._rest(since_s, still_s, watches) if still_s >= self._state.wanted_s else {}
+        rest = self._rest(since_s, still_s, watches) if still_s >= self._state.required_s else {}
         moved = tuple(sensor for sensor, watch in watches.items() if watch.is_moving)
         return replace(state, still_s=max(0.0, still_s), moved=moved, silent=silent, rest=rest)
 
     def _rest(
         self, since_s: float, still_s: float, watches: "Mapping[Sensor, _StillnessWatch]"
     ) -> Mapping[Sensor, Rest]:
-        """What all read while still since an instant, as of the last whole second after the wanted time."""
-        whole_s = np.floor((still_s - self._state.wanted_s) / REST_EVERY_S) * REST_EVERY_S
-        until_s = since_s + self._state.wanted_s + float(whole_s)
+        """What all read while still since an instant, as of the last whole second after the required time."""
+        whole_s = np.floor((still_s - self._state.required_s) / REST_EVERY_S) * REST_EVERY_S
+        until_s = since_s + self._state.required_s + float(whole_s)
         from_s = max(since_s, until_s - KEPT_S + REST_EVERY_S)
         if (from_s, until_s) != self._rest_of:
             self._rest_of = from_s, until_s
@@ -136,7 +138,7 @@ class _StillnessWatch:
     """One sensor, judged in windows that follow each other from its first sample."""
 
     def __init__(self) -> None:
-        self.heard_s = self.still_since_s = self.judged_s = -np.inf
+        self.received_s = self.still_since_s = self.judged_s = -np.inf
         self.begun_s = np.inf
         self.movement = 0.0
         self.is_stuck = False
@@ -149,15 +151,15 @@ class _StillnessWatch:
     def feed(self, block: ImuBlock) -> list[tuple[float, float]]:
         """Take new samples; returns the windows (start, end) in which the sensor moved."""
         moved: list[tuple[float, float]] = []
-        is_new = (block.time_s > self.heard_s) & is_possible(block.gyr_rad_s, block.acc_m_s2)
+        is_new = (block.time_s > self.received_s) & is_possible(block.gyr_rad_s, block.acc_m_s2)
         is_new[1:] &= np.diff(block.time_s) > 0
         for part in _between_silences(_part(block, is_new)):
-            if self._samples is None or part.time_s[0] - self.heard_s > SILENT_S:
+            if self._samples is None or part.time_s[0] - self.received_s > SILENT_S:
                 self._samples = part
                 self.still_since_s = self.judged_s = float(part.time_s[0])
             else:
                 self._samples = _joined(self._samples, part)
-            self.heard_s = float(part.time_s[-1])
+            self.received_s = float(part.time_s[-1])
             self.begun_s = min(self.begun_s, float(part.time_s[0]))
             moved += self._judge(self._samples)
         return moved
@@ -184,7 +186,7 @@ class _StillnessWatch:
 
 
 class _Bouts:
-    """Stretches in which any sensor moved, in whatever order they are told."""
+    """Stretches in which any sensor moved, in whatever order they are reported."""
 
     def __init__(self) -> None:
         self._bouts: list[tuple[float, float]] = []

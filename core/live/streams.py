@@ -14,14 +14,14 @@ from core.signal.tracks import (
     MAX_REPORTED_GAP_S,
     MAX_STILL_GAP_S,
     STILL_RAD_S,
-    is_heard,
+    is_received,
 )
 
 ON_GRID = 2e-3  # of a step: closer to a tick than this, a sample is used as it is
-CLOCK_MEMORY_S = 2.0  # stamps of this long say where the sensor's own clock stands
+CLOCK_MEMORY_S = 2.0  # stamps of this long say where the sensor's own clock is
 NOMINAL_STAMPS = 10  # how many stamps its nominal rate is worth
 LIMITS = np.array([MAX_RATE_RAD_S] * 3 + [MAX_FORCE_M_S2] * 3)
-MAX_ERROR = 0.25  # of a step; a stamp that is off by more says no more
+MAX_ERROR = 0.25  # of a step; a stamp that is off by more states no more
 LATE_STEPS = 0.15  # so much later than by half a step a sample has to be before one is taken for lost
 MAX_STEP_ERROR = 0.05  # of the nominal step: how far the sensor's own may be off
 MIN_APART = 0.1  # of a step, between samples whose stamps scatter by more than a step
@@ -30,7 +30,7 @@ CONTEXT = 2  # samples beyond an interval's ends that its interpolation needs
 
 @dataclass(frozen=True, slots=True)
 class EvenSamples:
-    """Samples of one sensor on its grid; `tick` (n,) counts the grid's steps from the first sample ever heard.
+    """Samples of one sensor on its grid; `tick` (n,) counts the grid's steps from the first sample ever received.
 
     Ticks follow each other but for gaps that are too long to bridge: there they jump, and a new stretch begins.
     `is_measured` (n,) is False inside of bridged gaps.
@@ -80,7 +80,7 @@ NOTHING_PLACED: Placed = np.empty(0, dtype=np.int64), np.empty((0, 6)), np.empty
 class EvenStream:
     """One sensor's samples, brought to an even grid of its nominal rate that starts at its first stamp.
 
-    A tick is told as soon as the samples around it are there, two or three after it; at once where a sample lies on
+    A tick is reported as soon as the samples around it are there, two or three after it; at once where a sample lies on
     it. Sensors sample evenly while their stamps scatter: each sample is placed by the line through the stamps up to
     its own. Its rate may differ from the nominal one by a few percent. Samples that are not later than those before
     them are dropped and counted in `late`.
@@ -95,7 +95,7 @@ class EvenStream:
         # raw samples from the first one on that equals the last: of a sensor that hangs, perhaps
         self._run_s: FloatArray = np.empty(0)
         self._run: FloatArray = np.empty((0, 6))
-        # heard samples that ticks to come may need: where they lie on the grid, in steps, and what they are
+        # received samples that ticks to come may need: where they lie on the grid, in steps, and what they are
         self._at: FloatArray = np.empty(0)
         self._values: FloatArray = np.empty((0, 6))
         self._next = 0
@@ -114,7 +114,7 @@ class EvenStream:
             if len(time_s) == 0:
                 return
         self._last_s = float(time_s[-1])
-        time_s, values = self._heard(time_s, values)
+        time_s, values = self._received(time_s, values)
         if len(time_s) == 0:
             return
         if self._origin_s is None:
@@ -132,7 +132,7 @@ class EvenStream:
         time_s = (self._origin_s or 0.0) + self.step_s * tick
         return EvenSamples(tick, time_s, values[:, :3], values[:, 3:], is_measured)
 
-    def _heard(self, time_s: FloatArray, values: FloatArray) -> tuple[FloatArray, FloatArray]:
+    def _received(self, time_s: FloatArray, values: FloatArray) -> tuple[FloatArray, FloatArray]:
         """The new samples that are measurements; one that repeats itself waits until it is known for how long."""
         waiting = len(self._run_s)
         if waiting:
@@ -140,19 +140,19 @@ class EvenStream:
         if waiting == 1 and _is_plain(values):
             self._run_s, self._run = time_s[-1:], values[-1:]
             return time_s[1:], values[1:]
-        is_there = is_heard(time_s, values[:, :3], values[:, 3:])
+        is_there = is_received(time_s, values[:, :3], values[:, 3:])
         is_there[: min(waiting, 1)] = False  # already taken
         first = len(time_s) - 1
         while first and np.array_equal(values[first], values[first - 1]):
             first -= 1
         is_there[first + 1 :] = False
         self._run_s, self._run = time_s[first:], values[first:]
-        if self._run_s[-1] - self._run_s[0] > MAX_HELD_S:  # it hangs; its ends tell for how long
+        if self._run_s[-1] - self._run_s[0] > MAX_HELD_S:  # it hangs; its ends report for how long
             self._run_s, self._run = self._run_s[[0, -1]], self._run[[0, -1]]
         return time_s[is_there], values[is_there]
 
     def _add(self, at: FloatArray, values: FloatArray) -> None:
-        """Place what the samples tell, stretch by stretch, and keep those that ticks to come need."""
+        """Place what the samples report, stretch by stretch, and keep those that ticks to come need."""
         at, values = np.concatenate([self._at, at]), np.concatenate([self._values, values])
         gap_s = self.step_s * (at[1:] - at[:-1])
         is_cut = gap_s > max(MAX_BRIDGED_GAP_S, 1.5 * self.step_s)
@@ -245,8 +245,8 @@ class _EvenClock:
         return np.array(placed_s)
 
 
-def akima(at: FloatArray, values: FloatArray, wanted: IntArray, left: IntArray) -> FloatArray:
-    """Values (m, k) at `wanted` (m,) from samples (n, k) at ascending `at` (n,), `left` (m,) being the sample before.
+def akima(at: FloatArray, values: FloatArray, required: IntArray, left: IntArray) -> FloatArray:
+    """Values (m, k) at `required` (m,) from samples (n, k) at ascending `at` (n,), `left` (m,) being the sample before.
 
     Local and without overshoot, as offline, but without SciPy's set-up at every call (Akima 1970, doi
     10.1145/321607.321609).
@@ -257,7 +257,7 @@ def akima(at: FloatArray, values: FloatArray, wanted: IntArray, left: IntArray) 
         Ascending.
     values : (n, k)
         In any unit.
-    wanted : (m,)
+    required : (m,)
         On the scale of `at`.
     left : (m,)
         Index of the sample before each.
@@ -283,7 +283,7 @@ def akima(at: FloatArray, values: FloatArray, wanted: IntArray, left: IntArray) 
     share = np.where(is_straight, 0.5, bend[:-2] / np.where(is_straight, 1.0, total))
     tangent = slope[1:-2] + share * (slope[2:-1] - slope[1:-2])
     h = width[left]
-    u = (wanted - at[left])[:, None] / h
+    u = (required - at[left])[:, None] / h
     rest = 1 - u
     by_value = u * u * (3 - 2 * u)
     found: FloatArray = (

@@ -1,8 +1,8 @@
 """One value per stride, as it happens, of each measure that a patient can be given a target for.
 
-A value is told as soon as its event is known: a knee's when it has fallen from the peak of its swing, the others with
-the event of the foot that ends what they measure. Starts, stops and turns are told as well; who aims at something sees
-every stride.
+A value is reported as soon as its event is known: a knee's when it has fallen from the peak of its swing, the others
+with the event of the foot that ends what they measure. Starts, stops and turns are reported as well; who aims at
+something sees every stride.
 """
 
 import math
@@ -30,19 +30,19 @@ KEPT_S = 5.0  # of angles: longer than a swing with the delay of its events
 class StrideValue:
     """`value` in the measure's unit, of the leg or foot of `side`.
 
-    `event_s` is the instant of what was measured, the peak or the foot's event, `told_s` the sample that told it, both
-    on the clock of the angles.
+    `event_s` is the instant of what was measured, the peak or the foot's event, `reported_s` the sample that showed it,
+    both on the clock of the angles.
     """
 
     measure: TargetMeasure
     side: Side
     value: float
     event_s: float
-    told_s: float
+    reported_s: float
 
 
 class StrideValues:
-    """The values of both legs, from what `LiveWalk` tells, one state after the other; none of a doubtful foot."""
+    """The values of both legs, from what `LiveWalk` reports, one state after the other; none of a doubtful foot."""
 
     def __init__(self) -> None:
         self._knees: dict[Side, _KneeSwing] = {side: _KneeSwing() for side in Side}
@@ -50,36 +50,36 @@ class StrideValues:
         self._stances_s: dict[Side, tuple[float, float]] = {}  # of the latest: its end, and how long it lasted
 
     def update(self, state: WalkingState) -> tuple[StrideValue, ...]:
-        """Give the values that a state tells, in the order of telling."""
-        told: list[StrideValue] = []
+        """Give the values that a state reports, in the order of telling."""
+        reported: list[StrideValue] = []
         feet = {side: foot for side, foot in state.feet.items() if not foot.is_doubtful}
         for side, foot in feet.items():
             joint = state.joints.get(knee_of(side))
             if joint is not None:
-                told += self._knee_values(side, joint.samples, foot)
-            told += (
-                StrideValue(TargetMeasure.FOOT_STRIKE, side, math.degrees(one.pitch_rad), one.time_s, one.told_s)
+                reported += self._knee_values(side, joint.samples, foot)
+            reported += (
+                StrideValue(TargetMeasure.FOOT_STRIKE, side, math.degrees(one.pitch_rad), one.time_s, one.reported_s)
                 for one in foot.strikes
             )
-        told += self._event_values(feet)
-        return tuple(sorted(told, key=lambda one: one.told_s))
+        reported += self._event_values(feet)
+        return tuple(sorted(reported, key=lambda one: one.reported_s))
 
     def _knee_values(self, side: Side, samples: AngleSamples, foot: LiveFoot) -> Iterator[StrideValue]:
-        for peak_rad, at_s, told_s in self._knees[side].update(samples, foot.events):
-            yield StrideValue(TargetMeasure.KNEE_SWING_PEAK, side, math.degrees(peak_rad), at_s, told_s)
+        for peak_rad, at_s, reported_s in self._knees[side].update(samples, foot.events):
+            yield StrideValue(TargetMeasure.KNEE_SWING_PEAK, side, math.degrees(peak_rad), at_s, reported_s)
 
     def _event_values(self, feet: Mapping[Side, LiveFoot]) -> Iterator[StrideValue]:
         every = [(event, side) for side, foot in feet.items() for event in foot.events]
-        for event, side in sorted(every, key=lambda one: one[0].told_s):
+        for event, side in sorted(every, key=lambda one: one[0].reported_s):
             if event.event is FootEvent.INITIAL_CONTACT:
                 stride_s = event.time_s - self._contacts_s[side]
                 self._contacts_s[side] = event.time_s
                 if 0.0 < stride_s <= MAX_STRIDE_S:
-                    yield StrideValue(TargetMeasure.CADENCE, side, 120.0 / stride_s, event.time_s, event.told_s)
+                    yield StrideValue(TargetMeasure.CADENCE, side, 120.0 / stride_s, event.time_s, event.reported_s)
             elif event.event is FootEvent.TOE_OFF:
                 ratio = self._stance_ratio(side, event.time_s)
                 if ratio is not None:
-                    yield StrideValue(TargetMeasure.STANCE_RATIO, side, 100.0 * ratio, event.time_s, event.told_s)
+                    yield StrideValue(TargetMeasure.STANCE_RATIO, side, 100.0 * ratio, event.time_s, event.reported_s)
 
     def _stance_ratio(self, side: Side, off_s: float) -> float | None:
         """This leg's stance that has just ended over the other's latest; None where one of them is not known."""
@@ -97,18 +97,18 @@ class _KneeSwing:
     def __init__(self) -> None:
         self._time_s: FloatArray = np.empty(0)
         self._angle_rad: FloatArray = np.empty(0)
-        self._from_s: float | None = None  # of the swing whose peak is still to be told
+        self._from_s: float | None = None  # of the swing whose peak is still to be reported
 
     def update(self, samples: AngleSamples, events: Iterable[LiveEvent]) -> Iterator[tuple[float, float, float]]:
-        """Give the peak, its instant and the instant at which it was known, of each swing that tells it now."""
+        """Give the peak, its instant and the instant at which it was known, of each swing that reports it now."""
         self._time_s = np.concatenate([self._time_s, samples.time_s])
         self._angle_rad = np.concatenate([self._angle_rad, samples.angle_rad])
         for event in events:
             if event.event is FootEvent.TOE_OFF:
-                yield from self._passed(event.told_s)
+                yield from self._passed(event.reported_s)
                 self._from_s = event.time_s - BEFORE_TOE_OFF_S
             elif event.event is FootEvent.INITIAL_CONTACT:
-                yield from self._passed(event.told_s)
+                yield from self._passed(event.reported_s)
                 yield from self._ended(event)
         yield from self._passed(math.inf)
         if len(self._time_s):
@@ -130,7 +130,7 @@ class _KneeSwing:
         time_s, angle_rad = self._swing(contact.time_s)
         if len(time_s):
             peak = int(np.argmax(angle_rad))
-            yield float(angle_rad[peak]), float(time_s[peak]), contact.told_s
+            yield float(angle_rad[peak]), float(time_s[peak]), contact.reported_s
         self._from_s = None
 
     def _swing(self, until_s: float) -> tuple[FloatArray, FloatArray]:

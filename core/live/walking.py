@@ -27,7 +27,7 @@ from core.signal.pair import pair_of
 
 KEPT_WINDOWS = 24  # two minutes say what is usual
 MIN_SHARE_OF_WINDOW = 0.8
-STRIDES_FOR_ANKLE = 5  # after so many of a side its ankle's axis can be found anew, from free motion and walk together
+STRIDES_FOR_ANKLE = 5  # after so many of a side its ankle's axis can be found again, from free motion and walk together
 
 
 @dataclass(frozen=True, slots=True)
@@ -62,7 +62,7 @@ class LiveFoot:
 
 @dataclass(frozen=True, slots=True)
 class WalkingState:
-    """What the samples since the last state have told; a side is in `feet` if a foot sensor is worn there.
+    """What the samples since the last state have reported; a side is in `feet` if a foot sensor is worn there.
 
     `turned` are the new samples themselves, on an even clock, with their orientations. `slips` and `corrections` are
     all so far.
@@ -78,14 +78,14 @@ class WalkingState:
 class LiveWalk:
     """Both legs of a walking patient, block by block, with the calibration in force.
 
-    Fed a whole recording at once it says the same as fed in blocks of any size, and so in any order of sites.
+    Fed a whole recording at once it states the same as fed in blocks of any size, and so in any order of sites.
 
     Parameters
     ----------
     sensors
         Rate, gyroscope bias (3,) in sensor axes and kind of rate of every sensor that is worn.
     calibration
-        Of the joints whose angles are wanted, from `analyse`; joints without both sensors are passed over.
+        Of the joints whose angles are required, from `analyse`; joints without both sensors are passed over.
     hips
         What `analyse` has found of the hips; they are passed over without a sensor on the pelvis.
 
@@ -142,8 +142,8 @@ class LiveWalk:
             both = turned.get(joint.proximal, NOTHING), turned.get(joint.distal, NOTHING)
             joints[joint] = LiveJoint(angle.update(*both), angle.is_provisional)
             has_new_window |= self._straps[joint].update(angle.paired)
-        for joint, told in self._hips.update(turned).items():
-            joints[joint] = LiveJoint(told.samples, told.is_provisional)
+        for joint, reported in self._hips.update(turned).items():
+            joints[joint] = LiveJoint(reported.samples, reported.is_provisional)
         if has_new_window:
             found = slips({joint: strap.turns for joint, strap in self._straps.items()})
             known = {slip.site for slip in self._slips}
@@ -188,9 +188,11 @@ class _LiveFoot:
         self._contacts = 0
 
     def update(self, samples: OrientedSamples, knee: LiveJoint | None) -> LiveFoot:
-        heard = samples.is_measured
-        if not heard.all():
-            samples = OrientedSamples(samples.tick[heard], samples.time_s[heard], samples.signals[heard], heard[heard])
+        received = samples.is_measured
+        if not received.all():
+            samples = OrientedSamples(
+                samples.tick[received], samples.time_s[received], samples.signals[received], received[received]
+            )
         time_s = samples.time_s + self._clock_offset_s
         events = tuple(self._events.update(time_s, samples.gyr_rad_s, samples.acc_m_s2))
         axis = self._events.pitch_axis
@@ -240,7 +242,7 @@ class _StrapWatch:
         return is_judged
 
     def _judge(self) -> bool:
-        """Whether the window just ended tells a turn; one with a gap between two filters' starts does not."""
+        """Whether the window just ended reports a turn; one with a gap between two filters' starts does not."""
         window = joined_rows(self._rows)
         if len(window) < MIN_SHARE_OF_WINDOW * self._per_window or not window.is_paired.all():
             return False

@@ -1,4 +1,4 @@
-"""All ways to put the sensors on the sites, ranked by how well neighbours share their joints."""
+"""All ways to put the sensors on the sites, ranked by how well adjacent ones share their joints."""
 
 from collections.abc import Generator, Mapping
 from dataclasses import dataclass
@@ -18,8 +18,8 @@ Arrangement = Mapping[Site, int]
 
 
 @dataclass(frozen=True, slots=True)
-class Neighbours:
-    """What every two of s sensors tell of a joint between them.
+class Adjacent:
+    """What every two of s sensors report of a joint between them.
 
     Attributes
     ----------
@@ -38,10 +38,10 @@ class Neighbours:
     length_m: FloatArray
 
 
-def neighbours_in_steps(
+def adjacent_in_steps(
     smoothed: SmoothedTracks, standing: Mapping[str, FloatArray]
-) -> Generator[None, None, Neighbours | None]:
-    """Try a joint between every two sensors, a step each; None where two of them were never heard together.
+) -> Generator[None, None, Adjacent | None]:
+    """Try a joint between every two sensors, a step each; None where two of them were never received together.
 
     Parameters
     ----------
@@ -50,7 +50,7 @@ def neighbours_in_steps(
 
     Returns
     -------
-    Neighbours or None
+    Adjacent or None
         What a joint between every two sensors costs, and where it would be.
     """
     names = tuple(smoothed.sensors)
@@ -66,19 +66,19 @@ def neighbours_in_steps(
         height_m[b, a] = -height_m[a, b]
         length_m[a, b] = length_m[b, a] = np.linalg.norm(found.centre_1_m) + np.linalg.norm(found.centre_2_m)
         yield
-    return Neighbours(names, cost, height_m, length_m)
+    return Adjacent(names, cost, height_m, length_m)
 
 
 class Arrangements:
     """All ways to put the sensors on `sites`, each with what its joints cost together."""
 
-    def __init__(self, sites: tuple[Site, ...], neighbours: Neighbours) -> None:
+    def __init__(self, sites: tuple[Site, ...], adjacent: Adjacent) -> None:
         self._sites = sites
-        self._number = number = len(neighbours.names)
+        self._number = number = len(adjacent.names)
         ends = [(sites.index(j.proximal), sites.index(j.distal)) for j in joints_between(sites)]
         self._orders = orders = np.array(list(permutations(range(number))), dtype=np.int64)
         pairs = [(orders[:, a], orders[:, b]) for a, b in ends]
-        self._cost = np.sum([np.log(neighbours.cost[pair] + COST_FLOOR) for pair in pairs], axis=0)
+        self._cost = np.sum([np.log(adjacent.cost[pair] + COST_FLOOR) for pair in pairs], axis=0)
         # a bit for each two sensors that share a joint
         self._links: IntArray = np.sum([self._bit(*pair) for pair in pairs], axis=0)
 
@@ -139,12 +139,12 @@ class Stature:
         return self.height_m / self.length_m if self.length_m > 0 else 0.0
 
 
-def statures(arrangement: Arrangement, neighbours: Neighbours) -> dict[Side, Stature]:
+def statures(arrangement: Arrangement, adjacent: Adjacent) -> dict[Side, Stature]:
     """The stature of every leg that has a joint."""
     found: dict[Side, Stature] = {}
     for joint in (joint for joint in joints_between(tuple(arrangement)) if not joint.is_hip):
         ends = arrangement[joint.proximal], arrangement[joint.distal]
         above = found.get(joint.side, Stature(0.0, 0.0))
-        height_m, length_m = float(neighbours.height_m[ends]), float(neighbours.length_m[ends])
+        height_m, length_m = float(adjacent.height_m[ends]), float(adjacent.length_m[ends])
         found[joint.side] = Stature(above.height_m + height_m, above.length_m + length_m)
     return found

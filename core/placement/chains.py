@@ -6,14 +6,14 @@ from dataclasses import dataclass
 import numpy as np
 
 from core.body import LEG_SEGMENTS, LEG_SITES, Segment, Side, Site, ankle_of, knee_of
-from core.placement.arrangements import Arrangement, Arrangements, Neighbours, Stature, neighbours_in_steps, statures
+from core.placement.arrangements import Adjacent, Arrangement, Arrangements, Stature, adjacent_in_steps, statures
 from core.placement.smoothed_tracks import Tracks, smoothed_in_steps
 from core.placement.steps import at_once
 from core.samples import FloatArray
 from core.signal.pair import MOVING_WINDOW_S, OrientedTrack, moving_mean
 
 MIN_MARGIN = 1.7  # wrong sensors at a joint had 1.5 at most, in motions of two seconds; right ones seldom under 2
-MIN_UPRIGHTNESS = 0.5  # flatter, the patient lay, and the vertical does not tell which end is up
+MIN_UPRIGHTNESS = 0.5  # flatter, the patient lay, and the vertical does not report which end is up
 LIFTED_RAD_S = 0.7  # the leg that bears the weight sways less
 MIN_LEAD_S = 0.5
 
@@ -37,7 +37,7 @@ class Chain:
     knee_margin, ankle_margin
         Cost of the best arrangement without this joint over the cost of the best; infinite where there is no other.
     stature
-        How much higher the thigh's sensor sits than the last one in standing, as the joints' places tell.
+        How much higher the thigh's sensor sits than the last one in standing, as the joints' places report.
     moved_at_s
         When the leg was lifted first, None where it never was.
     """
@@ -99,7 +99,7 @@ class Chains:
 
 
 def find_chains(tracks: Tracks, standing: Mapping[str, FloatArray] | None = None) -> Chains | None:
-    """Arrange two to seven sensors to legs; None where they were not heard together.
+    """Arrange two to seven sensors to legs; None where they were not received together.
 
     Two sensors are taken for a knee, three for a leg, four for two knees, five for a leg and a knee, seven for two legs
     and a pelvis.
@@ -110,7 +110,7 @@ def find_chains(tracks: Tracks, standing: Mapping[str, FloatArray] | None = None
         Of a free motion, by the sensor's name.
     standing
         Mean specific force (3,) of each sensor in standing. Without it the mean vertical of the motion serves, which
-        tells less of a patient who lies.
+        reports less of a patient who lies.
 
     Returns
     -------
@@ -148,32 +148,32 @@ def chains_in_steps(
     if len(tracks) not in USUAL_SITES:
         raise ValueError(f"{len(tracks)} sensors, expected 2 to 7")
     smoothed = yield from smoothed_in_steps(tracks)
-    neighbours = (yield from neighbours_in_steps(smoothed, standing or {})) if smoothed else None
-    if neighbours is None:
+    adjacent = (yield from adjacent_in_steps(smoothed, standing or {})) if smoothed else None
+    if adjacent is None:
         return None
-    arrangements = Arrangements(USUAL_SITES[len(tracks)], neighbours)
+    arrangements = Arrangements(USUAL_SITES[len(tracks)], adjacent)
     best = arrangements.best()
-    arrangement = max(arrangements.alike(best), key=lambda one: _total_height_m(one, neighbours))
+    arrangement = max(arrangements.alike(best), key=lambda one: _total_height_m(one, adjacent))
     legs = [
-        _chain(side, arrangement, arrangements, neighbours, tracks)
+        _chain(side, arrangement, arrangements, adjacent, tracks)
         for side in Side
         if Site(f"{side}_thigh") in arrangement
     ]
     legs.sort(key=lambda leg: np.inf if leg.moved_at_s is None else leg.moved_at_s)
     at_s = [leg.moved_at_s for leg in legs]
     lead_s = None if len(at_s) < 2 or at_s[0] is None or at_s[1] is None else at_s[1] - at_s[0]
-    pelvis = neighbours.names[arrangement[Site.PELVIS]] if Site.PELVIS in arrangement else None
+    pelvis = adjacent.names[arrangement[Site.PELVIS]] if Site.PELVIS in arrangement else None
     return Chains(tuple(legs), arrangements.margin(best), lead_s, pelvis)
 
 
-def _total_height_m(arrangement: Arrangement, neighbours: Neighbours) -> float:
-    return sum(stature.height_m for stature in statures(arrangement, neighbours).values())
+def _total_height_m(arrangement: Arrangement, adjacent: Adjacent) -> float:
+    return sum(stature.height_m for stature in statures(arrangement, adjacent).values())
 
 
 def _chain(
-    side: Side, arrangement: Arrangement, arrangements: Arrangements, neighbours: Neighbours, tracks: Tracks
+    side: Side, arrangement: Arrangement, arrangements: Arrangements, adjacent: Adjacent, tracks: Tracks
 ) -> Chain:
-    sensors = {site.segment: neighbours.names[sensor] for site, sensor in arrangement.items() if site.side is side}
+    sensors = {site.segment: adjacent.names[sensor] for site, sensor in arrangement.items() if site.side is side}
     has_foot = Segment.FOOT in sensors
     moved = [at_s for name in sensors.values() if (at_s := _lifted_at_s(tracks[name])) is not None]
     return Chain(
@@ -182,7 +182,7 @@ def _chain(
         foot=sensors.get(Segment.FOOT),
         knee_margin=arrangements.margin(arrangement, knee_of(side)),
         ankle_margin=arrangements.margin(arrangement, ankle_of(side)) if has_foot else None,
-        stature=statures(arrangement, neighbours)[side],
+        stature=statures(arrangement, adjacent)[side],
         moved_at_s=min(moved, default=None),
     )
 

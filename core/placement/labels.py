@@ -6,11 +6,11 @@ from dataclasses import dataclass
 from core.body import Site
 from core.findings import Finding, Severity
 from core.placement.arrangements import (
+    Adjacent,
     Arrangement,
     Arrangements,
-    Neighbours,
+    adjacent_in_steps,
     joints_between,
-    neighbours_in_steps,
     statures,
 )
 from core.placement.chains import MIN_MARGIN, MIN_UPRIGHTNESS
@@ -24,7 +24,7 @@ SHARED_COST = 0.2  # two sensors that disagree on less may share a joint, though
 
 @dataclass(frozen=True, slots=True)
 class DoubtedLabels:
-    """Groups of sites whose sensors seem exchanged, and the name of the recording that tells; often none."""
+    """Groups of sites whose sensors seem exchanged, and the name of the recording that reports; often none."""
 
     recording: str
     groups: tuple[tuple[Site, ...], ...]
@@ -81,12 +81,12 @@ def _standing_force(tracks: SensorTracks, site: Site) -> FloatArray | None:
 def exchanged_sites(tracks: Tracks, standing: Mapping[str, FloatArray]) -> list[tuple[Site, ...]]:
     """Groups of sites whose sensors the motion wants exchanged; none where the labels may be right.
 
-    Whole legs cannot be told apart, so two exchanged legs are not found.
+    Whole legs cannot be distinguished, so two exchanged legs are not found.
 
     Parameters
     ----------
     tracks
-        Of a free motion or a walk, by site; every site with a neighbour among them.
+        Of a free motion or a walk, by site; every site with a adjacent one among them.
     standing
         Mean specific force (3,) in standing, by site.
 
@@ -109,18 +109,18 @@ def detected_in_steps(tracks: Tracks, standing: Mapping[str, FloatArray]) -> Gen
     Returns
     -------
     dict of Site to Site
-        When the steps are over: by the site that a sensor is said to be at, the one that it is detected at.
+        When the steps are over: by the site that a sensor is stated to be at, the one that it is detected at.
     """
     smoothed = (yield from smoothed_in_steps(tracks)) if tracks else None
-    neighbours = (yield from neighbours_in_steps(smoothed, standing)) if smoothed else None
-    if neighbours is None:
+    adjacent = (yield from adjacent_in_steps(smoothed, standing)) if smoothed else None
+    if adjacent is None:
         return {}
-    labelled = {Site(name): sensor for sensor, name in enumerate(neighbours.names)}
-    arrangements = Arrangements(tuple(labelled), neighbours)
+    labelled = {Site(name): sensor for sensor, name in enumerate(adjacent.names)}
+    arrangements = Arrangements(tuple(labelled), adjacent)
     best = arrangements.best()
-    if arrangements.ratio(labelled, best) < MIN_MARGIN or _has_every_joint(labelled, neighbours):
+    if arrangements.ratio(labelled, best) < MIN_MARGIN or _has_every_joint(labelled, adjacent):
         best = labelled
-    upright = [one for one in arrangements.alike(best) if not _is_upside_down(one, neighbours)]
+    upright = [one for one in arrangements.alike(best) if not _is_upside_down(one, adjacent)]
     nearest = min(upright, key=lambda one: _changes(one, labelled), default=labelled)
     site_of = {sensor: site for site, sensor in nearest.items()}
     return {site: site_of[sensor] for site, sensor in labelled.items() if site_of[sensor] is not site}
@@ -140,13 +140,13 @@ def groups_of(detected: Mapping[Site, Site]) -> list[tuple[Site, ...]]:
     return groups
 
 
-def _has_every_joint(labelled: Arrangement, neighbours: Neighbours) -> bool:
+def _has_every_joint(labelled: Arrangement, adjacent: Adjacent) -> bool:
     ends = [(labelled[joint.proximal], labelled[joint.distal]) for joint in joints_between(tuple(labelled))]
-    return all(neighbours.cost[pair] < SHARED_COST for pair in ends)
+    return all(adjacent.cost[pair] < SHARED_COST for pair in ends)
 
 
-def _is_upside_down(arrangement: Arrangement, neighbours: Neighbours) -> bool:
-    return any(leg.uprightness < -MIN_UPRIGHTNESS for leg in statures(arrangement, neighbours).values())
+def _is_upside_down(arrangement: Arrangement, adjacent: Adjacent) -> bool:
+    return any(leg.uprightness < -MIN_UPRIGHTNESS for leg in statures(arrangement, adjacent).values())
 
 
 def _changes(one: Arrangement, other: Arrangement) -> int:

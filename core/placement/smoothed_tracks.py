@@ -1,8 +1,8 @@
-"""Smoothed terms of every sensor at the same instants, which show neighbours from strangers.
+"""Smoothed terms of every sensor at the same instants, which show adjacent ones from strangers.
 
 Everything here is linear in the unknowns of a joint, so it may be averaged over time first. That takes away what
-tissue, impacts and small lags do between two neighbours, and leaves the slow swing of the limbs, which strangers do not
-share.
+tissue, impacts and small lags do between two adjacent ones, and leaves the slow swing of the limbs, which strangers do
+not share.
 """
 
 from collections.abc import Generator, Mapping, Sequence
@@ -17,16 +17,16 @@ from core.signal.tracks import at_positions
 
 STEP_S = 0.05
 MEAN_S = 0.15  # twice over: longer than tissue rings, shorter than a leg swings
-LONGEST_S = 60.0  # the liveliest minute tells as much as an hour
+LONGEST_S = 60.0  # the liveliest minute reports as much as an hour
 WINDOW_S = 15.0  # over which two headings hardly drift apart
 MAX_INSTANTS = 400
 BORDER_S = 0.05  # at the ends of a stretch what is felt leans on one side
-MIN_SHARE = 0.5  # of what a mean is taken over was heard
+MIN_SHARE = 0.5  # of what a mean is taken over was received
 
 
 @dataclass(frozen=True, slots=True)
 class SmoothedTrack:
-    """One sensor at even instants (n,); NaN where it was not heard.
+    """One sensor at even instants (n,); NaN where it was not received.
 
     With o the vector from a joint to the sensor and b the accelerometer's bias, both in sensor axes, the joint's
     specific force in the sensor's own earth is terms @ (-o, -b, 1).
@@ -64,7 +64,7 @@ Tracks = Mapping[str, Sequence[OrientedTrack]]
 
 
 def smoothed_in_steps(tracks: Tracks) -> Generator[None, None, SmoothedTracks | None]:
-    """What all sensors felt in the liveliest minute they have in common; None where one was not heard for a second.
+    """What all sensors felt in the liveliest minute they have in common; None where one was not received for a second.
 
     A step for each sensor.
     """
@@ -116,13 +116,13 @@ def _smoothed(stretches: Sequence[OrientedTrack], time_s: FloatArray) -> Smoothe
 
 
 def _smooth_terms(force: JointForce, time_s: FloatArray) -> FloatArray:
-    """Terms row by row (n, 21), averaged around ascending instants inside a stretch; NaN where little was heard."""
+    """Terms row by row (n, 21), averaged around ascending instants inside a stretch; NaN where little was received."""
     half = _half_width(force.step_s)
     middle = (time_s - force.start_s) / force.step_s
     first = max(0, int(middle[0]) - 2 * half - 1)
     near = slice(first, int(middle[-1]) + 2 * half + 3)
-    is_heard = force.heard[near, None] > MIN_SHARE
-    rows = np.concatenate([np.where(is_heard, force.terms[near].reshape(-1, 21), 0.0), is_heard], axis=1)
+    is_received = force.received[near, None] > MIN_SHARE
+    rows = np.concatenate([np.where(is_received, force.terms[near].reshape(-1, 21), 0.0), is_received], axis=1)
     smooth = at_positions(_running_mean(_running_mean(rows, half), half), middle - first - 2 * half)
     share = smooth[:, 21:]
     return np.where(share > MIN_SHARE, smooth[:, :21] / np.maximum(share, MIN_SHARE), np.nan)
@@ -133,6 +133,6 @@ def _half_width(step_s: float) -> int:
 
 
 def _running_mean(values: FloatArray, half: int) -> FloatArray:
-    """Means (n - 2 half, k) of rows (n, k) and their `half` neighbours on each side."""
+    """Means (n - 2 half, k) of rows (n, k) and their `half` adjacent ones on each side."""
     total = np.concatenate([np.zeros((1, values.shape[1])), np.cumsum(values, axis=0)])
     return (total[2 * half + 1 :] - total[: -2 * half - 1]) / (2 * half + 1)

@@ -1,6 +1,6 @@
 """Clocks that jump forward: a gap in one sensor's stamps in which no time passed.
 
-A loss looks the same in the one sensor. The others tell them apart: during a loss they measure, or pause alike.
+A loss looks the same in the one sensor. The others report them apart: during a loss they measure, or pause alike.
 """
 
 from collections.abc import Sequence
@@ -11,7 +11,7 @@ import numpy as np
 
 from core.samples import FloatArray
 
-JUMP_S = 1.0  # shorter gaps are told as what they look like
+JUMP_S = 1.0  # shorter gaps are reported as what they look like
 LONGER_THAN_LOSS_S = 60.0  # no sensor is out of reach so long while all others rest
 COVERED = 0.5  # of a gap, in which another sensor measured or paused
 SAME_LENGTH_S = 0.1  # what two sensors measured is equally long although one has a gap more: none was lost in it

@@ -146,7 +146,7 @@ def knot_sums(left: IntArray, share: FloatArray, values: FloatArray, knots: int)
 
 
 def knot_products(left: IntArray, share: FloatArray, weight: FloatArray, knots: int) -> FloatArray:
-    """S' diag(weight) S (k, k), with S (n, k) the knots' shares: a sample feels two neighbouring knots, no others.
+    """S' diag(weight) S (k, k), with S (n, k) the knots' shares: a sample feels two adjacent knots, no others.
 
     Parameters
     ----------

@@ -2,7 +2,8 @@
 
 The specific force of the joint is R (a - b - K o), linear in what is unknown of it (Seel et al. 2014, doi
 10.3390/s140406891, eq 7). So each of its terms may be low-passed by itself, in the sensor's own earth, and two
-neighbours still agree on the sum. In walking people what two neighbours disagree on falls from 1.7 to 0.35 m/s2 at
+adjacent ones still agree on the sum. In walking people what two adjacent ones disagree on falls from 1.7 to 0.35 m/s2
+at
 4 Hz, of a signal of 1.2.
 """
 
@@ -18,7 +19,7 @@ CUTOFF_HZ = 4.0
 REACH_S = 0.25  # the kernel beyond holds less than a hundredth of its weight
 STEP_S = 0.02  # cubics between such instants are exact to a thousandth below the cutoff
 MEANS_AT_ONCE = 32
-MIN_HEARD = 0.95  # of the kernel's weight lies on samples that were heard
+MIN_RECEIVED = 0.95  # of the kernel's weight lies on samples that were received
 
 
 @dataclass(frozen=True, slots=True)
@@ -31,30 +32,30 @@ class JointForce:
     Attributes
     ----------
     terms : (m, 3, 7)
-    heard : (m,)
-        Share of the kernel's weight on samples that were heard.
+    received : (m,)
+        Share of the kernel's weight on samples that were received.
     """
 
     start_s: float
     step_s: float
     terms: FloatArray
-    heard: FloatArray
+    received: FloatArray
 
     @property
     def end_s(self) -> float:
         """When the last instant is."""
-        return self.start_s + self.step_s * (len(self.heard) - 1)
+        return self.start_s + self.step_s * (len(self.received) - 1)
 
     def at(self, time_s: FloatArray) -> FloatArray:
         """Terms (n, 3, 7) at any instants (n,), on this sensor's clock."""
         found = at_positions(self.terms.reshape(-1, 21), (time_s - self.start_s) / self.step_s)
         return found.reshape(-1, 3, 7)
 
-    def is_heard_at(self, time_s: FloatArray) -> BoolArray:
-        """Whether most of what the instants nearest to `time_s` (n,) are made of was heard."""
+    def is_received_at(self, time_s: FloatArray) -> BoolArray:
+        """Whether most of what the instants nearest to `time_s` (n,) are made of was received."""
         nearest = np.round((time_s - self.start_s) / self.step_s).astype(np.int64)
-        is_inside = (nearest >= 0) & (nearest < len(self.heard))
-        return is_inside & (self.heard[np.clip(nearest, 0, len(self.heard) - 1)] > MIN_HEARD)
+        is_inside = (nearest >= 0) & (nearest < len(self.received))
+        return is_inside & (self.received[np.clip(nearest, 0, len(self.received) - 1)] > MIN_RECEIVED)
 
 
 def joint_force(
@@ -64,7 +65,7 @@ def joint_force(
     acceleration: FloatArray,
     force: FloatArray,
     earth_from: FloatArray,
-    is_heard: BoolArray,
+    is_received: BoolArray,
 ) -> JointForce:
     """Low-pass the terms of one stretch.
 
@@ -73,14 +74,14 @@ def joint_force(
     rate, acceleration, force : (n, 3)
         Angular rate, angular acceleration (NaN where unknown) and specific force, in sensor axes.
     earth_from : (n, 3, 3)
-    is_heard : (n,)
+    is_received : (n,)
 
     Returns
     -------
     JointForce
         Terms in the sensor's own earth axes.
     """
-    is_known = is_heard & np.isfinite(acceleration[:, 0])
+    is_known = is_received & np.isfinite(acceleration[:, 0])
     # one signal after the other, which is several times faster than one sample after the other
     turn = np.ascontiguousarray(earth_from.transpose(1, 2, 0))
     g, change, felt = (np.ascontiguousarray(v.T) for v in (rate, acceleration, force))
@@ -110,8 +111,8 @@ def _kernel(step_s: float) -> FloatArray:
 
 def _smoothed(rows: FloatArray, kernel: FloatArray, stride: int) -> FloatArray:
     """Every `stride`-th weighted mean (k, m) of signals (k, n); beyond the ends there is nothing."""
-    half, wanted = len(kernel) // 2, -(-rows.shape[1] // stride)
-    blocks, span = -(-wanted // MEANS_AT_ONCE), MEANS_AT_ONCE * stride
+    half, required = len(kernel) // 2, -(-rows.shape[1] // stride)
+    blocks, span = -(-required // MEANS_AT_ONCE), MEANS_AT_ONCE * stride
     padded = np.zeros((len(rows), blocks * span + 2 * half))
     padded[:, half : half + rows.shape[1]] = rows
     windows = np.lib.stride_tricks.sliding_window_view(padded, span + 2 * half, axis=1)[:, ::span]
@@ -119,4 +120,4 @@ def _smoothed(rows: FloatArray, kernel: FloatArray, stride: int) -> FloatArray:
     for i in range(MEANS_AT_ONCE):
         weights[i * stride : i * stride + len(kernel), i] = kernel
     smooth = np.ascontiguousarray(windows).reshape(-1, span + 2 * half) @ weights
-    return smooth.reshape(len(rows), -1)[:, :wanted]
+    return smooth.reshape(len(rows), -1)[:, :required]

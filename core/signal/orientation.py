@@ -1,7 +1,7 @@
 """Orientation of each sensor by the offline filter VQF, without magnetometer, on the rates between two samples.
 
 VQF (Laidig & Seel 2023, doi 10.1016/j.inffus.2022.10.014) turns the orientation from one sample to the next by the rate
-it is given. A rate of the instant of its stamp stands for half an interval before and after it, so it is averaged with
+it is given. A rate of the instant of its stamp represents half an interval before and after it, so it is averaged with
 its predecessor; a rate that the device has averaged over the past interval is used as it is.
 """
 

@@ -8,7 +8,7 @@ import numpy as np
 from core.body import Site
 from core.samples import FloatArray, ImuBlock, Recording
 from core.signal.clipping import clipped_forces, clipped_rates
-from core.signal.tracks import MAX_REPORTED_GAP_S, MIN_STRETCH_SAMPLES, is_heard, nominal_step_s
+from core.signal.tracks import MAX_REPORTED_GAP_S, MIN_STRETCH_SAMPLES, is_received, nominal_step_s
 
 STEPS_TOGETHER, STEPS_BESIDE = 30, 5
 SHORT_STEP, MIN_SHORT_STEPS = 0.7, 0.005  # of the usual step; of all steps, where stamps jitter
@@ -71,27 +71,27 @@ def receptions(
 
 
 def _reception(block: ImuBlock, nominal_hz: float | None, pauses: Sequence[Pause], offset_s: float) -> Reception:
-    is_there = is_heard(block.time_s, block.gyr_rad_s, block.acc_m_s2)
-    heard_s = block.time_s[is_there]
-    if len(heard_s) < MIN_STRETCH_SAMPLES:
+    is_there = is_received(block.time_s, block.gyr_rad_s, block.acc_m_s2)
+    received_s = block.time_s[is_there]
+    if len(received_s) < MIN_STRETCH_SAMPLES:
         return Reception(lost_percent=ALL_LOST_PERCENT)
-    at_s = heard_s + offset_s
+    at_s = received_s + offset_s
     return Reception(
         lost_percent=lost_percent(block, nominal_hz, pauses),
-        gaps_s=gaps_of(heard_s) + offset_s,
+        gaps_s=gaps_of(received_s) + offset_s,
         span_s=(float(at_s[0]), float(at_s[-1])),
         clipped_rates_s=at_s[clipped_rates(block.gyr_rad_s[is_there]).any(axis=1)],
         clipped_forces_s=at_s[clipped_forces(block.acc_m_s2[is_there]).any(axis=1)],
-        rate_percent=rate_percent(heard_s, nominal_hz),
+        rate_percent=rate_percent(received_s, nominal_hz),
     )
 
 
-def gaps_of(heard_s: FloatArray) -> FloatArray:
+def gaps_of(received_s: FloatArray) -> FloatArray:
     """First and last instant (m, 2) of each gap that is longer than may be bridged in silence.
 
     Parameters
     ----------
-    heard_s : (n,)
+    received_s : (n,)
         Ascending stamps of the samples received, two at least.
 
     Returns
@@ -99,18 +99,18 @@ def gaps_of(heard_s: FloatArray) -> FloatArray:
     (m, 2)
         s.
     """
-    after = np.flatnonzero(np.diff(heard_s) > max(MAX_REPORTED_GAP_S, 1.5 * nominal_step_s(heard_s)))
-    return np.stack([heard_s[after], heard_s[after + 1]], axis=1)
+    after = np.flatnonzero(np.diff(received_s) > max(MAX_REPORTED_GAP_S, 1.5 * nominal_step_s(received_s)))
+    return np.stack([received_s[after], received_s[after + 1]], axis=1)
 
 
 def pauses_of(recording: Recording) -> list[Pause]:
     """When no sensor of a recording was received for longer than a stride takes."""
     common: list[Pause] | None = None
     for block in recording.imu.values():
-        heard_s = block.time_s[is_heard(block.time_s, block.gyr_rad_s, block.acc_m_s2)]
-        if len(heard_s) < MIN_STRETCH_SAMPLES:
+        received_s = block.time_s[is_received(block.time_s, block.gyr_rad_s, block.acc_m_s2)]
+        if len(received_s) < MIN_STRETCH_SAMPLES:
             continue
-        gaps = [(float(a), float(b)) for a, b in gaps_of(heard_s) if b - a >= LEAST_PAUSE_S]
+        gaps = [(float(a), float(b)) for a, b in gaps_of(received_s) if b - a >= LEAST_PAUSE_S]
         both = gaps if common is None else [(max(a, c), min(b, d)) for a, b in common for c, d in gaps]
         common = [(a, b) for a, b in both if b - a >= LEAST_PAUSE_S]
     return common or []
@@ -148,26 +148,26 @@ def lost_percent(block: ImuBlock, nominal_hz: float | None = None, pauses: Seque
     float
         Percent.
     """
-    heard_s = block.time_s[is_heard(block.time_s, block.gyr_rad_s, block.acc_m_s2)]
-    if len(heard_s) < MIN_STRETCH_SAMPLES:
+    received_s = block.time_s[is_received(block.time_s, block.gyr_rad_s, block.acc_m_s2)]
+    if len(received_s) < MIN_STRETCH_SAMPLES:
         return ALL_LOST_PERCENT
-    step_s = nominal_step_s(heard_s)
-    missing = float(np.sum(_missing_rows(heard_s, step_s)))
+    step_s = nominal_step_s(received_s)
+    missing = float(np.sum(_missing_rows(received_s, step_s)))
     missing -= sum(max(round((last - first) / step_s) - 1, 0) for first, last in pauses)
-    missing += float(np.count_nonzero(block.time_s < heard_s[0]) + np.count_nonzero(block.time_s > heard_s[-1]))
-    received = len(heard_s) / (max(missing, 0.0) + len(heard_s))
-    came_at = rate_percent(heard_s, nominal_hz)
+    missing += float(np.count_nonzero(block.time_s < received_s[0]) + np.count_nonzero(block.time_s > received_s[-1]))
+    received = len(received_s) / (max(missing, 0.0) + len(received_s))
+    came_at = rate_percent(received_s, nominal_hz)
     if came_at is not None and came_at < 100.0 - KEPT_RATE_PERCENT:
         received *= came_at / 100.0
     return 100.0 * (1.0 - received)
 
 
-def rate_percent(heard_s: FloatArray, nominal_hz: float | None) -> float | None:
+def rate_percent(received_s: FloatArray, nominal_hz: float | None) -> float | None:
     """The rate that samples came at (gaps counted as if they had come), of the one that was set.
 
     Parameters
     ----------
-    heard_s : (n,)
+    received_s : (n,)
         Ascending stamps of the samples received.
     nominal_hz
         What the sensor was set to; None: not known.
@@ -177,10 +177,10 @@ def rate_percent(heard_s: FloatArray, nominal_hz: float | None) -> float | None:
     float or None
         Percent.
     """
-    if not nominal_hz or len(heard_s) < MIN_STRETCH_SAMPLES:
+    if not nominal_hz or len(received_s) < MIN_STRETCH_SAMPLES:
         return None
-    steps = len(heard_s) - 1 + float(np.sum(_missing_rows(heard_s, nominal_step_s(heard_s))))
-    return 100.0 * steps / (float(heard_s[-1] - heard_s[0]) * nominal_hz)
+    steps = len(received_s) - 1 + float(np.sum(_missing_rows(received_s, nominal_step_s(received_s))))
+    return 100.0 * steps / (float(received_s[-1] - received_s[0]) * nominal_hz)
 
 
 def is_half(percent: float) -> bool:
@@ -188,18 +188,18 @@ def is_half(percent: float) -> bool:
     return abs(percent - 50.0) <= KEPT_RATE_PERCENT
 
 
-def _missing_rows(heard_s: FloatArray, step_s: float) -> FloatArray:
+def _missing_rows(received_s: FloatArray, step_s: float) -> FloatArray:
     """How many samples lack after each but the last (n - 1,).
 
     Where stamps jitter, which shows in short steps, a long step between short ones lacks nothing: as many samples must
-    be missing around it, by a step that many steps tell.
+    be missing around it, by a step that many steps report.
     """
-    steps = np.diff(heard_s)
+    steps = np.diff(received_s)
     if len(steps) <= STEPS_TOGETHER or np.mean(steps < SHORT_STEP * step_s) < MIN_SHORT_STEPS:
         return np.asarray(np.maximum(np.round(steps / step_s) - 1, 0))
-    together_s = (heard_s[STEPS_TOGETHER:] - heard_s[:-STEPS_TOGETHER]) / STEPS_TOGETHER
+    together_s = (received_s[STEPS_TOGETHER:] - received_s[:-STEPS_TOGETHER]) / STEPS_TOGETHER
     step_s = float(np.quantile(together_s, 0.1))
     index = np.arange(len(steps))
     first, last = np.maximum(index - STEPS_BESIDE, 0), np.minimum(index + STEPS_BESIDE + 1, len(steps))
-    around = np.floor((heard_s[last] - heard_s[first]) / step_s - (last - first) + 0.3)
+    around = np.floor((received_s[last] - received_s[first]) / step_s - (last - first) + 0.3)
     return np.asarray(np.clip(np.round(steps / step_s) - 1, 0, np.maximum(around, 0)))

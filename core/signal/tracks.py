@@ -9,7 +9,7 @@ import numpy as np
 from core.samples import BoolArray, FloatArray, ImuBlock
 
 MAX_REPORTED_GAP_S = 0.05  # longer gaps stay empty in every output (FORMATS, section 3)
-MAX_BRIDGED_GAP_S = 0.12  # a swinging leg's rates can be interpolated this long; after more, orientation starts anew
+MAX_BRIDGED_GAP_S = 0.12  # a swinging leg's rates can be interpolated this long; after more, orientation starts again
 MAX_STILL_GAP_S = 0.25  # and this long where the sensor hardly turns
 STILL_RAD_S = 0.5
 MAX_RATE_RAD_S, MAX_FORCE_M_S2 = 100.0, 1000.0  # no sensor worn by a patient measures more
@@ -115,12 +115,12 @@ def even_tracks(block: ImuBlock, from_s: float = -np.inf, to_s: float = np.inf) 
     Returns
     -------
     list of Track
-        In order of time; empty where next to nothing was heard.
+        In order of time; empty where next to nothing was received.
     """
     first, last = np.searchsorted(block.time_s, [from_s, to_s])
     part = slice(int(first), int(last))
     gyr, acc = block.gyr_rad_s[part], block.acc_m_s2[part]
-    is_there = is_heard(block.time_s[part], gyr, acc)
+    is_there = is_received(block.time_s[part], gyr, acc)
     time_s = block.time_s[part][is_there]
     if len(time_s) < 2:
         return []
@@ -143,7 +143,7 @@ def even_tracks(block: ImuBlock, from_s: float = -np.inf, to_s: float = np.inf) 
     return tracks
 
 
-def is_heard(time_s: FloatArray, gyr: FloatArray, acc: FloatArray) -> BoolArray:
+def is_received(time_s: FloatArray, gyr: FloatArray, acc: FloatArray) -> BoolArray:
     """Which samples (n,) are measurements: finite, possible, later than the one before, and not of a stuck sensor.
 
     Parameters
@@ -261,12 +261,12 @@ def continuous(q: FloatArray) -> FloatArray:
 
 
 def _without_gaps(values: FloatArray) -> FloatArray:
-    """Rows (n, k) that are missing take the last one heard, at the start the first."""
-    heard = np.flatnonzero(np.isfinite(values).all(axis=1))
-    if len(heard) in (0, len(values)):
+    """Rows (n, k) that are missing take the last one received, at the start the first."""
+    received = np.flatnonzero(np.isfinite(values).all(axis=1))
+    if len(received) in (0, len(values)):
         return values
-    last = np.searchsorted(heard, np.arange(len(values)), side="right") - 1
-    return values[heard[np.maximum(last, 0)]]
+    last = np.searchsorted(received, np.arange(len(values)), side="right") - 1
+    return values[received[np.maximum(last, 0)]]
 
 
 def _even(time_s: FloatArray, signals: dict[str, FloatArray], step_s: float) -> Track:
@@ -308,7 +308,7 @@ def _without_stamp_noise(time_s: FloatArray, step_s: float, gyr: FloatArray) -> 
     """Stamps (n,) on the even clock that made them, and its step, where the noise is the stamps' own.
 
     Sensors sample evenly; their stamps often say when a sample arrived. Where each sample follows better from its
-    neighbours by number than by stamp, the numbers are believed.
+    adjacent ones by number than by stamp, the numbers are believed.
     """
     number = np.concatenate([[0.0], np.cumsum(np.maximum(np.round(np.diff(time_s) / step_s), 1.0))])
     slope, start = np.polyfit(number, time_s, 1)
@@ -321,16 +321,16 @@ def _without_stamp_noise(time_s: FloatArray, step_s: float, gyr: FloatArray) -> 
 
 
 def _misfit(at: FloatArray, values: FloatArray) -> float:
-    """How far samples (n, k) lie from the cubic through their four neighbours, placed at `at` (n,): a median."""
+    """How far samples (n, k) lie from the cubic through their four adjacent ones, placed at `at` (n,): a median."""
     centre = at[2:-2]
     nodes = np.stack([at[:-4], at[1:-3], at[3:-1], at[4:]])
-    neighbours = np.stack([values[:-4], values[1:-3], values[3:-1], values[4:]])
+    adjacent = np.stack([values[:-4], values[1:-3], values[3:-1], values[4:]])
     weight = np.ones_like(nodes)
     for j in range(4):
         for m in range(4):
             if m != j:
                 weight[j] *= (centre - nodes[m]) / (nodes[j] - nodes[m])
-    return float(np.median(np.linalg.norm(values[2:-2] - np.sum(weight[..., None] * neighbours, axis=0), axis=1)))
+    return float(np.median(np.linalg.norm(values[2:-2] - np.sum(weight[..., None] * adjacent, axis=0), axis=1)))
 
 
 def at_positions(values: FloatArray, position: FloatArray) -> FloatArray:

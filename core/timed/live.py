@@ -22,7 +22,7 @@ from core.timed.found import NotMeasured, TimedTest
 from core.timed.protocols import DEFINITIONS, KeyMeaning, PlannedTest, TimedProtocol
 from core.timed.seat import NO_SEAT, STEP_S, SeatMotions, motions_of_tilt
 from core.timed.timing import origin_of, timed
-from core.timed.way import BodyWay, FootSwings, HeardFoot, moving_pieces, swings_of, way_of
+from core.timed.way import BodyWay, FootSwings, ReceivedFoot, moving_pieces, swings_of, way_of
 
 LOOK_S = 0.25  # between one look and the next
 SETTLED_S = 3.0  # a swing that ended so long ago has another stance and more behind it: nothing changes it
@@ -44,7 +44,7 @@ class LiveReadout:
     Attributes
     ----------
     distance_m
-        Since the start, as far as the steps tell; NaN while `reasons` say why it cannot be told.
+        Since the start, as far as the steps report; NaN while `reasons` say why it cannot be reported.
     steps
         Side and way in metres of each contact since the start, in order of time.
     """
@@ -84,7 +84,7 @@ class LiveTest:
     Parameters
     ----------
     upright
-        The vertical (3,) in the axes of each thigh's sensor while the patient stands.
+        The vertical (3,) in the axes of each thigh's sensor while the patient is.
     rigid_sides
         Those with a prosthetic foot.
     from_s
@@ -140,7 +140,7 @@ class LiveTest:
 
     def _look(self) -> None:
         planned, now_s = self.planned, self._now_s
-        feet = {side: foot.heard() for side, foot in self._feet.items() if foot.has_samples}
+        feet = {side: foot.received() for side, foot in self._feet.items() if foot.has_samples}
         way = way_of(feet, self._from_s, now_s)
         found = timed(way, self._seat(), planned)
         start_s, end_s = found.start_s, found.end_s
@@ -154,7 +154,7 @@ class LiveTest:
                 distance_m = way.way_at(until_s) - origin_of(way, start_s)
             steps = _steps(way, start_s, until_s)
         silent = tuple(one.site for one in way.silences if one.end_s >= now_s - LOOK_S)
-        if planned == self.planned:  # else a key was pressed meanwhile, and the next look is upon it
+        if planned == self.planned:  # else a key was pressed meanwhile, and the next look is on it
             is_still = bool(self._feet) and all(foot.is_still for foot in self._feet.values())
             reasons = tuple(one for one in found.missing if one is not NotMeasured.NOT_FINISHED)
             self.state = LiveReadout(
@@ -206,12 +206,12 @@ class _LiveFootWay:
                 self._kept = joined([self._kept, part])
                 self._stretches_s[-1] = self._stretches_s[-1][0], end_s
 
-    def heard(self) -> HeardFoot:
+    def received(self) -> ReceivedFoot:
         """What is known of the foot by now."""
         last_s = self._stretches_s[-1][1]
         fresh = self._look(last_s - SETTLED_S)
         self._kept = self._kept.part(slice(int(np.searchsorted(self._kept.time_s, last_s - KEPT_S)), None))
-        return HeardFoot(self._site, tuple(self._stretches_s), (self._settled, fresh))
+        return ReceivedFoot(self._site, tuple(self._stretches_s), (self._settled, fresh))
 
     def _look(self, settled_to_s: float) -> FootSwings:
         """Keep the swings that ended before an instant for good, and give the others."""
@@ -260,10 +260,10 @@ class _LiveThigh:
     def add(self, samples: OrientedSamples) -> None:
         w, x, y, z = samples.q_earth_from_sensor.T
         up = np.stack([2 * (x * z - w * y), 2 * (y * z + w * x), 1 - 2 * (x * x + y * y)], axis=1)
-        is_heard = samples.time_s >= self._from_s
+        is_received = samples.time_s >= self._from_s
         tilt_rad = np.arccos(np.clip(up @ self._upright, -1.0, 1.0))
-        self._time_s = np.concatenate([self._time_s, samples.time_s[is_heard]])
-        self._tilt_rad = np.concatenate([self._tilt_rad, tilt_rad[is_heard]])
+        self._time_s = np.concatenate([self._time_s, samples.time_s[is_received]])
+        self._tilt_rad = np.concatenate([self._tilt_rad, tilt_rad[is_received]])
 
     def tilt_at(self, time_s: FloatArray) -> FloatArray:
         return np.asarray(np.interp(time_s, self._time_s, self._tilt_rad))

@@ -1,7 +1,7 @@
 """How the body comes along and turns, from both feet: each carries half of the way.
 
 While one foot swings, the body goes half as far; the mean of both feet's ways keeps within a few centimetres of it. The
-heading is the integral of each foot's rate about the vertical, read where the foot stands, so that the sway of a swing
+heading is the integral of each foot's rate about the vertical, read where the foot is, so that the sway of a swing
 does not count.
 """
 
@@ -24,7 +24,7 @@ from core.timed.found import Silence, Turn
 STEP_S = 0.02
 SILENCE_S = 0.3  # shorter gaps are bridged or cost no step
 STILL_S = 1.0  # both feet on the floor for so long: a pause, or the stillness before a start
-CALM_S, MOVING_RAD_S = 0.1, 0.3  # a foot that stands turns more slowly, on average over
+CALM_S, MOVING_RAD_S = 0.1, 0.3  # a foot that is turns more slowly, on average over
 STANDING_S = 1.5  # longer than a slow walker's foot lies flat
 PIECE_PAD_S = 0.6
 LOST_SWING_S = 1.5  # beside a silence a swing may be missing
@@ -32,7 +32,7 @@ TURNING_RAD = np.deg2rad(20.0)  # in the time of one stride; straight strides tu
 MIN_TURN_RAD = np.deg2rad(60.0)
 ONE_TURN_M = 0.6  # two turns to one side with no more way between them are one
 MAX_ARC_RAD = np.deg2rad(150.0)
-USUAL_STRIDE_S = 1.2  # where no stride tells
+USUAL_STRIDE_S = 1.2  # where no stride reports
 
 
 @dataclass(frozen=True, slots=True)
@@ -55,8 +55,8 @@ class BodyWay:
     Attributes
     ----------
     time_s, way_m, heading_rad : (n,)
-        The way with its turns, the heading to the left, from the first sample on; of the foot that is heard where the
-        other is silent.
+        The way with its turns, the heading to the left, from the first sample on; of the foot that is received where
+        the other is silent.
     """
 
     time_s: FloatArray
@@ -100,7 +100,7 @@ class BodyWay:
 class FootSwings:
     """One foot's swings, ascending: toe-off and contact, the arc of the body's way, the heading before and after.
 
-    All (k,) but `heading_rad` (k, 2), which goes on from one swing to the next. `climb_m`: how much higher it stands.
+    All (k,) but `heading_rad` (k, 2), which goes on from one swing to the next. `climb_m`: how much higher it is.
     """
 
     toe_off_s: FloatArray
@@ -117,11 +117,12 @@ class FootSwings:
 
 
 @dataclass(frozen=True, slots=True)
-class HeardFoot:
-    """One foot: from when to when its sensor was heard; its swings, stretch by stretch, each with its own heading."""
+class ReceivedFoot:
+    """One foot: from when to when its sensor was received; its swings, stretch by stretch, each with its own
+    heading."""
 
     site: Site
-    heard_s: tuple[tuple[float, float], ...]
+    received_s: tuple[tuple[float, float], ...]
     swings: tuple[FootSwings, ...]
 
 
@@ -134,16 +135,16 @@ def body_way(tracks: SensorTracks, recording: Recording) -> BodyWay:
         Seconds on the recording's clock, metres, radians.
     """
     block = tracks.blocks(recording)[0]
-    feet: dict[Side, HeardFoot] = {}
+    feet: dict[Side, ReceivedFoot] = {}
     for side in Side:
         site = Site(f"{side}_{Segment.FOOT}")
         if not tracks.is_usable(recording, site):
             continue
         worn = tracks.oriented(recording, site, block)
         is_rigid = side in prosthetic_sides(tracks.session.patient)
-        heard_s = tuple((one.track.start_s, one.track.end_s) for one in worn)
+        received_s = tuple((one.track.start_s, one.track.end_s) for one in worn)
         pieces = (piece for whole in worn for piece in moving_pieces(whole))
-        feet[side] = HeardFoot(site, heard_s, tuple(swings_of(piece, is_rigid) for piece in pieces))
+        feet[side] = ReceivedFoot(site, received_s, tuple(swings_of(piece, is_rigid) for piece in pieces))
     return way_of(feet, *tracks.span_of(recording))
 
 
@@ -156,7 +157,7 @@ def swings_of(one: OrientedTrack, is_rigid: bool) -> FootSwings:
     return FootSwings(off_s, on_s, _arcs(events.length_m, heading[:, 1] - heading[:, 0]), heading, events.climb_m)
 
 
-def way_of(feet: Mapping[Side, HeardFoot], start_s: float, end_s: float) -> BodyWay:
+def way_of(feet: Mapping[Side, ReceivedFoot], start_s: float, end_s: float) -> BodyWay:
     """The body's way from what both feet did; without a foot it has no samples."""
     if not feet:
         nothing = np.empty(0)
@@ -166,9 +167,9 @@ def way_of(feet: Mapping[Side, HeardFoot], start_s: float, end_s: float) -> Body
     steps: dict[Side, FootSteps] = {}
     for side, foot in feet.items():
         speed, turning = np.full_like(time_s, np.nan), np.full_like(time_s, np.nan)
-        for from_s, to_s in foot.heard_s:
-            heard = (time_s >= from_s - STEP_S) & (time_s <= to_s + STEP_S)
-            speed[heard], turning[heard] = 0.0, 0.0
+        for from_s, to_s in foot.received_s:
+            received = (time_s >= from_s - STEP_S) & (time_s <= to_s + STEP_S)
+            speed[received], turning[received] = 0.0, 0.0
         for swings in foot.swings:
             total_m = np.cumsum(swings.arc_m)
             way_m = np.stack([total_m - swings.arc_m, total_m], axis=1).ravel()
@@ -261,8 +262,8 @@ def _total(rates: list[FloatArray]) -> FloatArray:
     return np.asarray(np.cumsum(mean) * STEP_S)
 
 
-def _silences(foot: HeardFoot, start_s: float, end_s: float) -> list[Silence]:
-    edges = [start_s, *(t for span_s in foot.heard_s for t in span_s), end_s]
+def _silences(foot: ReceivedFoot, start_s: float, end_s: float) -> list[Silence]:
+    edges = [start_s, *(t for span_s in foot.received_s for t in span_s), end_s]
     return [Silence(foot.site, a, b) for a, b in zip(edges[::2], edges[1::2], strict=True) if b - a > SILENCE_S]
 
 
@@ -304,8 +305,8 @@ def pauses_of(way: BodyWay) -> tuple[tuple[float, float], ...]:
     landed = np.maximum.accumulate(swings[:, 1]) if len(swings) else np.empty(0)
     found = []
     for landed_s, off_s in zip(landed[:-1].tolist(), swings[1:, 0].tolist(), strict=True):
-        is_heard = not way.silences_in(landed_s - LOST_SWING_S, off_s + LOST_SWING_S)
-        if off_s - landed_s >= STILL_S and is_heard:
+        is_received = not way.silences_in(landed_s - LOST_SWING_S, off_s + LOST_SWING_S)
+        if off_s - landed_s >= STILL_S and is_received:
             found.append((landed_s, off_s))
     return tuple(found)
 

@@ -1,7 +1,8 @@
 """By how much a timed test has to differ between visits before more than another day is behind it.
 
 A test is its own measurement: what attempts of one day differ by is part of what days differ by, and nothing is added.
-Only walking speed has a figure between visits; distances in a set time and times from a chair are told and not judged.
+Only walking speed has a figure between visits; distances in a set time and times from a chair are reported and not
+judged.
 """
 
 import math
@@ -52,7 +53,7 @@ def compare_attempts(
     Parameters
     ----------
     assessments
-        What may be said of each of the two; a difference of what is withheld is none.
+        What may be stated about each of the two; a difference of what is not reported is none.
     is_chosen_before
         The measure was chosen before the visit, as a goal is: a sentence then needs the error alone.
 
@@ -62,8 +63,8 @@ def compare_attempts(
         In the unit of the column.
     """
     difference = one.mean - other.mean
-    if any(not found.is_told for found in assessments) or not math.isfinite(difference):
-        return Difference(math.nan, math.nan, Judgement.WITHHELD)
+    if any(not found.is_reported for found in assessments) or not math.isfinite(difference):
+        return Difference(math.nan, math.nan, Judgement.NOT_REPORTED)
     error = error_between_visits(column)
     if not math.isfinite(error):
         return Difference(difference, math.nan, Judgement.NO_PUBLISHED_FIGURE)

@@ -1,6 +1,6 @@
 """The gates that a recording passes: from what was measured to a verdict per joint, leg and kind of quantity.
 
-Every limit stands in `LIMITS`, each with its reason; a reason in a verdict carries the value found beside its limit.
+Every limit is in `LIMITS`, each with its reason; a reason in a verdict carries the value found beside its limit.
 """
 
 from collections.abc import Collection, Iterable, Iterator, Mapping
@@ -34,7 +34,7 @@ from core.verdicts.sample_gates import clipped, lost, off_rate
 
 @dataclass(frozen=True, slots=True)
 class GateLimits:
-    """Where each gate closes. `care` and `withheld` of a pair are where reading with care begins, and where it ends."""
+    """Where each gate closes. Of a pair the first is where caution begins, the second where nothing is reported."""
 
     pairing_margin: float = 1.5  # of the best hypothesis over its best rival, in motion below 4 Hz
     axis_sd_deg: tuple[float, float] = (6.5, 9.0)  # 15 deg of motion off the plane leak 15 sin sd: 1.7 and 2.3 deg
@@ -47,7 +47,7 @@ class GateLimits:
     hips_apart_m: tuple[float, float] = (0.12, 0.28)
     hip_heading_sd_deg: float = 6.0  # of abduction: beyond, it is a part of flexion
     hip_deep_deg: float = 80.0  # deeper, the sensor on the sacrum shows half of the pelvis's tilt
-    pelvis_tilt_deg: float = 5.0  # over the stride: less is not told from an error of 0.4 to 1.4
+    pelvis_tilt_deg: float = 5.0  # over the stride: less is not distinguished from an error of 0.4 to 1.4
     knee_least_deg: float = -20.0
     ankle_height_deg: tuple[float, float] = (-45.0, 40.0)
     halves_deg: float = 2.0
@@ -64,7 +64,7 @@ class GateLimits:
 
 
 LIMITS = GateLimits()
-HIP_NOT_FOUND = JointVerdicts(*[assess([GateReason("hip_found", Verdict.WITHHELD)])] * 3)
+HIP_NOT_FOUND = JointVerdicts(*[assess([GateReason("hip_found", Verdict.NOT_REPORTED)])] * 3)
 OF_COURSE = ("halves", "halves_time", "drift")  # gates of what changes over a walk
 MIN_STRIDES_TO_SPLIT = 6  # halves of three strides, thirds of two: fewer say nothing of a walk's course
 
@@ -98,14 +98,14 @@ def verdicts_of(
 
 
 def calibration_verdicts(calibration: JointCalibration) -> JointVerdicts:
-    """What may be said of a joint by its calibration alone, before there is a walk."""
+    """What may be stated about a joint by its calibration alone, before there is a walk."""
     shape = [*_calibrated(calibration)]
     sign = [*_sign(calibration)]
     return JointVerdicts(assess(shape), assess([*shape, *_zero(calibration), *sign]), assess(sign))
 
 
 def judged(analysis: Analysis) -> Analysis:
-    """The same analysis with every recording's verdicts made anew."""
+    """The same analysis with every recording's verdicts made again."""
     recordings = tuple(
         replace(one, verdicts=verdicts_of(one, analysis.calibrated_for(one), analysis.stiff_sides))
         for one in analysis.recordings
@@ -120,7 +120,7 @@ def _joint_verdicts(
         *_labels(recording, joint.proximal, joint.distal),
         *_calibrated(calibration),
         *_delivered(recording, joint.proximal, joint.distal),
-        *_drifting(recording, Verdict.WITHHELD, joint.proximal, joint.distal),
+        *_drifting(recording, Verdict.NOT_REPORTED, joint.proximal, joint.distal),
     ]
     height = [*shape, *_zero(calibration), *_sign(calibration)]
     gait = recording.gait.get(joint.side)
@@ -144,13 +144,13 @@ def _without_course(recording: RecordingAnalysis, reasons: Iterable[GateReason])
 
 def _hip_verdicts(recording: RecordingAnalysis, joint: Joint, knee: JointCalibration | None) -> JointVerdicts:
     """A hip has no axis of its own: its frames lean on the knee's, its sign on the knee's sign."""
-    of_knee = [*_pairing(knee), *_axis(knee)] if knee is not None else [GateReason("axis", Verdict.WITHHELD)]
+    of_knee = [*_pairing(knee), *_axis(knee)] if knee is not None else [GateReason("axis", Verdict.NOT_REPORTED)]
     shape = [
         *_labels(recording, joint.proximal, joint.distal),
-        *_neighbours(recording.hips[joint].identification),
+        *_adjacent(recording.hips[joint].identification),
         *of_knee,
         *_delivered(recording, joint.proximal, joint.distal),
-        *_drifting(recording, Verdict.WITHHELD, joint.proximal, joint.distal),
+        *_drifting(recording, Verdict.NOT_REPORTED, joint.proximal, joint.distal),
     ]
     sign = [*_sign(knee)] if knee is not None else []
     gait = recording.gait.get(joint.side)
@@ -173,35 +173,35 @@ def _heading(found: HipIdentification) -> Iterator[GateReason]:
     """Without a sure heading between pelvis and thigh there is flexion, against the vertical, but no abduction."""
     sd_deg = _known(float(np.rad2deg(found.heading_sd_rad)))
     if sd_deg is None or sd_deg > LIMITS.hip_heading_sd_deg:
-        yield GateReason("hip_heading", Verdict.WITHHELD, sd_deg, LIMITS.hip_heading_sd_deg, "deg")
+        yield GateReason("hip_heading", Verdict.NOT_REPORTED, sd_deg, LIMITS.hip_heading_sd_deg, "deg")
 
 
-def _neighbours(found: HipIdentification) -> Iterator[GateReason]:
-    """Whether pelvis and thigh moved as neighbours, at lengths that a body has, the legs not swapped."""
+def _adjacent(found: HipIdentification) -> Iterator[GateReason]:
+    """Whether pelvis and thigh moved as adjacent segments, at lengths that a body has, the legs not swapped."""
     if found.margin < LIMITS.pairing_margin:
-        yield GateReason("pairing", Verdict.WITHHELD, found.margin, LIMITS.pairing_margin)
+        yield GateReason("pairing", Verdict.NOT_REPORTED, found.margin, LIMITS.pairing_margin)
     if found.disagreement >= LIMITS.hip_disagreement:
-        yield GateReason("hip_disagreement", Verdict.WITHHELD, found.disagreement, LIMITS.hip_disagreement)
+        yield GateReason("hip_disagreement", Verdict.NOT_REPORTED, found.disagreement, LIMITS.hip_disagreement)
     for centre_m in (found.centre_proximal_m, found.centre_distal_m):
         least, most = LIMITS.hip_centre_m
         length_m = float(np.linalg.norm(centre_m))
         if not least <= length_m <= most:
-            yield GateReason("hip_centre", Verdict.WITHHELD, length_m, least if length_m < least else most, "m")
+            yield GateReason("hip_centre", Verdict.NOT_REPORTED, length_m, least if length_m < least else most, "m")
     if found.centres_apart_m is not None:
         least, most = LIMITS.hips_apart_m
         if not least <= found.centres_apart_m <= most:
             limit = least if found.centres_apart_m < least else most
-            yield GateReason("hips_apart", Verdict.WITHHELD, found.centres_apart_m, limit, "m")
+            yield GateReason("hips_apart", Verdict.NOT_REPORTED, found.centres_apart_m, limit, "m")
 
 
 def _pelvis(recording: RecordingAnalysis) -> Iterator[GateReason]:
     """The pelvis's frame comes from the hips: where no hip can be read, it has none."""
     yield from _delivered(recording, Site.PELVIS)
-    trusted = [hip for hip in recording.hips.values() if not [*_neighbours(hip.identification)]]
+    trusted = [hip for hip in recording.hips.values() if not [*_adjacent(hip.identification)]]
     if not trusted:
-        yield GateReason("pairing", Verdict.WITHHELD, None, LIMITS.pairing_margin)
-    heard = [hip.angle_rad[np.isfinite(hip.angle_rad)] for hip in recording.hips.values()]
-    deepest_deg = max((float(np.rad2deg(angle.max())) for angle in heard if len(angle)), default=0.0)
+        yield GateReason("pairing", Verdict.NOT_REPORTED, None, LIMITS.pairing_margin)
+    arrived = [hip.angle_rad[np.isfinite(hip.angle_rad)] for hip in recording.hips.values()]
+    deepest_deg = max((float(np.rad2deg(angle.max())) for angle in arrived if len(angle)), default=0.0)
     if deepest_deg > LIMITS.hip_deep_deg:
         yield GateReason("hip_deep", Verdict.CARE, deepest_deg, LIMITS.hip_deep_deg, "deg")
 
@@ -210,7 +210,7 @@ def _tilt_range(recording: RecordingAnalysis) -> Iterator[GateReason]:
     ranges = [gait.parameters["pelvis_tilt_range_rad"][gait.strides.is_used] for gait in recording.gait.values()]
     known = np.rad2deg(np.concatenate([one[np.isfinite(one)] for one in ranges])) if ranges else np.empty(0)
     if len(known) and float(known.mean()) <= LIMITS.pelvis_tilt_deg:
-        yield GateReason("pelvis_tilt", Verdict.WITHHELD, float(known.mean()), LIMITS.pelvis_tilt_deg, "deg")
+        yield GateReason("pelvis_tilt", Verdict.NOT_REPORTED, float(known.mean()), LIMITS.pelvis_tilt_deg, "deg")
 
 
 def _leg_verdicts(
@@ -242,7 +242,7 @@ def _labels(recording: RecordingAnalysis, *sites: Site) -> Iterator[GateReason]:
     """A joint of which a sensor sits elsewhere may still look like one: thigh and foot turn about parallel axes too."""
     if not recording.doubted_sites.isdisjoint(sites):
         doubted = tuple(site for site in Site if site in recording.doubted_sites)
-        yield GateReason("labels", Verdict.WITHHELD, sites=doubted)
+        yield GateReason("labels", Verdict.NOT_REPORTED, sites=doubted)
 
 
 def _calibrated(found: JointCalibration) -> Iterator[GateReason]:
@@ -253,22 +253,22 @@ def _pairing(found: JointCalibration) -> Iterator[GateReason]:
     """Whether both sensors sit on one joint; the reason is the one of three that decided it."""
     margin, disagreement = found.sign_margin, found.disagreement
     if margin is not None and margin < LIMITS.pairing_margin:
-        yield GateReason("pairing", Verdict.WITHHELD, margin, LIMITS.pairing_margin)
+        yield GateReason("pairing", Verdict.NOT_REPORTED, margin, LIMITS.pairing_margin)
     elif not found.is_same_joint:
         most = most_disagreement(margin)
         if disagreement is not None and most is not None and disagreement > most:
-            yield GateReason("disagreement", Verdict.WITHHELD, disagreement, most)
+            yield GateReason("disagreement", Verdict.NOT_REPORTED, disagreement, most)
         elif found.is_lag_at_border:
-            yield GateReason("lag", Verdict.WITHHELD, None, LIMITS.lag_sd_ms[1], "ms")
+            yield GateReason("lag", Verdict.NOT_REPORTED, None, LIMITS.lag_sd_ms[1], "ms")
         else:
-            yield GateReason("pairing", Verdict.WITHHELD, None, LIMITS.pairing_margin)
+            yield GateReason("pairing", Verdict.NOT_REPORTED, None, LIMITS.pairing_margin)
 
 
 def _axis(found: JointCalibration) -> Iterator[GateReason]:
     sd_deg = None if found.axis_sd_rad is None else float(np.rad2deg(found.axis_sd_rad))
     care, most = LIMITS.axis_sd_deg
     if sd_deg is None or not sd_deg <= most:
-        yield GateReason("axis", Verdict.WITHHELD, _known(sd_deg), most, "deg")
+        yield GateReason("axis", Verdict.NOT_REPORTED, _known(sd_deg), most, "deg")
     elif sd_deg > care:
         yield GateReason("axis", Verdict.CARE, sd_deg, care, "deg")
 
@@ -279,26 +279,26 @@ def _lag(found: JointCalibration) -> Iterator[GateReason]:
     if found.is_clock_shared:
         return
     if found.is_lag_at_border or sd_ms is None or not sd_ms <= most:
-        yield GateReason("lag", Verdict.WITHHELD, None if found.is_lag_at_border else _known(sd_ms), most, "ms")
+        yield GateReason("lag", Verdict.NOT_REPORTED, None if found.is_lag_at_border else _known(sd_ms), most, "ms")
     elif sd_ms > care:
         yield GateReason("lag", Verdict.CARE, sd_ms, care, "ms")
 
 
 def _sign(found: JointCalibration) -> Iterator[GateReason]:
     if not found.is_sign_certain:
-        yield GateReason("sign", Verdict.WITHHELD, _below(found.clinical_sign_margin, MIN_MARGIN), MIN_MARGIN)
+        yield GateReason("sign", Verdict.NOT_REPORTED, _below(found.clinical_sign_margin, MIN_MARGIN), MIN_MARGIN)
 
 
 def _zero(found: JointCalibration) -> Iterator[GateReason]:
     if found.zero is ZeroKind.NONE:
-        yield GateReason("zero", Verdict.WITHHELD)
+        yield GateReason("zero", Verdict.NOT_REPORTED)
 
 
 def _slip(recording: RecordingAnalysis, side: Side) -> Iterator[GateReason]:
-    """A slip that left strides is told by these strides; one that left none withholds all."""
+    """A slip that left strides is given by these strides; one that left none withholds all."""
     from_s = recording.slipped_from_s.get(side)
     if from_s is not None and not recording.gait[side].strides.is_used.any():
-        yield GateReason("strap", Verdict.WITHHELD)
+        yield GateReason("strap", Verdict.NOT_REPORTED)
     elif from_s is not None:
         yield GateReason("strap", Verdict.CARE, from_s, None, "s")
 
@@ -318,7 +318,7 @@ def _drifting(recording: RecordingAnalysis, verdict: Verdict, *sites: Site) -> I
 
 def _strides(used: int) -> Iterator[GateReason]:
     if used < MIN_STRIDES_FOR_MEAN:
-        yield GateReason("strides", Verdict.WITHHELD, used, MIN_STRIDES_FOR_MEAN)
+        yield GateReason("strides", Verdict.NOT_REPORTED, used, MIN_STRIDES_FOR_MEAN)
     elif used < MIN_STRIDES_FOR_SD:
         yield GateReason("strides", Verdict.CARE, used, MIN_STRIDES_FOR_SD)
 
@@ -330,9 +330,9 @@ def _plausible_range(joint: Joint, ranges_deg: FloatArray, may_be_stiff: bool) -
     of_kind = {"hip": LIMITS.hip_range_deg, "knee": LIMITS.knee_range_deg, "ankle": LIMITS.ankle_range_deg}
     least, most = of_kind[joint.split("_")[1]]
     if usual < least:
-        yield GateReason("plausible", Verdict.CARE if may_be_stiff else Verdict.WITHHELD, usual, least, "deg")
+        yield GateReason("plausible", Verdict.CARE if may_be_stiff else Verdict.NOT_REPORTED, usual, least, "deg")
     elif usual > most:
-        yield GateReason("plausible", Verdict.WITHHELD, usual, most, "deg")
+        yield GateReason("plausible", Verdict.NOT_REPORTED, usual, most, "deg")
 
 
 def _plausible_height(joint: Joint, cycles_deg: FloatArray, found: JointCalibration) -> Iterator[GateReason]:
@@ -345,7 +345,7 @@ def _plausible_height(joint: Joint, cycles_deg: FloatArray, found: JointCalibrat
         (float(mean.max()), float(most), mean.max() > most),
     ):
         if is_beyond:
-            yield GateReason("plausible_height", Verdict.WITHHELD, value, limit, "deg")
+            yield GateReason("plausible_height", Verdict.NOT_REPORTED, value, limit, "deg")
             return
 
 
@@ -369,7 +369,7 @@ def _events(gait: SideGait) -> Iterator[GateReason]:
     if len(stance):
         usual = float(np.median(stance))
         if not least <= usual <= most:
-            yield GateReason("events", Verdict.WITHHELD, usual, least if usual < least else most, "%")
+            yield GateReason("events", Verdict.NOT_REPORTED, usual, least if usual < least else most, "%")
 
 
 def _steady_times(gait: SideGait) -> Iterator[GateReason]:
@@ -400,7 +400,7 @@ def _speed(gait: SideGait) -> Iterator[GateReason]:
     least, most = LIMITS.speed_m_s
     if len(speed) and not least <= float(np.mean(speed)) <= most:
         value = float(np.mean(speed))
-        yield GateReason("speed", Verdict.WITHHELD, value, least if value < least else most, "m/s")
+        yield GateReason("speed", Verdict.NOT_REPORTED, value, least if value < least else most, "m/s")
 
 
 # both legs
@@ -411,7 +411,7 @@ def _between(recording: RecordingAnalysis) -> Assessment:
     if len(recording.gait) < len(Side) or clocks is None:
         return NOT_MEASURED
     if recording.drifting_percent:
-        return assess(_drifting(recording, Verdict.WITHHELD, *recording.drifting_percent))
+        return assess(_drifting(recording, Verdict.NOT_REPORTED, *recording.drifting_percent))
     verdict = clocks_verdict(clocks)
     if verdict is Verdict.READ:
         return READ
@@ -428,7 +428,7 @@ def _between(recording: RecordingAnalysis) -> Assessment:
 def clocks_verdict(clocks: LegClocks) -> Verdict:
     """What the clocks of both legs leave of what compares their instants."""
     if clocks.gate is not ClockGate.RESIDUAL or clocks.residual_s > CARE_S:
-        return Verdict.WITHHELD
+        return Verdict.NOT_REPORTED
     return Verdict.READ if clocks.residual_s <= READ_S else Verdict.CARE
 
 
@@ -452,7 +452,7 @@ def _steady(values: FloatArray, limit: float, unit: str, gate: str = "halves") -
 
 
 def _below(margin: float | None, limit: float) -> float | None:
-    """The margin where it is what closed the gate: beyond its limit it was something else, and no figure tells it."""
+    """The margin where it is what closed the gate: beyond its limit it was something else, and no figure reports it."""
     known = _known(margin)
     return known if known is not None and known < limit else None
 

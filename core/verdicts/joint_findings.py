@@ -44,7 +44,7 @@ def about_session(session: Session) -> list[Finding]:
 def about_joint(
     calibration: JointCalibration, found: Identified, turned: int | None, is_zero_typed: bool, has_stood: bool
 ) -> list[Finding]:
-    """What one joint's identification says of itself."""
+    """What one joint's identification states of itself."""
     where, findings = str(calibration.joint), []
 
     def say(key: str, severity: Severity, **numbers: float | int | str) -> None:
@@ -64,7 +64,7 @@ def about_joint(
     if calibration.zero is ZeroKind.GONIOMETER:
         say("zero_from_goniometer", Severity.INFO, value_deg=round(float(np.rad2deg(calibration.offset_rad)), 1))
     if calibration.zero is ZeroKind.NONE:
-        if has_stood:  # else `no_standing` says it once for all
+        if has_stood:  # else `no_standing` states it once for all
             say("zero_unknown", Severity.WARNING)
         if is_zero_typed:
             say("goniometer_without_standing", Severity.WARNING)

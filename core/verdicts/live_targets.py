@@ -1,4 +1,4 @@
-"""Whether a measure may be a target while somebody walks: by what the calibration tells before the walk."""
+"""Whether a measure may be a target while somebody walks: by what the calibration reports before the walk."""
 
 from collections.abc import Collection, Mapping
 
@@ -16,7 +16,7 @@ def assess_target(
     calibration: Mapping[Joint, JointCalibration],
     prosthetic_sides: Collection[Side],
 ) -> Assessment:
-    """What may be said of a measure of one leg; a target may be set where its figure may be told.
+    """What may be stated about a measure of one leg; a target may be set where its figure may be reported.
 
     Parameters
     ----------
@@ -35,7 +35,7 @@ def assess_target(
     if measure is TargetMeasure.STANCE_RATIO:
         if feet != set(Side):
             return NOT_MEASURED
-        return assess([GateReason(TOE_OFF_GATE, Verdict.WITHHELD)]) if prosthetic_sides else READ
+        return assess([GateReason(TOE_OFF_GATE, Verdict.NOT_REPORTED)]) if prosthetic_sides else READ
     if measure is TargetMeasure.FOOT_STRIKE:
         return READ
     knee = knee_of(side)

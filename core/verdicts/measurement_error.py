@@ -1,6 +1,6 @@
 """By how much two means have to differ before more than chance, drift, clocks and straps is behind it.
 
-How sure one mean is, u, tells `core.verdicts.stride_means`. Of a difference U^2 = u1^2 + u2^2 + v^2 + 2 sigma^2
+How sure one mean is, u, reports `core.verdicts.stride_means`. Of a difference U^2 = u1^2 + u2^2 + v^2 + 2 sigma^2
 and the error is 1.96 U, the minimal detectable change at 95 %; v is what another speed alone may make of it, and sigma
 adds what lies between the two means, by the kind of comparison.
 """
@@ -65,7 +65,7 @@ PER_SPEED: Mapping[QuantityKind, float] = {
 }
 
 
-SPEED_TOLD_M_S = 0.005  # as far apart two speeds must be to be written as two, and to be called so
+SPEED_REPORTED_M_S = 0.005  # as far apart two speeds must be to be written as two, and to be called so
 
 
 class Sigma(NamedTuple):
@@ -110,7 +110,7 @@ _STRAPS: Mapping[QuantityKind, Sigma] = {  # where each mean has a strapping of 
     QuantityKind.SEGMENT_HEIGHT: _of_error(12.4, f"{_OF_KNEE}, {_POSTURE}", is_borrowed=True),
     QuantityKind.FOOT_PITCH: _of_error(9.2, _OF_KNEE, is_borrowed=True),
 }
-_STRAPPED_ANEW: Mapping[QuantityKind, Sigma] = {
+_STRAPPED_AGAIN: Mapping[QuantityKind, Sigma] = {
     **_STRAPS,
     QuantityKind.STANCE: Sigma(3.0, _GUESS),
     QuantityKind.TIME: Sigma(4.0, _GUESS, is_relative=True),
@@ -143,8 +143,8 @@ SIGMAS: Mapping[ComparisonKind, Mapping[QuantityKind, Sigma]] = {
         QuantityKind.TIME: _of_error(0.05, _BIAS, is_published=False),
         QuantityKind.LENGTH: _of_error(0.03, _GUESS, is_published=False),
     },
-    ComparisonKind.STRAPPINGS: _STRAPPED_ANEW,
-    ComparisonKind.VISITS: {**_STRAPPED_ANEW, QuantityKind.SPEED: _of_error(0.20, _GUESS, is_published=False)},
+    ComparisonKind.STRAPPINGS: _STRAPPED_AGAIN,
+    ComparisonKind.VISITS: {**_STRAPPED_AGAIN, QuantityKind.SPEED: _of_error(0.20, _GUESS, is_published=False)},
 }
 
 _BETWEEN: Mapping[ComparisonKind, tuple[ErrorSource, ...]] = {
@@ -163,7 +163,7 @@ class Judgement(StrEnum):
 
     EXCEEDS_ERROR = "exceeds_error"
     INSIDE_ERROR = "inside_error"
-    WITHHELD = "withheld"
+    NOT_REPORTED = "withheld"
     TOO_FEW_STRIDES = "too_few_strides"
     NO_PUBLISHED_FIGURE = "no_published_figure"
 
@@ -172,7 +172,7 @@ class Judgement(StrEnum):
 class Difference:
     """One mean less another, the error it has to exceed to be real, and what that error contains.
 
-    `difference` and `error` are NaN where withheld or not known; both are, of what is never compared.
+    `difference` and `error` are NaN where not reported or not known; both are, of what is never compared.
     `is_worth_a_sentence`: it exceeds what a sentence on page one needs. `is_unverified`: the error rests on a figure
     whose source could not be read; `is_borrowed`: it is that of another joint or quantity.
     """
@@ -190,13 +190,13 @@ class Difference:
         return self.judgement is Judgement.EXCEEDS_ERROR
 
     @property
-    def is_told(self) -> bool:
+    def is_reported(self) -> bool:
         return math.isfinite(self.difference)
 
     @property
     def ratio(self) -> float:
         """How many errors it is large; 0 where it is not judged."""
-        return abs(self.difference) / self.error if self.error > 0 and self.is_told else 0.0
+        return abs(self.difference) / self.error if self.error > 0 and self.is_reported else 0.0
 
 
 def sigma_of(name: str, kind: ComparisonKind) -> Sigma | None:
@@ -224,7 +224,7 @@ def compare(
     name
         The column of strides.csv.
     assessments
-        What may be said of each of the two; a difference of what is withheld is none.
+        What may be stated about each of the two; a difference of what is not reported is none.
     speed_apart_m_s
         By how much the walks' speeds differ; what it alone may make of an angle or of stance is no difference.
     is_chosen_before
@@ -236,8 +236,8 @@ def compare(
         In the unit of the column.
     """
     nothing = math.nan
-    if any(not found.is_told for found in assessments):
-        return Difference(nothing, nothing, Judgement.WITHHELD)
+    if any(not found.is_reported for found in assessments):
+        return Difference(nothing, nothing, Judgement.NOT_REPORTED)
     if min(one.n, other.n) < MIN_STRIDES_FOR_MEAN:
         return Difference(nothing, nothing, Judgement.TOO_FEW_STRIDES)
     if KINDS.get(name) is QuantityKind.STANCE and any(found.is_toe_off_biased for found in assessments):
@@ -257,7 +257,7 @@ def compare(
         difference=difference,
         error=error,
         judgement=Judgement.EXCEEDS_ERROR if exceeds else Judgement.INSIDE_ERROR,
-        sources=_sources(name, kind, one, other, has_speed=by_speed > 0 and abs(speed_apart_m_s) >= SPEED_TOLD_M_S),
+        sources=_sources(name, kind, one, other, has_speed=by_speed > 0 and abs(speed_apart_m_s) >= SPEED_REPORTED_M_S),
         is_worth_a_sentence=abs(difference) > factor * error and not sigma.is_borrowed,
         is_unverified=not sigma.is_verified,
         is_borrowed=sigma.is_borrowed,

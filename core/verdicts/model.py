@@ -1,4 +1,4 @@
-"""The verdicts of one recording: what can be read, what with care, what is withheld, each with its reasons."""
+"""The verdicts of one recording: what can be read, what with care, what is not reported, each with its reasons."""
 
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, field
@@ -12,12 +12,12 @@ class Verdict(StrEnum):
 
     READ = "read"
     CARE = "care"
-    WITHHELD = "withheld"
+    NOT_REPORTED = "withheld"
     NOT_MEASURED = "not_measured"
 
 
 TOE_OFF_GATE = "toe_off"
-_ORDER = (Verdict.READ, Verdict.CARE, Verdict.WITHHELD, Verdict.NOT_MEASURED)
+_ORDER = (Verdict.READ, Verdict.CARE, Verdict.NOT_REPORTED, Verdict.NOT_MEASURED)
 
 
 def worst(verdicts: Iterable[Verdict]) -> Verdict:
@@ -49,7 +49,7 @@ class Assessment:
     reasons: tuple[GateReason, ...] = ()
 
     @property
-    def is_told(self) -> bool:
+    def is_reported(self) -> bool:
         """Whether a figure may be printed at all."""
         return self.verdict in (Verdict.READ, Verdict.CARE)
 
@@ -113,7 +113,7 @@ class Verdicts:
     abduction: Mapping[Side, Assessment] = field(default_factory=dict)
 
     @property
-    def told_joints(self) -> tuple[Joint, ...]:
+    def reported_joints(self) -> tuple[Joint, ...]:
         """The joints of the legs, measured or not, and the hips that were."""
         return (*LEG_JOINTS, *(joint for joint in Joint if joint.is_hip and joint in self.joints))
 

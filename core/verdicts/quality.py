@@ -33,7 +33,7 @@ from core.signal.tracks import (
     nominal_step_s,
 )
 
-MIN_LOSS_PERCENT = 0.5  # told from here on
+MIN_LOSS_PERCENT = 0.5  # distinguished from here on
 GRAVE_LOSS_PERCENT = 20.0
 GRAVITY_RANGE_G = (0.7, 1.4)  # median specific force of a sensor that reports g
 PLAUSIBLE_M_S2 = (5.0, 20.0)
@@ -81,8 +81,8 @@ def look_at(session: Session) -> Quality:
             where = f"{recording.name}, {site}"
             nominal_hz = session.sensors[site].rate_hz if site in session.sensors else None
             about = [
-                Finding(key, severity, where, told)
-                for key, severity, told in _about_block(block, recording.kind, nominal_hz, pauses)
+                Finding(key, severity, where, reported)
+                for key, severity, reported in _about_block(block, recording.kind, nominal_hz, pauses)
             ]
             findings += about
             if any(found.severity is Severity.GRAVE for found in about):
@@ -122,24 +122,24 @@ def _about_block(
         return wrong
     possible = is_possible(block.gyr_rad_s, block.acc_m_s2)
     is_held = is_stuck(block.time_s, block.gyr_rad_s, block.acc_m_s2)
-    heard = possible & ~is_held
-    heard[1:] &= np.diff(block.time_s) > 0
+    received = possible & ~is_held
+    received[1:] &= np.diff(block.time_s) > 0
     about: list[About] = []
     impossible = int(np.count_nonzero(is_there & ~possible))
     if impossible:
         about.append(("impossible_values", Severity.WARNING, {"count": impossible}))
     stuck = 100 * float(np.mean(is_held))
-    if np.count_nonzero(heard) < MIN_STRETCH_SAMPLES or np.ptp(block.time_s[heard]) < MIN_STRETCH_S:
+    if np.count_nonzero(received) < MIN_STRETCH_SAMPLES or np.ptp(block.time_s[received]) < MIN_STRETCH_S:
         return [*about, ("stuck_throughout", Severity.GRAVE, {})]
     if stuck > 0.0:
         about.append(("stuck", Severity.WARNING, {"percent": round(stuck, 1)}))
-    step_s = nominal_step_s(block.time_s[heard])
-    about += _about_gaps(block.time_s[heard], lost_percent(block, pauses=pauses), pauses)
-    about += _about_rate(block.time_s[heard], nominal_hz)
+    step_s = nominal_step_s(block.time_s[received])
+    about += _about_gaps(block.time_s[received], lost_percent(block, pauses=pauses), pauses)
+    about += _about_rate(block.time_s[received], nominal_hz)
     rate_hz = 1 / step_s
     if rate_hz < MIN_RATE_HZ:
         about.append(("low_rate", Severity.WARNING, {"rate_hz": round(rate_hz, 1)}))
-    clipped = _clipped_percent(block, heard)
+    clipped = _clipped_percent(block, received)
     if clipped > MIN_CLIPPED_PERCENT and kind is not RecordingKind.STANDING:
         about.append(("clipped", Severity.WARNING, {"percent": round(clipped, 2)}))
     if kind is RecordingKind.STANDING and rest_of(block) is None:
@@ -174,9 +174,9 @@ def _lengths(vectors: FloatArray) -> FloatArray:
     return np.sqrt(np.einsum("ni,ni->n", vectors, vectors, dtype=np.float64))
 
 
-def _about_gaps(heard_s: FloatArray, percent: float, pauses: Sequence[Pause]) -> list[About]:
+def _about_gaps(received_s: FloatArray, percent: float, pauses: Sequence[Pause]) -> list[About]:
     """What is missing outside of pauses; a gap that is bridged leaves what was measured as good as it was."""
-    gaps_s = gaps_of(heard_s)
+    gaps_s = gaps_of(received_s)
     out_s = outside_of(pauses, gaps_s)
     is_gap = out_s > MAX_REPORTED_GAP_S
     if percent < MIN_LOSS_PERCENT and not is_gap.any():
@@ -188,15 +188,15 @@ def _about_gaps(heard_s: FloatArray, percent: float, pauses: Sequence[Pause]) ->
         "missing_percent": round(percent, 1),
         "longest_s": round(float(np.max(out_s)), 3),
     }
-    span_s = float(heard_s[-1] - heard_s[0]) - sum(last - first for first, last in pauses)
+    span_s = float(received_s[-1] - received_s[0]) - sum(last - first for first, last in pauses)
     is_grave = 100.0 * float(np.sum(out_s[is_gap])) >= GRAVE_LOSS_PERCENT * span_s
-    # told as a warning in either case: what was heard is still used
+    # reported as a warning in either case: what was received is still used
     return [("many_gaps" if is_grave else "gaps", Severity.WARNING, numbers)]
 
 
-def _about_rate(heard_s: FloatArray, nominal_hz: float | None) -> list[About]:
+def _about_rate(received_s: FloatArray, nominal_hz: float | None) -> list[About]:
     """Where samples came at another rate than the sensor was set to."""
-    percent = rate_percent(heard_s, nominal_hz)
+    percent = rate_percent(received_s, nominal_hz)
     if percent is None or nominal_hz is None or abs(percent - 100.0) <= KEPT_RATE_PERCENT:
         return []
     numbers: dict[str, float | int | str] = {
@@ -207,9 +207,9 @@ def _about_rate(heard_s: FloatArray, nominal_hz: float | None) -> list[About]:
     return [("every_second_lost" if is_half(percent) else "rate_off", Severity.WARNING, numbers)]
 
 
-def _clipped_percent(block: ImuBlock, heard: BoolArray) -> float:
+def _clipped_percent(block: ImuBlock, received: BoolArray) -> float:
     """How much of the worst axis lies at one end of the sensor's range."""
-    ends = (clipped_rates(block.gyr_rad_s[heard]), clipped_forces(block.acc_m_s2[heard]))
+    ends = (clipped_rates(block.gyr_rad_s[received]), clipped_forces(block.acc_m_s2[received]))
     return 100 * max(float(column.mean()) for end in ends for column in (*end.T, np.zeros(1)))
 
 
@@ -231,7 +231,7 @@ def _same_data(recording: Recording) -> list[tuple[tuple[Site, ...], Finding]]:
 
 
 def _distinct_rows(block: ImuBlock) -> IntArray:
-    """The first rows of a sensor's samples by which it can be told from another, each as one number."""
+    """The first rows of a sensor's samples by which it can be distinguished from another, each as one number."""
     first = slice(0, COMPARED_ROWS)
     signals = np.concatenate([block.gyr_rad_s[first], block.acc_m_s2[first]], axis=1).astype(np.float64)
     signals = signals[np.isfinite(signals).all(axis=1) & np.any(signals, axis=1)]
@@ -273,7 +273,7 @@ def _clock_jumps(recording: Recording) -> list[tuple[tuple[Site, ...], Finding]]
 
 
 def _moves_with_others(recording: Recording, site: Site, offset_s: float) -> bool:
-    """Whether a site moves when its neighbour does as both are stamped, more than it would without the offset.
+    """Whether a site moves when its adjacent one does as both are stamped, more than it would without the offset.
 
     Sensors that were switched on and off one after the other are such.
     """
@@ -304,7 +304,7 @@ def _likeness(one: ImuBlock, other: ImuBlock, late_s: float) -> float:
 
 
 def _missing_sites(session: Session) -> list[Finding]:
-    """A neighbour without which a worn sensor gives no joint."""
+    """A adjacent one without which a worn sensor gives no joint."""
     worn = {site for recording in session.recordings if recording.is_kept for site in recording.imu}
     findings = []
     for joint in LEG_JOINTS:

@@ -1,4 +1,4 @@
-"""The figures of a walk and the verdict that each rests on; values per stride, empty where withheld."""
+"""The figures of a walk and the verdict that each rests on; values per stride, empty where not reported."""
 
 import math
 from dataclasses import dataclass, replace
@@ -35,14 +35,14 @@ WINDOWS = {f"{window.name}_deg": window for window in (*KNEE_WINDOWS, *ANKLE_WIN
 
 @dataclass(frozen=True, slots=True)
 class SideMean:
-    """A figure of one leg over the strides used, and whether it may be told. NaN where it is withheld."""
+    """A figure of one leg over the strides used, and whether it may be reported. NaN where it is not reported."""
 
     found: MeanAndSd
     assessment: Assessment
 
 
 def joint_of(name: str, side: Side) -> Joint | None:
-    """Whose angle a column of strides.csv or fitting.csv tells; None for time, distance and the foot alone.
+    """Whose angle a column of strides.csv or fitting.csv reports; None for time, distance and the foot alone.
 
     Thigh and shank lean about the knee's axis, so what holds of the knee holds of them.
     """
@@ -52,31 +52,31 @@ def joint_of(name: str, side: Side) -> Joint | None:
 
 
 def assessment_of(verdicts: Verdicts, side: Side, name: str) -> Assessment:
-    """What may be said of one column of strides.csv, peaks.csv or fitting.csv."""
-    joint, wanted = joint_of(name, side), BY_COLUMN[name].rests_on
+    """What may be stated about one column of strides.csv, peaks.csv or fitting.csv."""
+    joint, required = joint_of(name, side), BY_COLUMN[name].rests_on
     if name.startswith("pelvis"):  # over strides, which the foot's events bound
         of_pelvis = verdicts.pelvis_tilt if name == "pelvis_tilt_range_deg" else verdicts.pelvis
         return together((of_pelvis, verdicts.leg(side).timing))
     if name.startswith(ABDUCTION):
         found = verdicts.joint(hip_of(side))
-        of_hip = found.shape if wanted is QuantityClass.SHAPE else together((found.height, found.sign))
+        of_hip = found.shape if required is QuantityClass.SHAPE else together((found.height, found.sign))
         return together((of_hip, verdicts.abduction.get(side, NOT_MEASURED)))
     if joint is not None:
         found = verdicts.joint(joint)
         if name.startswith(SEGMENTS):  # read at events of the foot
-            parts = (found.height if wanted is QuantityClass.HEIGHT else found.shape, found.sign)
+            parts = (found.height if required is QuantityClass.HEIGHT else found.shape, found.sign)
             return together((*parts, verdicts.leg(side).timing))
-        if wanted is QuantityClass.SHAPE:
+        if required is QuantityClass.SHAPE:
             return found.shape
-        return together((found.height if wanted is QuantityClass.HEIGHT else found.shape, found.sign))
-    if wanted is QuantityClass.BETWEEN:
+        return together((found.height if required is QuantityClass.HEIGHT else found.shape, found.sign))
+    if required is QuantityClass.BETWEEN:
         return together((verdicts.between, verdicts.leg(side).timing))
     leg = verdicts.leg(side)
-    return leg.distance if wanted is QuantityClass.DISTANCE else leg.timing
+    return leg.distance if required is QuantityClass.DISTANCE else leg.timing
 
 
 def assessment_of_both(verdicts: Verdicts, name: str) -> Assessment:
-    """What may be said of cadence, double support and speed, from the legs that were measured.
+    """What may be stated about cadence, double support and speed, from the legs that were measured.
 
     Double support, as the sum of both legs' stances less a stride, needs no common clock; but it adds up what is in
     doubt about four events, so the timing of both legs has to be beyond doubt.
@@ -89,12 +89,12 @@ def assessment_of_both(verdicts: Verdicts, name: str) -> Assessment:
     timing = together(leg.timing for leg in legs)
     if name == "double_support_percent" and (len(legs) < len(Side) or timing.verdict is not Verdict.READ):
         is_one = len(legs) < len(Side)
-        return replace(timing, verdict=Verdict.NOT_MEASURED if is_one else Verdict.WITHHELD)
+        return replace(timing, verdict=Verdict.NOT_MEASURED if is_one else Verdict.NOT_REPORTED)
     return timing
 
 
 def raw_values(gait: SideGait, name: str) -> FloatArray:
-    """One column of strides.csv (k,), angles in degrees, whatever may be said of it; NaN where not known.
+    """One column of strides.csv (k,), angles in degrees, whatever may be stated about it; NaN where not known.
 
     Returns
     -------
@@ -108,7 +108,7 @@ def raw_values(gait: SideGait, name: str) -> FloatArray:
 
 
 def values_of(recording: RecordingAnalysis, side: Side, name: str) -> FloatArray:
-    """As `raw_values`; NaN throughout where the figure is withheld.
+    """As `raw_values`; NaN throughout where the figure is not reported.
 
     Returns
     -------
@@ -116,7 +116,7 @@ def values_of(recording: RecordingAnalysis, side: Side, name: str) -> FloatArray
         One per stride, in the unit that the name ends with.
     """
     gait = recording.gait[side]
-    if not assessment_of(recording.verdicts, side, name).is_told:
+    if not assessment_of(recording.verdicts, side, name).is_reported:
         return np.full(len(gait.strides), np.nan)
     return raw_values(gait, name)
 
@@ -128,7 +128,7 @@ def side_mean(recording: RecordingAnalysis, side: Side, name: str) -> SideMean:
 
 
 def peak_percent(recording: RecordingAnalysis, side: Side, column: str) -> FloatArray:
-    """When in each stride (k,) the peak of `column` comes, percent; NaN where there is none or it is withheld.
+    """When in each stride (k,) the peak of `column` comes, percent; NaN where there is none or it is not reported.
 
     Returns
     -------
@@ -139,13 +139,13 @@ def peak_percent(recording: RecordingAnalysis, side: Side, column: str) -> Float
     if joint is None or joint not in gait.cycles:
         return np.full(len(gait.strides), np.nan)
     found = recording.verdicts.joint(joint)
-    if not together((found.shape, found.sign)).is_told:
+    if not together((found.shape, found.sign)).is_reported:
         return np.full(len(gait.strides), np.nan)
     return find_peak(gait.cycles[joint], WINDOWS[column]).percent
 
 
 def hip_peaks_percent(recording: RecordingAnalysis, side: Side) -> tuple[FloatArray, FloatArray]:
-    """When in each stride (k,) the hip is most flexed, and when most extended; NaN where not known or withheld.
+    """When in each stride (k,) the hip is most flexed, and when most extended; NaN where not known or not reported.
 
     Returns
     -------
@@ -155,7 +155,7 @@ def hip_peaks_percent(recording: RecordingAnalysis, side: Side) -> tuple[FloatAr
     gait, found = recording.gait[side], recording.verdicts.joint(hip_of(side))
     nothing = np.full(len(gait.strides), np.nan)
     cycles = gait.cycles.get(hip_of(side))
-    if cycles is None or not len(cycles) or not together((found.shape, found.sign)).is_told:
+    if cycles is None or not len(cycles) or not together((found.shape, found.sign)).is_reported:
         return nothing, nothing
     is_known = np.asarray(np.isfinite(cycles).all(axis=1), dtype=bool)
     whole = np.where(is_known[:, None], cycles, 0.0)
@@ -164,16 +164,16 @@ def hip_peaks_percent(recording: RecordingAnalysis, side: Side) -> tuple[FloatAr
 
 
 def abduction_curve(recording: RecordingAnalysis, side: Side) -> MeanCycle:
-    """A hip's mean abduction over the strides used, radians from standing; NaN where it is withheld."""
+    """A hip's mean abduction over the strides used, radians from standing; NaN where it is not reported."""
     gait, hip = recording.gait[side], recording.hips.get(hip_of(side))
-    if hip is None or not assessment_of(recording.verdicts, side, "hip_abduction_peak_deg").is_told:
+    if hip is None or not assessment_of(recording.verdicts, side, "hip_abduction_peak_deg").is_reported:
         return mean_cycle(np.empty((0, POINTS)))
     cycles = cycles_of(recording.time_s, hip.abduction_rad, gait.strides.start_s, gait.strides.end_s)
     return mean_cycle(cycles[gait.strides.is_used])
 
 
 def used_cycles(recording: RecordingAnalysis, joint: Joint) -> FloatArray:
-    """The joint's angle over the strides used, (k, 101), radians: evidence, whatever may be said of it.
+    """The joint's angle over the strides used, (k, 101), radians: evidence, whatever may be stated about it.
 
     Returns
     -------
@@ -185,22 +185,22 @@ def used_cycles(recording: RecordingAnalysis, joint: Joint) -> FloatArray:
 
 
 def mean_curve(recording: RecordingAnalysis, joint: Joint) -> MeanCycle:
-    """The joint's mean over the strides used, radians; NaN where its shape or its sign is withheld.
+    """The joint's mean over the strides used, radians; NaN where its shape or its sign is not reported.
 
-    Its height holds only where that is not withheld.
+    Its height holds only where that is not not reported.
     """
     found = mean_cycle(used_cycles(recording, joint))
-    said = recording.verdicts.joint(joint)
-    if together((said.shape, said.sign)).is_told:
+    stated = recording.verdicts.joint(joint)
+    if together((stated.shape, stated.sign)).is_reported:
         return found
     nothing = np.full(POINTS, np.nan)
-    return replace(found, mean=nothing, sd=found.sd if said.shape.is_told else nothing)
+    return replace(found, mean=nothing, sd=found.sd if stated.shape.is_reported else nothing)
 
 
 def both_sides(recording: RecordingAnalysis) -> BothFeet:
-    """Cadence, double support and speed, NaN where withheld, also where only one side was measured."""
+    """Cadence, double support and speed, NaN where not reported, also where only one side was measured."""
     nothing = strides_of(())
     left, right = (recording.gait[side].strides if side in recording.gait else nothing for side in Side)
     found = both_feet(left, right)
-    withheld = {name: math.nan for name in OF_BOTH if not assessment_of_both(recording.verdicts, name).is_told}
-    return replace(found, **withheld)
+    not_reported = {name: math.nan for name in OF_BOTH if not assessment_of_both(recording.verdicts, name).is_reported}
+    return replace(found, **not_reported)

@@ -48,7 +48,7 @@ def off_rate(recording: RecordingAnalysis, limits: Limits, *sites: Site) -> Iter
     known = [recording.received[site].rate_percent for site in sites if site in recording.received]
     percent = max((one for one in known if one is not None), key=lambda one: abs(one - 100.0), default=100.0)
     for reason in _closed("every_second" if is_half(percent) else "rate", abs(percent - 100.0), limits):
-        limit = 100.0 + float(np.copysign(limits[reason.verdict is Verdict.WITHHELD], percent - 100.0))
+        limit = 100.0 + float(np.copysign(limits[reason.verdict is Verdict.NOT_REPORTED], percent - 100.0))
         yield GateReason(reason.gate, reason.verdict, percent, limit, "%")
 
 
@@ -74,6 +74,6 @@ def _share_percent(gaps_s: FloatArray, times_s: FloatArray) -> float:
 def _closed(gate: str, percent: float, limits: Limits) -> Iterator[GateReason]:
     care, most = limits
     if percent > most:
-        yield GateReason(gate, Verdict.WITHHELD, percent, most, "%")
+        yield GateReason(gate, Verdict.NOT_REPORTED, percent, most, "%")
     elif percent > care:
         yield GateReason(gate, Verdict.CARE, percent, care, "%")

@@ -11,8 +11,8 @@ import numpy as np
 
 from core.samples import FloatArray
 
-MIN_CORRELATION = 0.3  # of neighbouring strides; 0 to 0.6 were seen in real walks, and short walks show too little
-MAX_CORRELATION = 0.9  # beyond, the walk drifts, which the halves tell
+MIN_CORRELATION = 0.3  # of adjacent strides; 0 to 0.6 were seen in real walks, and short walks show too little
+MAX_CORRELATION = 0.9  # beyond, the walk drifts, which the halves report
 
 
 @dataclass(frozen=True, slots=True)
@@ -22,7 +22,7 @@ class MeanOfStrides:
     Attributes
     ----------
     standard_error
-        With the correlation of neighbouring strides.
+        With the correlation of adjacent strides.
     drift
         Half of what the halves, or the thirds that lie farthest apart, differ by beyond chance.
     clock_error

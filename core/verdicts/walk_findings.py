@@ -24,7 +24,7 @@ def about_walk(walk: RecordingAnalysis, sites: Mapping[Side, Site | None]) -> li
     Parameters
     ----------
     sites
-        Which sensor told the events of each side in `walk.gait`.
+        Which sensor reported the events of each side in `walk.gait`.
     """
     if walk.gait and not any(len(gait.strides) for gait in walk.gait.values()):
         return [Finding("no_strides", Severity.WARNING, walk.name)]
@@ -61,7 +61,7 @@ def _about_events(where: str, gait: SideGait) -> Iterator[Finding]:
 
 
 def _about_counts(walk: RecordingAnalysis) -> Iterator[Finding]:
-    """Sides with some strides, but too few for a mean or for a spread; where both have few it is said once."""
+    """Sides with some strides, but too few for a mean or for a spread; where both have few it is stated once."""
     used = {side: int(np.count_nonzero(gait.strides.is_used)) for side, gait in walk.gait.items()}
     few = {side: count for side, count in used.items() if MIN_STRIDES_FOR_MEAN <= count < MIN_STRIDES_FOR_SD}
     for side, count in used.items():
@@ -74,8 +74,8 @@ def _about_counts(walk: RecordingAnalysis) -> Iterator[Finding]:
         yield Finding("no_spread", Severity.INFO, walk.name, {**counts, "wanted": MIN_STRIDES_FOR_SD})
 
 
-def _count(key: str, severity: Severity, walk: RecordingAnalysis, side: Side, count: int, wanted: int) -> Finding:
-    return Finding(key, severity, walk.name, {"side": str(side), "count": count, "wanted": wanted})
+def _count(key: str, severity: Severity, walk: RecordingAnalysis, side: Side, count: int, required: int) -> Finding:
+    return Finding(key, severity, walk.name, {"side": str(side), "count": count, "wanted": required})
 
 
 def _about_gaps(walk: str, gait: SideGait) -> Iterator[Finding]:
@@ -92,7 +92,7 @@ def _about_peaks(walk: RecordingAnalysis, gait: SideGait) -> Iterator[Finding]:
     """Peaks that no stride has, though its angle is known: the angle only passes through the window."""
     for joint, cycles in gait.cycles.items():
         is_known = gait.strides.is_used & np.isfinite(cycles).all(axis=1)
-        if np.count_nonzero(is_known) < MIN_STRIDES_FOR_MEAN or not walk.verdicts.joint(joint).sign.is_told:
+        if np.count_nonzero(is_known) < MIN_STRIDES_FOR_MEAN or not walk.verdicts.joint(joint).sign.is_reported:
             continue
         for window in PEAK_WINDOWS[joint.kind]:
             if not np.isfinite(gait.parameters[f"{window.name}_rad"][is_known]).any():
@@ -100,12 +100,12 @@ def _about_peaks(walk: RecordingAnalysis, gait: SideGait) -> Iterator[Finding]:
 
 
 def about_turns(walk: RecordingAnalysis) -> list[Finding]:
-    """Where the pelvis and the feet of a timed test tell other turns; nothing without a sensor on the pelvis.
+    """Where the pelvis and the feet of a timed test report other turns; nothing without a sensor on the pelvis.
 
     Returns
     -------
     list of Finding
-        One with how many each tells, or none.
+        One with how many each reports, or none.
     """
     test = walk.timed
     if test is None or walk.pelvis is None or not len(walk.time_s) or test.missing:
@@ -113,8 +113,8 @@ def about_turns(walk: RecordingAnalysis) -> list[Finding]:
     by_pelvis = [turn for turn in walk.turns if test.start_s <= 0.5 * (turn.start_s + turn.end_s) <= test.end_s]
     by_feet = list(test.turns)
     if _has_lone_turn(by_feet, by_pelvis) or _has_lone_turn(by_pelvis, by_feet):
-        told = {"feet": len(by_feet), "pelvis": len(by_pelvis)}
-        return [Finding("turns_contradict", Severity.WARNING, walk.name, told)]
+        reported = {"feet": len(by_feet), "pelvis": len(by_pelvis)}
+        return [Finding("turns_contradict", Severity.WARNING, walk.name, reported)]
     return []
 
 

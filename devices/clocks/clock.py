@@ -20,17 +20,17 @@ from devices.source import SensorCounts
 
 MOST_SKEW = 500e-6  # the worst quartz; what looks like more is latency that changed
 BIN_S = 0.5  # of which the earliest arrival counts; within it the clocks part by less than a quarter millisecond
-NEAR = 6  # arrivals next to the line, which tell how dense they are there; no more than each third of all
+NEAR = 6  # arrivals next to the line, which report how dense they are there; no more than each third of all
 ALIKE_S = 1e-6  # latencies so near to one another differ by rounding only
 SLOPES = 201  # tried at a time, in ever narrower ranges
 UNLIKELY = -20.0  # logarithm of what is no part of a mean any more
-SPREAD_S = 10.0  # pieces whose earliest arrivals tell how straight the clocks run
+SPREAD_S = 10.0  # pieces whose earliest arrivals report how straight the clocks run
 BACK_S = 1.0  # so far back a sample may have been overtaken on its way
 AHEAD_S = 5.0  # so much further than the host's a sensor's clock may step: the sample before had been held up
 AGREEING = 5  # samples that make a new clock of what looked damaged
 REMEMBERED = 3  # samples, of which the next has to follow one
 EARLY_S = 0.25  # so much sooner than all around it no sample comes: its stamp is wrong
-MOST_CLOCK_S = 1e12  # no clock shows more, and beyond it a double tells no milliseconds any more
+MOST_CLOCK_S = 1e12  # no clock shows more, and beyond it a double reports no milliseconds any more
 
 Arrival = tuple[float, float]
 """A sample's time by the sensor's clock, and when it arrived."""
@@ -137,9 +137,9 @@ def _turn(a: Point, b: Point, c: Point) -> float:
 
 
 class ClockRuns:
-    """Tells which samples share one run of the sensor's clock, and which carry a time that cannot be.
+    """Reports which samples share one run of the sensor's clock, and which carry a time that cannot be.
 
-    A sensor that was switched off begins anew. A single wild stamp, of a message without a checksum, is damage; five
+    A sensor that was switched off begins again. A single wild stamp, of a message without a checksum, is damage; five
     that agree are a new run, whose first four are given up: but for one that begins after a loss that is known.
     """
 
@@ -149,13 +149,13 @@ class ClockRuns:
         self._doubtful: list[Arrival] = []
         self._may_begin = True
 
-    def begin(self, *, is_anew: bool = False) -> None:
+    def begin(self, *, is_again: bool = False) -> None:
         """What follows was sent after a loss or a start: a time that does not follow is a new run at once.
 
-        `is_anew`: the clock is known to be another one, so that even a time that seems to follow does not.
+        `is_again`: the clock is known to be another one, so that even a time that seems to follow does not.
         """
         self._may_begin = True
-        if is_anew:
+        if is_again:
             self._last.clear()
             self._doubtful.clear()
 
@@ -201,19 +201,19 @@ def _follows(before: Arrival, arrival: Arrival) -> bool:
 
 
 class Unwrapping:
-    """A counter of so many bits, made to go on where it begins anew, however long it was not heard."""
+    """A counter of so many bits, made to go on where it begins again, however long it was not received."""
 
     def __init__(self, bits: int, tick_hz: float) -> None:
         self._span, self._tick_hz = 1 << bits, tick_hz
         self._last: tuple[int, float] | None = None
 
     def ticks(self, counter: int, host_s: float) -> int:
-        """Ticks since the counter was 0 before it was first heard; less than the one before where overtaken."""
+        """Ticks since the counter was 0 before it was first received; less than the one before where overtaken."""
         if self._last is None:
             self._last = counter, host_s
             return counter
-        ticks, heard_s = self._last
-        expected = ticks + round((host_s - heard_s) * self._tick_hz)
+        ticks, received_s = self._last
+        expected = ticks + round((host_s - received_s) * self._tick_hz)
         half = self._span // 2
         near = expected + (counter - expected + half) % self._span - half
         self._last = near, host_s
@@ -236,7 +236,7 @@ def put_in_order(
     host_s: FloatArray,
     step_s: float | None,
     begins: Sequence[int] = (),
-    anew: Collection[int] = (),
+    again: Collection[int] = (),
 ) -> Ordered:
     """Order arrivals (n,) by the sensor's clock, each once, and stamp them by the host's.
 
@@ -249,8 +249,8 @@ def put_in_order(
     step_s
         Between two samples, where it is known; else the usual one.
     begins
-        Ascending indexes of arrivals before which something was lost, so that the sensor may have begun anew.
-    anew
+        Ascending indexes of arrivals before which something was lost, so that the sensor may have begun again.
+    again
         Those of them at which it is known to have, or to run by another clock.
 
     Returns
@@ -261,7 +261,7 @@ def put_in_order(
     runs, pieces = ClockRuns(), []
     for begin, end in pairwise([0, *begins, len(device_s)]):
         pieces.append(runs.take(device_s[begin:end], host_s[begin:end]))
-        runs.begin(is_anew=end in anew)
+        runs.begin(is_again=end in again)
     run = np.concatenate(pieces)
     rows: list[IntArray] = []
     times: list[FloatArray] = []
@@ -285,10 +285,10 @@ def put_in_order(
         lost += _missing(device_s[kept], usual_s)
         stamps_s = fit.host_s(device_s[kept])
         if len(times) == 1 and len(times[0]) < AGREEING and stamps_s[0] <= times[0][-1]:
-            # what was heard first was wild, and held up: it must not take the instants of what follows
+            # what was received first was wild, and held up: it must not take the instants of what follows
             timeless += len(rows.pop())
             times.pop()
-        if times:  # the sensor began anew
+        if times:  # the sensor began again
             is_later: BoolArray = stamps_s > times[-1][-1]
             timeless += int(np.count_nonzero(~is_later))  # the run before had been held up: theirs are taken already
             if not is_later.any():

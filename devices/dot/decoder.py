@@ -1,7 +1,7 @@
 """Samples of a Movella DOT out of a journal: what it streamed, or the file that was fetched from its memory.
 
 How the host's clock follows from a file's is known by its orders alone, for nothing arrived as it was taken: its first
-sample came after it was told to begin, its last before it said that it had ended. Sensors on one clock bound it
+sample came after it was given to begin, its last before it stated that it had ended. Sensors on one clock bound it
 together, to some hundredths of a second (`clocks/shared_clock.py`); to one another they are as exact as their clock.
 """
 
@@ -11,9 +11,9 @@ from dataclasses import dataclass, replace
 from devices.dot.messages import RecordedFile
 from devices.dot.samples import DRIVER, TURN_S, VERSION, DotFramer, FileFramer
 from devices.source import DecodedSensor, SourceInfo
-from devices.stream import Decoder, Heard, decoded
+from devices.stream import Decoder, Received, decoded
 
-BEGINS_WITHIN_S = 0.25  # of when it first says that it records, the first sample is taken
+BEGINS_WITHIN_S = 0.25  # of when it first states that it records, the first sample is taken
 BEGUN_TOGETHER_S = 6.0  # memories whose orders nobody knows were begun within this, one after the other
 
 
@@ -24,9 +24,9 @@ class FileOrders:
     Attributes
     ----------
     begun_s
-        When it was first told to begin, and when it said that it records.
+        When it was first asked to begin, and when it stated that it records.
     ended_s
-        When it said that it had ended.
+        When it stated that it had ended.
     """
 
     begun_s: tuple[float, float]
@@ -105,7 +105,7 @@ def _fetched(info: SourceInfo, file: FileFramer) -> DecodedSensor:
     host_s = [row[0] + sum(ahead_s) / 2 for row in rows]
     name = info.settings.get("clock")
     shared = (name, TURN_S) if isinstance(name, str) else None
-    one = decoded(info.sensors[0], Heard(rows, orientations, file.damaged), host_s, clock=shared)
+    one = decoded(info.sensors[0], Received(rows, orientations, file.damaged), host_s, clock=shared)
     lost = sum(map(len, file.missing()))
     clock = None if one.clock is None else replace(one.clock, arrived_s=one.clock.arrived_s[:0], ahead_s=ahead_s)
     return replace(one, counts=replace(one.counts, lost=lost), clock=clock)
@@ -116,6 +116,6 @@ def _ahead_s(settings: Mapping[str, object], first_s: float, last_s: float) -> t
     ordered_s = settings.get("ordered_s")
     if not isinstance(ordered_s, list) or len(ordered_s) != 3:
         return -first_s, BEGUN_TOGETHER_S - first_s
-    told_s, recording_s, ended_s = map(float, ordered_s)
-    low_s, high_s = told_s - first_s, min(recording_s + BEGINS_WITHIN_S - first_s, ended_s - last_s)
+    reported_s, recording_s, ended_s = map(float, ordered_s)
+    low_s, high_s = reported_s - first_s, min(recording_s + BEGINS_WITHIN_S - first_s, ended_s - last_s)
     return low_s, max(low_s, high_s)

@@ -1,7 +1,7 @@
-"""One file on its way out of a sensor: going on after a lost link, repaired, and said where it could not be had.
+"""One file on its way out of a sensor: going on after a lost link, repaired, and stated where it could not be had.
 
     choose, fetch -> samples, numbered from 0 -> the end
-    a number is left out, or said to be damaged: from there on again, at once, for that is valid while it sends
+    a number is left out, or stated to be damaged: from there on again, at once, for that is valid while it sends
     the end: what lies behind the last sample is asked for once more, for its last ones may be lost on their way
 
 Each notification is given to who keeps it before it is looked at.
@@ -35,7 +35,7 @@ OVERTAKEN_S = 0.1  # so long after its end something may come that the end has o
 REPAIRS = 3  # so often what is missing is asked for again
 STUCK = 6  # so often in a row nothing new came
 SILENCE_S = 3.0
-TALK_S = 10.0  # so long it may talk before it says what it was asked for
+TALK_S = 10.0  # so long it may talk before it states what it was asked for
 IDLE_TALK_S = 20.0  # so long it may send notices with nothing new in them
 AWAY_S = 60.0  # so long a sensor that was lost is looked for
 AGAIN_S = 0.5
@@ -58,7 +58,7 @@ class FetchedFile:
     missing
         Numbers of samples that could not be had, below the last that came.
     is_end_known
-        Whether the sensor said that nothing follows the last sample.
+        Whether the sensor stated that nothing follows the last sample.
     is_even
         Whether the samples' times step evenly but for what is missing.
     """
@@ -129,7 +129,9 @@ async def made_idle(sensor: DotSensor) -> None:
     if state in (DotAnswer.EXPORTING_LIST, DotAnswer.EXPORTING_INFO, DotAnswer.EXPORTING):
         await sensor.order(Order.BREAK_OFF)
         until_s = from_now_s(TALK_S)
-        while (said := await next_notice(sensor, until_s)) is not None and said.data[0] != DotNotice.DATA_BROKEN_OFF:
+        while (stated := await next_notice(sensor, until_s)) is not None and stated.data[
+            0
+        ] != DotNotice.DATA_BROKEN_OFF:
             pass
 
 
@@ -153,7 +155,7 @@ class Fetching:
         self._repairs_amid = True  # until the sensor refuses it
 
     async def fetch(self) -> FetchedFile:
-        """All of it, repaired as often as `REPAIRS` says.
+        """All of it, repaired as often as `REPAIRS` states.
 
         Raises
         ------
@@ -163,12 +165,12 @@ class Fetching:
             It sends nothing.
         """
         stuck, cut_before = 0, self._sensor.cut_notices
-        while (wanted := self._wanted()) is not None and stuck <= STUCK:
+        while (required := self._required()) is not None and stuck <= STUCK:
             before = len(self.framer.samples), self._looks, len(self._asked)
             try:
                 await reached(self._sensor)
-                if await self._ask(wanted.start):
-                    await self._listen(wanted)
+                if await self._ask(required.start):
+                    await self._listen(required)
             except SourceLostError:
                 await self._found_again()
             except BaseException:
@@ -200,7 +202,7 @@ class Fetching:
             "{sensor} does not send its recording", "Switch it off and on, then fetch it again", sensor=name
         )
 
-    def _wanted(self) -> range | None:
+    def _required(self) -> range | None:
         """What to ask for next: all up to the end, and what is behind it; then what is missing. None: nothing more."""
         if self._looks < LOOKS:
             return range(max(self.framer.next - 1, 0), EVER)
@@ -232,23 +234,23 @@ class Fetching:
     async def _again(self, number: int) -> bool:
         return await self._sensor.order(Order.FETCH_FROM, fetch_from(number).data[1:]) is DotAnswer.DONE
 
-    async def _listen(self, wanted: range) -> None:
-        """Keep what comes, to the end or to the end of what is wanted."""
-        latest, asked_from = wanted.start - 1, EVER
+    async def _listen(self, required: range) -> None:
+        """Keep what comes, to the end or to the end of what is required."""
+        latest, asked_from = required.start - 1, EVER
         known, until_s = len(self.framer.samples), from_now_s(IDLE_TALK_S)
-        while (said := await next_notice(self._sensor, until_s, self._take)) is not None:
+        while (stated := await next_notice(self._sensor, until_s, self._take)) is not None:
             if len(self.framer.samples) > known:
                 known, until_s = len(self.framer.samples), from_now_s(IDLE_TALK_S)
-            kind = said.data[0]
+            kind = stated.data[0]
             if kind == DotNotice.DATA_END:
                 await self._ended(latest)
                 break
-            if kind not in (DotNotice.DATA, DotNotice.DATA_DAMAGED) or len(said.data) < 5:
+            if kind not in (DotNotice.DATA, DotNotice.DATA_DAMAGED) or len(stated.data) < 5:
                 continue
-            (number,) = struct.unpack_from("<I", said.data, 1)
+            (number,) = struct.unpack_from("<I", stated.data, 1)
             if number >= MOST_SAMPLES:
                 continue  # no memory holds so many
-            if number >= wanted.stop:
+            if number >= required.stop:
                 await made_idle(self._sensor)
                 break
             if asked_from < number:
@@ -260,8 +262,8 @@ class Fetching:
                 self._asked.append(lacking)
             elif lacking:
                 self._repairs_amid = False
-        if wanted.stop != EVER:
-            self._asked.append(wanted)
+        if required.stop != EVER:
+            self._asked.append(required)
 
     def _lacking(self, gap: range) -> range:
         """From the first of these that was left out or is damaged, if it may be asked for at once; else none."""

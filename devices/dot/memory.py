@@ -30,7 +30,7 @@ LISTINGS = 3  # tries
 ERASES_S = 60.0
 LINK_TRIES = 4  # where the link is lost over an order
 BEGINS_S = 8.0  # so long one is looked for that is to begin: the patient waits
-ENDS_S, LOOKED_S = 12.0, 0.3  # so long a sensor may take to write what it holds, once told to end
+ENDS_S, LOOKED_S = 12.0, 0.3  # so long a sensor may take to write what it holds, once asked to end
 
 
 class MemoryFullError(DotRefusedError):
@@ -47,9 +47,9 @@ class OwnClockError(DotRefusedError):
 
 @dataclass(frozen=True, slots=True)
 class Begun:
-    """When a sensor was first told to record, and when it said that it does, ns of the host's clock."""
+    """When a sensor was first asked to record, and when it stated that it does, ns of the host's clock."""
 
-    told_ns: int
+    reported_ns: int
     recording_ns: int
 
 
@@ -119,17 +119,17 @@ async def _made_ready(sensor: DotSensor, rate_hz: int, *, must_be_synchronised: 
 
 async def _begin(sensor: DotSensor, utc_s: int) -> Begun:
     """Let it begin; where the link was lost over that, it may have begun already."""
-    told_ns = 0
+    reported_ns = 0
     for attempt in range(LINK_TRIES):
         try:
             await reached(sensor, BEGINS_S)
-            if told_ns and await sensor.state() is DotAnswer.RECORDING:
-                return Begun(told_ns, sensor.radio.now_ns())
-            told_ns, sensor.is_full = told_ns or sensor.radio.now_ns(), False
-            told = await sensor.order(Order.START, start_recording(utc_s).data[1:])
+            if reported_ns and await sensor.state() is DotAnswer.RECORDING:
+                return Begun(reported_ns, sensor.radio.now_ns())
+            reported_ns, sensor.is_full = reported_ns or sensor.radio.now_ns(), False
+            reported = await sensor.order(Order.START, start_recording(utc_s).data[1:])
             if await sensor.state() is DotAnswer.RECORDING:
-                return Begun(told_ns, sensor.radio.now_ns())
-            if told is DotAnswer.FULL or sensor.is_full:
+                return Begun(reported_ns, sensor.radio.now_ns())
+            if reported is DotAnswer.FULL or sensor.is_full:
                 raise MemoryFullError(
                     "The memory of {sensor} is full",
                     "Fetch its recordings and erase its memory, then record",
@@ -147,7 +147,7 @@ async def _stopped_quietly(sensor: DotSensor) -> None:
     try:
         await stop(sensor)
     except (SourceLostError, SourceRefusedError):
-        return  # out of reach: whoever looks for its files is told that it records
+        return  # out of reach: whoever looks for its files is given that it records
 
 
 async def stop(sensor: DotSensor) -> None:
@@ -175,7 +175,7 @@ async def stop(sensor: DotSensor) -> None:
 
 
 async def _has_ended(sensor: DotSensor, within_s: float) -> bool:
-    """Whether it says within so long that it does something else; what it does not tell is no end."""
+    """Whether it states within so long that it does something else; what it does not report is no end."""
     loop = asyncio.get_running_loop()
     until_s = loop.time() + within_s
     while await sensor.state() in (DotAnswer.RECORDING, DotAnswer.BUSY, DotAnswer.UNKNOWN):
@@ -191,7 +191,7 @@ async def list_files(sensor: DotSensor) -> tuple[RecordedFile, ...]:
     Raises
     ------
     DotRefusedError
-        It records, or does not tell.
+        It records, or does not report.
     """
     await refuse_while_recording(sensor)
     cut_before = sensor.cut_notices
@@ -211,19 +211,19 @@ async def list_files(sensor: DotSensor) -> tuple[RecordedFile, ...]:
 
 
 async def _pieces(sensor: DotSensor) -> tuple[int, ...] | None:
-    """How many pieces of the memory each file takes; None where that was not told whole."""
+    """How many pieces of the memory each file takes; None where that was not reported whole."""
     if await sensor.order(Order.LIST) is not DotAnswer.DONE:
         return None
     listed = b""
     until_s = from_now_s(TALK_S)
-    while (said := await next_notice(sensor, until_s)) is not None:
-        if said.data[0] == DotNotice.LIST_END:
+    while (stated := await next_notice(sensor, until_s)) is not None:
+        if stated.data[0] == DotNotice.LIST_END:
             try:
                 return files_listed(listed)
             except DotMessageError:
                 return None
-        if said.data[0] == DotNotice.LIST:
-            listed += said.data[1:]
+        if stated.data[0] == DotNotice.LIST:
+            listed += stated.data[1:]
     return None
 
 
@@ -232,11 +232,11 @@ async def _file(sensor: DotSensor, number: int, pieces: int) -> RecordedFile | N
         return None
     file = None
     until_s = from_now_s(TALK_S)
-    while (said := await next_notice(sensor, until_s)) is not None:
-        match said.data[0]:
+    while (stated := await next_notice(sensor, until_s)) is not None:
+        match stated.data[0]:
             case DotNotice.FILE_INFO:
                 try:
-                    file = RecordedFile.parsed(number, said.data[1:], pieces)
+                    file = RecordedFile.parsed(number, stated.data[1:], pieces)
                 except DotMessageError:
                     return None
             case DotNotice.FILE_INFO_END:
@@ -263,6 +263,6 @@ async def erase_kept(sensor: DotSensor, kept: Collection[int], utc_s: int) -> No
         )
     sensor.fetched_last = None
     await sensor.order(Order.ERASE, erase(utc_s).data[1:])
-    await sensor.expect(lambda said: said.data[:1] == bytes([DotNotice.ERASED]), ERASES_S)
+    await sensor.expect(lambda stated: stated.data[:1] == bytes([DotNotice.ERASED]), ERASES_S)
     if await list_files(sensor):
         raise DotRefusedError("The memory of {sensor} was not erased", "Try again", sensor=sensor.name)

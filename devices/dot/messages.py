@@ -76,7 +76,7 @@ class DotMessage:
 
 @dataclass(frozen=True, slots=True)
 class DotInfo:
-    """What a sensor says of itself. `mac` as it is written, most significant byte first."""
+    """What a sensor states of itself. `mac` as it is written, most significant byte first."""
 
     mac: str
     firmware: tuple[int, int, int]
@@ -106,7 +106,7 @@ class DotInfo:
 
 @dataclass(frozen=True, slots=True)
 class DotSettings:
-    """Rate and filter profile (0 General, 1 Dynamic), which stay until they are set anew."""
+    """Rate and filter profile (0 General, 1 Dynamic), which stay until they are set again."""
 
     rate_hz: int
     profile: int
@@ -185,7 +185,7 @@ SYNC_STOPPED = DotMessage(SYNC_GROUP, b"\x50\x00")
 
 
 def start_sync(root: str) -> DotMessage:
-    """What every sensor is told, the root among them, by the root's `DotInfo.mac`."""
+    """What every sensor is reported, the root among them, by the root's `DotInfo.mac`."""
     return DotMessage(SYNC_GROUP, b"\x01" + bytes.fromhex(root.replace(":", ""))[::-1])
 
 
@@ -225,7 +225,7 @@ class DotAnswer(IntEnum):
 
 
 class Order(IntEnum):
-    """What a sensor is told to do with its memory; the first byte of a message's data."""
+    """What a sensor is given to do with its memory; the first byte of a message's data."""
 
     GET_STATE = 0x02
     ERASE = 0x30
@@ -240,7 +240,7 @@ class Order(IntEnum):
 
 
 class DotNotice(IntEnum):
-    """What a sensor tells of its memory; the first byte of a message's data."""
+    """What a sensor reports its memory; the first byte of a message's data."""
 
     BUSY = 0x03
     ERASED = 0x33
@@ -266,7 +266,7 @@ def recording_order(order: Order, data: bytes = b"") -> DotMessage:
 
 
 def start_recording(utc_s: int) -> DotMessage:
-    """Record until told to stop; `utc_s` names the file."""
+    """Record until asked to stop; `utc_s` names the file."""
     return recording_order(Order.START, struct.pack("<I", utc_s) + NO_TIMER)
 
 
@@ -296,7 +296,7 @@ class RecordedFile:
     number
         Counted from 1.
     started_utc_s
-        What `start_recording` was told.
+        What `start_recording` was reported.
     most_bytes
         About: as many pieces of the memory as it takes.
     """
@@ -309,7 +309,7 @@ class RecordedFile:
     def parsed(cls, number: int, data: bytes, pieces: int = 0) -> "RecordedFile":
         """Of a notice FILE_INFO, without its first byte, and how many pieces of the memory it takes.
 
-        What stands there as its length is the timer that it was begun with (revision C, 5.2.4.9): it has none here.
+        What is there as its length is the timer that it was begun with (revision C, 5.2.4.9): it has none here.
 
         Raises
         ------

@@ -1,7 +1,7 @@
 """Samples of a Movella DOT: what its modes send, and how both its streams and its files lie in a journal.
 
 Everything that arrives is kept as it came (`transport/notifications.py`). Stamps are the sensor's own microseconds,
-which begin anew every 71 minutes; there is no counter, so that loss shows in the stamps.
+which begin again every 71 minutes; there is no counter, so that loss shows in the stamps.
 """
 
 import math
@@ -12,7 +12,7 @@ from dataclasses import dataclass
 from devices.clocks.clock import Unwrapping
 from devices.dot.messages import Characteristic, DotMessage, DotMessageError, DotNotice
 from devices.source import SourceInfo
-from devices.stream import Heard, Row
+from devices.stream import Received, Row
 from devices.transport.notifications import NotificationFrames
 
 DRIVER, VERSION = "movella-dot", "1"
@@ -39,7 +39,7 @@ class StreamMode:
     has_orientation: bool
 
     def sample(self, payload: bytes) -> "DotSample | None":
-        """What a notification says; None where it is cut or says what cannot be."""
+        """What a notification states; None where it is cut or states what cannot be."""
         if len(payload) < self.shape.size:
             return None
         ticks, *values = self.shape.unpack_from(payload)
@@ -79,7 +79,7 @@ class RecordedSample:
 
     @classmethod
     def parsed(cls, data: bytes) -> "RecordedSample | None":
-        """Of a notice DATA, without its first byte; None where it is not what was chosen or says what cannot be."""
+        """Of a notice DATA, without its first byte; None where it is not what was chosen or states what cannot be."""
         if len(data) != NUMBER.size + RECORDED.size:
             return None
         (number,) = NUMBER.unpack_from(data)
@@ -92,7 +92,7 @@ class DotFramer:
     """See `devices.stream.Framer`: what one sensor streams."""
 
     def __init__(self, info: SourceInfo) -> None:
-        self.heard = Heard()
+        self.received = Received()
         self._frames, self._damaged = NotificationFrames(KNOWN), 0
         self._mode = _mode_of(info.settings)
         self._unwrapping, self._before_s = Unwrapping(TIME_BITS, TICK_HZ), 0.0
@@ -101,11 +101,11 @@ class DotFramer:
     def feed(self, data: bytes, host_s: float) -> None:
         for characteristic, payload in self._frames.feed(data):
             if characteristic == Characteristic.BATTERY and payload:
-                self.heard.battery = min(payload[0], 100) / 100
+                self.received.battery = min(payload[0], 100) / 100
             elif self._mode is not None and characteristic == self._mode.characteristic:
                 self._take(self._mode.sample(payload), host_s)
             else:
-                self.heard.skipped += 1
+                self.received.skipped += 1
         self._count_damaged()
 
     def flush(self) -> None:
@@ -114,18 +114,18 @@ class DotFramer:
 
     def _take(self, sample: DotSample | None, host_s: float) -> None:
         if sample is None:
-            self.heard.damaged += 1
+            self.received.damaged += 1
             return
         device_s = self._unwrapping.ticks(sample.ticks, host_s) / TICK_HZ
-        if self._is_first:  # so that the clock goes on after a cut, although it may have begun anew
+        if self._is_first:  # so that the clock goes on after a cut, although it may have begun again
             self._is_first, self._before_s = False, round((host_s - device_s) / TURN_S) * TURN_S
         device_s += self._before_s
-        self.heard.rows.append((device_s, *sample.rate, *sample.force))
+        self.received.rows.append((device_s, *sample.rate, *sample.force))
         if sample.orientation:
-            self.heard.orientations.append((device_s, *sample.orientation))
+            self.received.orientations.append((device_s, *sample.orientation))
 
     def _count_damaged(self) -> None:
-        self.heard.damaged += self._frames.damaged - self._damaged
+        self.received.damaged += self._frames.damaged - self._damaged
         self._damaged = self._frames.damaged
 
 
@@ -140,7 +140,7 @@ class FileFramer:
     Attributes
     ----------
     next
-        The number after the highest that was heard.
+        The number after the highest that was received.
     """
 
     def __init__(self) -> None:
@@ -173,7 +173,7 @@ class FileFramer:
         self._frames = NotificationFrames(KNOWN)
 
     def missing(self) -> tuple[range, ...]:
-        """Numbers that were not heard, below the highest that was."""
+        """Numbers that were not received, below the highest that was."""
         gaps, expected = [], 0
         for number in sorted(self.samples):
             if number > expected:
@@ -182,12 +182,12 @@ class FileFramer:
         return tuple(gaps)
 
     def has_forces(self) -> bool:
-        """Whether what is said to be specific force can be a leg's: the maker's printed example changes two names."""
+        """Whether what is stated to be specific force can be a leg's: the maker's printed example changes two names."""
         forces = sorted(math.hypot(*one.sample.force) for one in self.samples.values())
         return not forces or WORN_M_S2[0] < forces[len(forces) // 2] < WORN_M_S2[1]
 
     def rows(self) -> tuple[list[Row], list[Row]]:
-        """Rows and orientations in order, as `Heard` has them, the clock going on where it begins anew."""
+        """Rows and orientations in order, as `Received` has them, the clock going on where it begins again."""
         rows: list[Row] = []
         orientations: list[Row] = []
         ticks, last = 0, None

@@ -1,4 +1,4 @@
-"""One Movella DOT and its link: what it is asked and told, each thing after the other.
+"""One Movella DOT and its link: what it is asked and reported, each thing after the other.
 
 Everything here is a coroutine of the links' thread, waits a bounded time, and raises `SourceLostError` where the link
 is gone. To a sensor that records only its state is asked: a rate or a mode written then cuts the file.
@@ -37,17 +37,17 @@ from devices.live import SourceLostError, SourceRefusedError
 from devices.transport.bluetooth import Announced, BluetoothLink, Radio
 from devices.transport.notifications import framed
 
-Said = TypeVar("Said")
+Stated = TypeVar("Stated")
 
 NOTICE_S = 2.0
 BUSY_S, BUSY_TRIES = 0.5, 6
-ANSWER_S, ANSWER_TRIES = 0.1, 12  # what is read may still be the answer to what was told before
+ANSWER_S, ANSWER_TRIES = 0.1, 12  # what is read may still be the answer to what was reported before
 FULL_NOTICE = bytes([RECORDING_GROUP, DotNotice.FULL])
 MOST_WAITING = 20_000  # notifications that nobody fetched: five minutes
 
 
 class DotRefusedError(SourceRefusedError):
-    """A sensor that does not do what it was told."""
+    """A sensor that does not do what it was reported."""
 
 
 def is_dot(one: Announced) -> bool:
@@ -62,13 +62,13 @@ class DotSensor:
     Attributes
     ----------
     info, battery
-        As it told last; None and nothing before it was connected.
+        As it reported last; None and nothing before it was connected.
     has_heading_reset
         Whether some program turned the headings of its orientations, which lasts until it is switched off.
     cut_notices
         How many notices arrived shorter than they say that they are: the link may carry too little.
     is_full
-        Whether it has said since it was told to record last that its memory is full.
+        Whether it has stated since it was given to record last that its memory is full.
     fetched_last
         The file whose sending was ordered last.
     """
@@ -103,7 +103,7 @@ class DotSensor:
         """Connect, ask who it is, and listen: before anything is started, or its beginning is missed."""
         await self._link.connect()
         if self.info is None:
-            self.info = await self._told(Characteristic.DEVICE_INFO, DotInfo.parsed)
+            self.info = await self._reported(Characteristic.DEVICE_INFO, DotInfo.parsed)
             self.has_heading_reset = await self._read(Characteristic.HEADING) == HEADING_RESET
         for characteristic in (
             Characteristic.NOTICE,
@@ -143,8 +143,8 @@ class DotSensor:
     async def _read(self, characteristic: Characteristic) -> bytes:
         return await self._link.read(characteristic.uuid)
 
-    async def _told(self, characteristic: Characteristic, parsed: Callable[[bytes], Said]) -> Said:
-        """What it says there; one that says less than it has to is taken for lost, and tried again as such."""
+    async def _reported(self, characteristic: Characteristic, parsed: Callable[[bytes], Stated]) -> Stated:
+        """What it states there; one that states less than it has to is taken for lost, and tried again as such."""
         try:
             return parsed(await self._read(characteristic))
         except DotMessageError as problem:
@@ -164,21 +164,21 @@ class DotSensor:
         DotRefusedError
             They are not.
         """
-        wanted = DotSettings(rate_hz, profile)
-        if await self.settings() == wanted:
+        required = DotSettings(rate_hz, profile)
+        if await self.settings() == required:
             return
         await self._write(Characteristic.SETTINGS, setting_rate(rate_hz))
         await self._write(Characteristic.SETTINGS, setting_profile(profile))
-        if await self.settings() != wanted:
+        if await self.settings() != required:
             raise DotRefusedError(
                 "{sensor} did not accept its sample rate", "Switch it off and on, then search again", sensor=self.name
             )
 
     async def settings(self) -> DotSettings:
-        return await self._told(Characteristic.SETTINGS, DotSettings.parsed)
+        return await self._reported(Characteristic.SETTINGS, DotSettings.parsed)
 
     async def control(self) -> StreamControl:
-        return await self._told(Characteristic.CONTROL, StreamControl.parsed)
+        return await self._reported(Characteristic.CONTROL, StreamControl.parsed)
 
     async def streaming(self) -> StreamMode | None:
         """The mode in which it streams already; None where it does not, or in one that is not read here."""
@@ -211,7 +211,7 @@ class DotSensor:
 
     # messages
 
-    async def tell(self, message: DotMessage) -> None:
+    async def show_message(self, message: DotMessage) -> None:
         """Send a message; what was noticed before is no answer to it."""
         self.forget()
         await self._write(Characteristic.MESSAGE, message.packed())
@@ -225,24 +225,24 @@ class DotSensor:
 
     async def order(self, order: Order, data: bytes = b"") -> DotAnswer:
         """Give an order of the memory, again while the sensor is busy."""
-        told = DotAnswer.UNKNOWN
+        reported = DotAnswer.UNKNOWN
         for attempt in range(BUSY_TRIES):
             if attempt:
                 await asyncio.sleep(BUSY_S)
-            await self.tell(recording_order(order, data))
-            told = await self._answered(order)
-            if told is not DotAnswer.BUSY:
+            await self.show_message(recording_order(order, data))
+            reported = await self._answered(order)
+            if reported is not DotAnswer.BUSY:
                 break
-        return told
+        return reported
 
     async def _answered(self, order: Order) -> DotAnswer:
         for attempt in range(ANSWER_TRIES):
             if attempt:
                 await asyncio.sleep(ANSWER_S)
             answer = await self.answer()
-            told = DotAnswer.UNKNOWN if answer is None else answered(order, answer)
-            if told is not DotAnswer.UNKNOWN:
-                return told
+            reported = DotAnswer.UNKNOWN if answer is None else answered(order, answer)
+            if reported is not DotAnswer.UNKNOWN:
+                return reported
         return DotAnswer.UNKNOWN
 
     async def state(self) -> DotAnswer:
@@ -260,7 +260,7 @@ class DotSensor:
         Raises
         ------
         SourceLostError
-            The link is gone, and so is whatever was not heard.
+            The link is gone, and so is whatever was not received.
         """
         try:
             async with asyncio.timeout(within_s):
@@ -271,7 +271,7 @@ class DotSensor:
             return b""
 
     def understood(self, payload: bytes) -> DotMessage | None:
-        """What a notice says; None where it arrived damaged."""
+        """What a notice states; None where it arrived damaged."""
         try:
             return DotMessage.parsed(payload)
         except DotMessageError:

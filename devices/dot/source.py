@@ -18,9 +18,9 @@ from devices.dot.sensor import DotSensor
 from devices.dot.synchronising import (
     RENEWED_S,
     NotSynchronisedError,
+    ShowMessage,
     Synchronised,
     SyncStage,
-    Tell,
     end_synchronising,
     let_go,
     refuse_while_recording,
@@ -36,7 +36,7 @@ LIVE_HZ = 60
 GENERAL = 0
 
 
-def _tell_nobody(_stage: SyncStage, _sensor: str, _left_s: float) -> None:
+def _show_nobody(_stage: SyncStage, _sensor: str, _left_s: float) -> None:
     """Who synchronises in passing shows no steps."""
 
 
@@ -74,7 +74,7 @@ class DotGroup:
     rate_hz
         60, or 30 where the air is too full for that.
     record_hz
-        Of what is recorded in memories. Where it is another, going over from one to the other synchronises anew. None:
+        Of what is recorded in memories. Where it is another, going over from one to the other synchronises again. None:
         nothing is to be recorded there.
     """
 
@@ -109,23 +109,23 @@ class DotGroup:
         """Whether they are ready to record in their memories, or do, and send nothing."""
         return self.use is DotUse.RECORDING
 
-    def synchronise(self, tell: Tell = _tell_nobody, tick: Tick | None = None) -> None:
+    def synchronise(self, show_message: ShowMessage = _show_nobody, tick: Tick | None = None) -> None:
         """Bring all onto one clock, also once more, and stream; takes half a minute to two.
 
-        Never while one of them is recorded. What `tell` or `tick` (see `Radio.run`) raises ends it.
+        Never while one of them is recorded. What `show_message` or `tick` (see `Radio.run`) raises ends it.
 
         Raises
         ------
         NotSynchronisedError
             Some did not follow. They may be tried again, or left out.
         SourceRefusedError
-            One cannot be synchronised, and says why.
+            One cannot be synchronised, and states why.
         """
         with self._synchronising:
-            self._bring_together(self.rate_hz, tell, tick, must_stream=True)
+            self._bring_together(self.rate_hz, show_message, tick, must_stream=True)
             self.use = DotUse.STREAMING
 
-    def make_ready_to_record(self, tell: Tell = _tell_nobody, tick: Tick | None = None) -> None:
+    def make_ready_to_record(self, show_message: ShowMessage = _show_nobody, tick: Tick | None = None) -> None:
         """Bring all onto one clock at the rate that their memories record with; as `synchronise`.
 
         Where they are on one at this rate, and are to be for long enough still, they only stop streaming.
@@ -136,7 +136,7 @@ class DotGroup:
                 self.turn += 1
                 self.radio.run(_silenced(self.sensors), tick)
             elif len(self.sensors) > 1:
-                self._bring_together(rate_hz, tell, tick, must_stream=False)
+                self._bring_together(rate_hz, show_message, tick, must_stream=False)
             else:
                 self.turn += 1
                 self.radio.run(_set_up(self.sensors[0], rate_hz, self.profile), tick)
@@ -163,10 +163,10 @@ class DotGroup:
         is_one = len(self.sensors) == 1 or self.are_one_at(self.record_hz or self.rate_hz)
         return self.is_recording_use and not self.is_synchronising and is_one
 
-    def stream_again(self, tell: Tell = _tell_nobody, tick: Tick | None = None) -> None:
+    def stream_again(self, show_message: ShowMessage = _show_nobody, tick: Tick | None = None) -> None:
         """Go back from memories to streams; as `synchronise`."""
         if len(self.sensors) > 1 and not self.are_one_at(self.rate_hz):
-            self.synchronise(tell, tick)
+            self.synchronise(show_message, tick)
             return
         with self._synchronising:
             self.turn += 1
@@ -180,10 +180,10 @@ class DotGroup:
         is_whole = common is not None and common.rate_hz == rate_hz and len(common.members) == len(self.sensors)
         return is_whole and left_s is not None and left_s > 0
 
-    def _bring_together(self, rate_hz: int, tell: Tell, tick: Tick | None, *, must_stream: bool) -> None:
+    def _bring_together(self, rate_hz: int, show_message: ShowMessage, tick: Tick | None, *, must_stream: bool) -> None:
         self._common = None
         self.turn += 1
-        work = synchronise(self.sensors, rate_hz, self.profile, tell, must_stream=must_stream)
+        work = synchronise(self.sensors, rate_hz, self.profile, show_message, must_stream=must_stream)
         found = self.radio.run(work, tick)
         self._common = _Common(found, rate_hz, {sensor.name for sensor in self.sensors})
 
@@ -258,7 +258,7 @@ class DotSource:
         self._framer: DotFramer | None = None
         self._clock, self._clock_name = LiveClock(), ""
         self._was_open = False
-        self._clock_begun = 0  # so often its own clock is known to have begun anew
+        self._clock_begun = 0  # so often its own clock is known to have begun again
         self._keeps_link = False
         self._turn = -1
 
@@ -274,7 +274,7 @@ class DotSource:
         if self.group.is_synchronising:
             raise SourceLostError(f"{self.sensor.name} is being synchronised")
         if self.group.is_recording_use:
-            return  # it sends nothing; once it is to, `read` says that it begins anew
+            return  # it sends nothing; once it is to, `read` states that it begins again
         self._keeps_link = False
         try:
             if not self._was_open:
@@ -294,9 +294,9 @@ class DotSource:
         await refuse_while_recording(sensor)
         mode = await sensor.streaming()
         if mode is None or (await sensor.settings()).rate_hz != group.rate_hz:
-            if self._was_open:  # it was switched off meanwhile: its clock has begun anew
+            if self._was_open:  # it was switched off meanwhile: its clock has begun again
                 group.leave(sensor.name)
-                self._clock_begun += 1  # now: should the link be lost next, nothing tells it any more
+                self._clock_begun += 1  # now: should the link be lost next, nothing reports it any more
             await sensor.stop_stream()
             await sensor.set_up(group.rate_hz, group.profile)
             sensor.taken()
@@ -343,8 +343,8 @@ class DotSource:
         keep(data)
         now_s = radio.now_ns() / 1e9
         framer.feed(data, now_s)
-        rows, framer.heard.rows = np.array(framer.heard.rows, dtype=float), []
-        framer.heard.orientations.clear()
+        rows, framer.received.rows = np.array(framer.received.rows, dtype=float), []
+        framer.received.orientations.clear()
         if not len(rows):
             return ()
         stamps_s = self._clock.stamp(rows[:, 0], now_s)
@@ -372,7 +372,7 @@ class DotSource:
             return {}
         is_recording = group.is_recording_use
         quiet = Quiet.SYNCHRONISING if group.is_synchronising else Quiet.IN_MEMORY if is_recording else None
-        told = SensorDetails(
+        reported = SensorDetails(
             info.model,
             info.serial,
             ".".join(map(str, info.firmware)),
@@ -381,7 +381,7 @@ class DotSource:
             clock=group.clock_of(sensor.name),
             quiet=quiet,
         )
-        return {sensor.name: told}
+        return {sensor.name: reported}
 
     def identify(self, sensor: str) -> bool:
         is_busy = self.group.is_synchronising or self.group.is_recording_use

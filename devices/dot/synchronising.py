@@ -1,9 +1,9 @@
-"""Movella DOTs on one clock: the steps that their maker tells, the waits between them, and who did not follow.
+"""Movella DOTs on one clock: the steps that their maker reports, the waits between them, and who did not follow.
 
     each: is it synchronised, then stop that; rate and profile, which cannot be changed until that is stopped
     all: start, by the root's address; disconnect
     12 s later: connect again, one by one; the first thing asked is how it went
-    all that are to stream: a second of it; clocks that are said to be one must be heard as one
+    all that are to stream: a second of it; clocks that are stated to be one must be received as one
 
 A failure is tried once more. The clocks part by about 2 ms in half an hour (Xsens DOT user manual 2021, 1 ppm): it is
 renewed then.
@@ -36,8 +36,8 @@ HELD_S = 0.8  # from the last start to the first disconnection
 SYNCHRONISING_S = 14.0  # 12 until it is done, 14 until sensors are reached again
 RECONNECT_S = 48.0  # for all of them, and then each once more
 SETTLES_S = 1.5  # from the connection to the question
-HEARD_S = 1.0
-TOLD_S = 0.5  # so often while all are left alone
+RECEIVED_S = 1.0
+REPORTED_S = 0.5  # so often while all are left alone
 PREPARES_S, CONNECTS_S = 1.5, 3.0  # each, about
 APART_S = 0.1  # links differ by less; clocks that are not one, by more
 RENEWED_S = 1800.0
@@ -53,7 +53,7 @@ class SyncStage(StrEnum):
     LISTENING = "listening"
 
 
-Tell = Callable[[SyncStage, str, float], None]
+ShowMessage = Callable[[SyncStage, str, float], None]
 """Takes what is being done, to which sensor, if to one, and for how many seconds still, about, until all is done.
 
 What it raises ends the synchronising, and nobody is left synchronised.
@@ -72,7 +72,7 @@ class SyncFailure(StrEnum):
     UNKNOWN = "it does not tell"
     NOT_BACK = "it did not come back"
     SILENT = "it does not begin to measure"
-    NOT_HEARD = "it is not heard"
+    NOT_RECEIVED = "it is not heard"
     CUT = "what it sends arrives cut"
     OTHER_CLOCK = "its clock differs"
 
@@ -100,7 +100,7 @@ class NotSynchronisedError(SourceRefusedError):
 
 @dataclass(frozen=True, slots=True)
 class Synchronised:
-    """Sensors on one clock; those that stream now, each in its mode. `name` tells this clock from any other."""
+    """Sensors on one clock; those that stream now, each in its mode. `name` reports this clock from any other."""
 
     name: str
     at_ns: int
@@ -110,8 +110,8 @@ class Synchronised:
 class _Synchronising:
     """One try after the other."""
 
-    def __init__(self, sensors: Sequence[DotSensor], rate_hz: int, profile: int, tell: Tell) -> None:
-        self._sensors, self._rate_hz, self._profile, self._tell_whom = sensors, rate_hz, profile, tell
+    def __init__(self, sensors: Sequence[DotSensor], rate_hz: int, profile: int, show_message: ShowMessage) -> None:
+        self._sensors, self._rate_hz, self._profile, self._show_whom = sensors, rate_hz, profile, show_message
         self._failed: dict[str, SyncFailure] = {}
         self._started: list[DotSensor] = []
         self._free_s = 0.0  # from then on those that were started can be reached
@@ -145,14 +145,14 @@ class _Synchronising:
     def fail(self, failed: Mapping[str, SyncFailure]) -> None:
         self._failed |= failed
 
-    def tell(self, stage: SyncStage, sensor: str = "", left_s: float = 0.0) -> None:
-        self._tell_whom(stage, sensor, left_s + HEARD_S)
+    def show_message(self, stage: SyncStage, sensor: str = "", left_s: float = 0.0) -> None:
+        self._show_whom(stage, sensor, left_s + RECEIVED_S)
 
     async def _prepare(self) -> None:
         for number, sensor in enumerate(self._sensors):
             left = len(self._sensors)
             left_s = (left - number) * PREPARES_S + SYNCHRONISING_S + left * CONNECTS_S
-            self.tell(SyncStage.PREPARING, sensor.name, left_s)
+            self.show_message(SyncStage.PREPARING, sensor.name, left_s)
             try:
                 await sensor.connect()
                 await refuse_while_recording(sensor)
@@ -176,7 +176,7 @@ class _Synchronising:
         assert root is not None
         for sensor in self._sensors:
             try:
-                await sensor.tell(start_sync(root.mac))
+                await sensor.show_message(start_sync(root.mac))
                 self._free_s = loop.time() + SYNCHRONISING_S
                 self._started.append(sensor)
             except SourceLostError:
@@ -186,8 +186,8 @@ class _Synchronising:
             await sensor.disconnect()
         back_s = len(self._sensors) * CONNECTS_S
         while (left_s := self._free_s - loop.time()) > 0:
-            self.tell(SyncStage.WAITING, "", left_s + back_s)
-            await asyncio.sleep(min(TOLD_S, left_s))
+            self.show_message(SyncStage.WAITING, "", left_s + back_s)
+            await asyncio.sleep(min(REPORTED_S, left_s))
 
     async def _bring_back(self) -> None:
         """Connect again, one by one, and ask each how it went."""
@@ -202,7 +202,7 @@ class _Synchronising:
         """Connect and ask for the result before anything else; what went wrong, if something did."""
         loop = asyncio.get_running_loop()
         while True:
-            self.tell(SyncStage.CONNECTING, sensor.name, left_s)
+            self.show_message(SyncStage.CONNECTING, sensor.name, left_s)
             try:
                 await sensor.connect_barely()
                 await asyncio.sleep(SETTLES_S)
@@ -220,7 +220,7 @@ class _Synchronising:
 
 
 async def synchronise(
-    sensors: Sequence[DotSensor], rate_hz: int, profile: int, tell: Tell, *, must_stream: bool = True
+    sensors: Sequence[DotSensor], rate_hz: int, profile: int, show_message: ShowMessage, *, must_stream: bool = True
 ) -> Synchronised:
     """Bring sensors onto one clock, the first of them being the root: the one nearest to all others.
 
@@ -236,14 +236,14 @@ async def synchronise(
     SourceRefusedError
         One records in its memory, does not take its rate, or cannot synchronise.
     """
-    trying = _Synchronising(sensors, rate_hz, profile, tell)
+    trying = _Synchronising(sensors, rate_hz, profile, show_message)
     for _ in range(TRIES):
         if not await trying.has_succeeded():
             continue
         modes: dict[str, StreamMode] = {}
         if must_stream:
-            trying.tell(SyncStage.LISTENING)
-            modes, failed = await _heard_as_one(sensors)
+            trying.show_message(SyncStage.LISTENING)
+            modes, failed = await _received_as_one(sensors)
             if failed:
                 trying.fail(failed)
                 await trying.give_up()
@@ -261,7 +261,7 @@ async def refuse_while_recording(sensor: DotSensor) -> None:
     Raises
     ------
     DotRefusedError
-        It records, or does not tell.
+        It records, or does not report.
     SourceLostError
         It is out of reach.
     """
@@ -278,22 +278,23 @@ async def refuse_while_recording(sensor: DotSensor) -> None:
 
 
 async def has_own_clock(sensor: DotSensor) -> bool:
-    """Whether it says that it is not synchronised."""
-    await sensor.tell(SYNC_STATUS)
-    told = await sensor.expect(lambda notice: notice in (IS_SYNCHRONISED, IS_NOT_SYNCHRONISED))
-    return told == IS_NOT_SYNCHRONISED
+    """Whether it states that it is not synchronised."""
+    await sensor.show_message(SYNC_STATUS)
+    reported = await sensor.expect(lambda notice: notice in (IS_SYNCHRONISED, IS_NOT_SYNCHRONISED))
+    return reported == IS_NOT_SYNCHRONISED
 
 
 async def _is_stopped(sensor: DotSensor) -> bool:
     """Whether it is not synchronised, or not any more."""
     if await has_own_clock(sensor):
         return True
-    await sensor.tell(STOP_SYNC)
+    await sensor.show_message(STOP_SYNC)
     return await sensor.expect(lambda notice: notice == SYNC_STOPPED) is not None
 
 
-async def _heard_as_one(sensors: Sequence[DotSensor]) -> tuple[dict[str, StreamMode], dict[str, SyncFailure]]:
-    """Let all stream, and hold their clocks against each other by what arrives: one that says so may not be on it."""
+async def _received_as_one(sensors: Sequence[DotSensor]) -> tuple[dict[str, StreamMode], dict[str, SyncFailure]]:
+    """Let all stream, and hold their clocks against each other by what arrives: one that reports it may not be on
+    it."""
     modes, late_s, failed = {}, {}, {}
     for sensor in sensors:
         try:
@@ -301,12 +302,12 @@ async def _heard_as_one(sensors: Sequence[DotSensor]) -> tuple[dict[str, StreamM
             sensor.taken()
         except (SourceLostError, DotRefusedError):
             failed[sensor.name] = SyncFailure.SILENT
-    await asyncio.sleep(HEARD_S)
+    await asyncio.sleep(RECEIVED_S)
     for sensor in sensors:
         if sensor.name in modes and sensor.name not in failed:
             least_s, is_cut = _least_late_s(sensor, modes[sensor.name])
             if least_s is None:
-                failed[sensor.name] = SyncFailure.CUT if is_cut else SyncFailure.NOT_HEARD
+                failed[sensor.name] = SyncFailure.CUT if is_cut else SyncFailure.NOT_RECEIVED
             else:
                 late_s[sensor.name] = least_s
     if late_s:
@@ -318,16 +319,16 @@ async def _heard_as_one(sensors: Sequence[DotSensor]) -> tuple[dict[str, StreamM
 
 
 def _least_late_s(sensor: DotSensor, mode: StreamMode) -> tuple[float | None, bool]:
-    """How much later than its own clock says its samples arrived, at the least, and whether some arrived damaged."""
+    """How much later than its own clock states its samples arrived, at the least, and whether some arrived damaged."""
     framer = DotFramer(SourceInfo("", "", settings={"mode": mode.number}))
     least_s = None
     for came_ns, frame in sensor.taken():
         framer.feed(frame, came_ns / 1e9)
-        for row in framer.heard.rows:
+        for row in framer.received.rows:
             one_s = came_ns / 1e9 - row[0]
             least_s = one_s if least_s is None else min(least_s, one_s)
-        framer.heard.rows.clear()
-    return least_s, framer.heard.damaged > 0
+        framer.received.rows.clear()
+    return least_s, framer.received.damaged > 0
 
 
 async def _given_up(sensor: DotSensor) -> None:
@@ -349,7 +350,7 @@ async def let_go(sensor: DotSensor, *, is_synchronised: bool) -> None:
         await refuse_while_recording(sensor)
         await sensor.stop_stream()
         if is_synchronised:
-            await sensor.tell(STOP_SYNC)
+            await sensor.show_message(STOP_SYNC)
             await sensor.expect(lambda notice: notice == SYNC_STOPPED)
 
 

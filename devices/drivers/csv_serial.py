@@ -1,4 +1,4 @@
-"""Lines of numbers over a serial port, as home-made sensors send them: somebody says what the columns mean."""
+"""Lines of numbers over a serial port, as home-made sensors send them: somebody states what the columns mean."""
 
 import math
 from collections.abc import Mapping
@@ -7,7 +7,7 @@ from dataclasses import asdict, dataclass
 from devices.clocks.clock import Unwrapping
 from devices.live import SensorDetails, SourceRefusedError
 from devices.source import SourceInfo
-from devices.stream import Framer, Heard, listen
+from devices.stream import Framer, Received, listen
 from devices.transport.channels import Channel
 
 DRIVER, VERSION, MODEL = "csv", "1", "CSV over serial"
@@ -17,7 +17,7 @@ FORCE_UNITS = {"m/s2": 1.0, "g": 9.80665, "mg": 9.80665e-3}
 MOST_RAD_S, MOST_M_S2 = 100.0, 500.0  # no sensor worn by a person measures more
 SEPARATORS = {"comma": ",", "semicolon": ";", "tab": "\t", "space": " "}
 WRAPS = (0, 16, 24, 32)
-SAYS_S, ENOUGH_ROWS = 2.0, 3
+STATES_S, ENOUGH_ROWS = 2.0, 3
 
 
 @dataclass(frozen=True, slots=True)
@@ -32,9 +32,9 @@ class Columns:
     rate, force
         Three columns each, in the order of the sensor's axes; `signs` of all six turns an axis round.
     wraps_bits
-        After so many bits the clock begins anew; 0: never.
+        After so many bits the clock begins again; 0: never.
     count
-        How many columns a line has, so that one that was cut or ran into the next is no sample; 0: not told.
+        How many columns a line has, so that one that was cut or ran into the next is no sample; 0: not reported.
     rate_hz
         Where it is known, losses are counted by it.
 
@@ -94,7 +94,7 @@ class CsvFramer:
     """The `Framer` of lines. A heading, or another line that is no row of numbers, is skipped before the first row."""
 
     def __init__(self, columns: Columns) -> None:
-        self.heard = Heard()
+        self.received = Received()
         self._columns, self._rest, self._is_cut, self._has_begun = columns, b"", True, False
         self._separator = SEPARATORS[columns.separator].encode()
         self._last = max(columns.time, *columns.rate, *columns.force)
@@ -110,10 +110,10 @@ class CsvFramer:
             if self._is_cut:  # half a number looks like one
                 self._is_cut = False
             elif not self._take(line.strip(), host_s):
-                self.heard.damaged += self._has_begun
-                self.heard.skipped += not self._has_begun
+                self.received.damaged += self._has_begun
+                self.received.skipped += not self._has_begun
         if len(self._rest) > MOST_LINE:
-            self.heard.damaged += self._has_begun and not self._is_cut
+            self.received.damaged += self._has_begun and not self._is_cut
             self._rest, self._is_cut = b"", True
 
     def flush(self) -> None:
@@ -147,12 +147,12 @@ class CsvFramer:
                 return False
             time = self._unwrapping.ticks(int(time), host_s)
         self._has_begun = True
-        self.heard.rows.append((time / self._columns.tick_hz, gx, gy, gz, ax, ay, az))
+        self.received.rows.append((time / self._columns.tick_hz, gx, gy, gz, ax, ay, az))
         return True
 
 
 class CsvSerial:
-    """The `SensorProtocol` of lines of numbers. Without `columns` it reads journals only, which tell them."""
+    """The `SensorProtocol` of lines of numbers. Without `columns` it reads journals only, which report them."""
 
     driver, version = DRIVER, VERSION
 
@@ -169,8 +169,8 @@ class CsvSerial:
         if self._columns is None:
             raise ValueError("nobody said what the columns mean")
         framer = CsvFramer(self._columns)
-        listen(channel, framer, lambda heard: b"enough" if len(heard.rows) >= ENOUGH_ROWS else b"", SAYS_S)
-        if not framer.heard.rows:
+        listen(channel, framer, lambda received: b"enough" if len(received.rows) >= ENOUGH_ROWS else b"", STATES_S)
+        if not framer.received.rows:
             raise SourceRefusedError(
                 "{place} sends no text lines (CSV) in the expected format",
                 "Compare its columns, separator and baud rate with what the sensor sends",

@@ -30,7 +30,7 @@ Triple = tuple[int, int, int]
 
 @dataclass(frozen=True, slots=True)
 class LinesAt:
-    """A port that sends lines of so many numbers; `columns` None: nobody said yet what they mean."""
+    """A port that sends lines of so many numbers; `columns` None: nobody stated yet what they mean."""
 
     port: PortInfo
     baud: int
@@ -95,7 +95,7 @@ def _beside(columns: Triple, direction: int) -> Triple:
 
 
 def _tick_hz(step: float) -> float:
-    """Ticks a second, if a step of the clock is 2 to 50 ms; milliseconds where that tells nothing."""
+    """Ticks a second, if a step of the clock is 2 to 50 ms; milliseconds where that gives nothing."""
     return next((hz for hz in TICKS_HZ if 0.002 < step / hz < 0.05), 1e3)
 
 

@@ -1,6 +1,6 @@
 """Driver of Shimmer3 sensors (LogAndStream firmware, Bluetooth serial): commands, and what their packets hold.
 
-    00 time (3 bytes, 32768 Hz) channels in the order that an inquiry tells [checksum (2 bytes)]
+    00 time (3 bytes, 32768 Hz) channels in the order that an inquiry reports [checksum (2 bytes)]
 
 Raw numbers become units by the calibration that each sensor carries: C = R^-1 K^-1 (U - B), alignment R, sensitivity K,
 offset B (Ferraris, Grimaldi & Parvis 1995, Procedure for effortless in-field calibration of three-axial rate gyro and
@@ -20,7 +20,7 @@ from core.samples import FloatArray, RateKind
 from devices.clocks.clock import Unwrapping
 from devices.live import SensorDetails, SourceRefusedError
 from devices.source import SourceInfo
-from devices.stream import Heard
+from devices.stream import Received
 from devices.transport.channels import Channel
 
 DRIVER, VERSION = "shimmer3", "1"
@@ -57,7 +57,7 @@ class Command:
     REFUSED, DONE = 0xFE, 0xFF
 
 
-# it is silent until it is told to stream; this asks for its firmware, and is answered so where that is LogAndStream
+# it is silent until it is given to stream; this asks for its firmware, and is answered so where that is LogAndStream
 KNOCK = bytes([Command.FIRMWARE]), bytes([Command.DONE, Command.FIRMWARE_ANSWER, 3, 0])
 # wide-range accelerometer, angular rate, battery, as three bytes of switches
 SENSORS = bytes([0x40, 0x30, 0x00])
@@ -86,7 +86,7 @@ CHECKSUM_SINCE = (0, 15, 0)
 CHECKSUM_SEED = 0xB0CA
 BATTERY_STEP = 7  # a hundredth of a volt
 CUT_STEPS = 8  # so many packets may be damaged in a row
-MOST_STEPS_S = 2.0  # so long a packet without a checksum is told by the last one's time; then two together tell
+MOST_STEPS_S = 2.0  # so long a packet without a checksum is given by the last one's time; then two together report
 VOLTS, CHARGE = (3.3, 3.6, 3.7, 3.8, 3.95, 4.15), (0.0, 0.1, 0.3, 0.5, 0.75, 1.0)  # of a lithium cell at rest, about
 
 
@@ -121,10 +121,10 @@ def calibrating(block: bytes, scale: float) -> tuple[FloatArray, FloatArray]:
 
 
 class Shimmer3Framer:
-    """See `devices.stream.Framer`. Without what an inquiry tells, nothing is understood."""
+    """See `devices.stream.Framer`. Without what an inquiry reports, nothing is understood."""
 
     def __init__(self, info: SourceInfo) -> None:
-        self.heard = Heard()
+        self.received = Received()
         self._held = b""
         self._host_s = 0.0
         self._is_lost = False
@@ -148,7 +148,7 @@ class Shimmer3Framer:
         while len(held) - at >= size:
             is_packet = self._is_packet(shape, held, at, is_end)
             if is_packet is None:
-                break  # the next one tells
+                break  # the next one reports
             if is_packet:
                 self._take(shape, held, at)
                 at += size
@@ -161,7 +161,7 @@ class Shimmer3Framer:
         self._held = held[at:]
 
     def _is_packet(self, shape: "_Shape", held: bytes, at: int, is_end: bool) -> bool | None:
-        """None: that cannot be told yet."""
+        """None: that cannot be reported yet."""
         if held[at] != Command.PACKET:
             return False
         if shape.has_checksum:
@@ -176,7 +176,8 @@ class Shimmer3Framer:
         return is_due and not shape.is_cut(held, at, ticks)
 
     def _is_meant(self, shape: "_Shape", held: bytes, at: int, is_end: bool) -> bool | None:
-        """Whether a checksum is right not just by chance, as one in 65 536 beside damage; None: not to be told yet."""
+        """Whether a checksum is right not just by chance, as one in 65 536 beside damage; None: not to be reported
+        yet."""
         if self._last is None:
             return True
         inner = shape.find_due(held, at, self._last)
@@ -184,7 +185,7 @@ class Shimmer3Framer:
             is_due = shape.is_step(_ticks(held, at) - self._last, round(MOST_STEPS_S * TICK_HZ))
             if is_due or not self._is_lost:
                 return True
-            inner = at + shape.size  # after a long loss any time may be right: the next packet tells
+            inner = at + shape.size  # after a long loss any time may be right: the next packet reports
         if len(held) < inner + shape.size:
             return True if is_end else None
         return shape.is_whole(held, inner) == (inner == at + shape.size)
@@ -192,19 +193,19 @@ class Shimmer3Framer:
     def _take(self, shape: "_Shape", held: bytes, at: int) -> None:
         counter = _ticks(held, at)
         ticks = self._unwrapping.ticks(counter, self._host_s)
-        if self._last is None:  # so that the clock goes on after a cut, although it begins anew every 512 s
+        if self._last is None:  # so that the clock goes on after a cut, although it begins again every 512 s
             self._before = round((self._host_s * TICK_HZ - ticks) / TURN) * TURN
         self._last, self._is_lost = counter, False
-        self.heard.rows.append(((self._before + ticks) / TICK_HZ, *shape.gyr(held, at), *shape.acc(held, at)))
+        self.received.rows.append(((self._before + ticks) / TICK_HZ, *shape.gyr(held, at), *shape.acc(held, at)))
         if not shape.battery_at:
             return
         raw = held[at + shape.battery_at] | held[at + shape.battery_at + 1] << 8
         if abs(raw - self._battery_raw) > BATTERY_STEP:
-            self._battery_raw, self.heard.battery = raw, _charge(raw)
+            self._battery_raw, self.received.battery = raw, _charge(raw)
 
     def _pass_over(self, byte: int) -> None:
-        if not self._is_lost and byte != Command.DONE:  # the answer to a command stands between packets
-            self.heard.damaged += 1
+        if not self._is_lost and byte != Command.DONE:  # the answer to a command is between packets
+            self.received.damaged += 1
         self._is_lost = True
 
 
@@ -299,7 +300,7 @@ class Shimmer3:
     driver, version = DRIVER, VERSION
 
     def __init__(self, rate_hz: float | None = None) -> None:
-        self._wanted_period = round(TICK_HZ / rate_hz) if rate_hz else 0
+        self._required_period = round(TICK_HZ / rate_hz) if rate_hz else 0
 
     def framer(self, info: SourceInfo) -> Shimmer3Framer:
         return Shimmer3Framer(info)
@@ -314,13 +315,15 @@ class Shimmer3:
                 "Check that it is switched on, paired and not in its dock",
                 place=channel.place,
             )
-        name = talk.asked(Command.NAME, Command.NAME_ANSWER, lambda said: 1 + said[0])[1:].decode("ascii", "replace")
+        name = talk.asked(Command.NAME, Command.NAME_ANSWER, lambda stated: 1 + stated[0])[1:].decode(
+            "ascii", "replace"
+        )
         kind, major, minor, internal = struct.unpack("<HHBB", firmware)
-        period = self._wanted_period or _owned_period(talk)
+        period = self._required_period or _owned_period(talk)
         if not name or not all(talk.commanded(bytes(wish)) for wish in _wishes(period)):
             raise _unwilling(channel)
         calibration = talk.asked(Command.CALIBRATION, Command.CALIBRATION_ANSWER, lambda _: 4 * CALIBRATION_SIZE)
-        inquiry = talk.asked(Command.INQUIRY, Command.INQUIRY_ANSWER, lambda said: 8 + said[6])
+        inquiry = talk.asked(Command.INQUIRY, Command.INQUIRY_ANSWER, lambda stated: 8 + stated[6])
         if not calibration or not inquiry:
             raise _unwilling(channel)
         blocks = [calibration[k * CALIBRATION_SIZE :][:CALIBRATION_SIZE] for k in (GYR_CALIBRATION, ACC_CALIBRATION)]
@@ -390,33 +393,33 @@ class _Talk:
                     quiet_s = time.monotonic() + QUIET_S
 
     def commanded(self, command: bytes) -> bool:
-        """Whether it did as it was told."""
+        """Whether it did as it was reported."""
         self._channel.write(command)
-        return self._heard(lambda said: said[:1])[:1] == bytes([Command.DONE])
+        return self._received(lambda stated: stated[:1])[:1] == bytes([Command.DONE])
 
     def asked(self, command: int, answer: int, size: Callable[[bytes], int]) -> bytes:
         """What it answers, behind the answer's first byte; empty where it does not.
 
-        `size` tells how long that is from its beginning, or finds that it is too short to tell.
+        `size` gives how long that is from its beginning, or finds that it is too short to report.
         """
         self._channel.write(bytes([command]))
         begin = bytes([Command.DONE, answer])
 
-        def whole(said: bytes) -> bytes:
-            start = said.find(begin)
-            rest = said[start + 2 :] if start >= 0 else b""
+        def whole(stated: bytes) -> bytes:
+            start = stated.find(begin)
+            rest = stated[start + 2 :] if start >= 0 else b""
             try:
                 return rest[: size(rest)] if rest and len(rest) >= size(rest) else b""
             except IndexError:
                 return b""
 
-        return self._heard(whole)
+        return self._received(whole)
 
-    def _heard(self, found: Callable[[bytes], bytes]) -> bytes:
-        said, until_s = b"", time.monotonic() + ANSWERS_S
+    def _received(self, found: Callable[[bytes], bytes]) -> bytes:
+        stated, until_s = b"", time.monotonic() + ANSWERS_S
         while time.monotonic() < until_s:
-            said += self._channel.read()
-            if answer := found(said):
+            stated += self._channel.read()
+            if answer := found(stated):
                 return answer
         return b""
 

@@ -12,7 +12,7 @@ from struct import Struct
 
 from devices.live import SensorDetails, SourceRefusedError
 from devices.source import SourceInfo
-from devices.stream import Framer, Heard, ask, listen
+from devices.stream import Framer, Received, ask, listen
 from devices.transport.channels import Channel
 
 DRIVER, VERSION, MODEL = "witmotion", "1", "WitMotion"
@@ -28,14 +28,14 @@ CONTENT_AT, RATE_AT, READ_AT, NUMBER_AT = 0x02, 0x03, 0x27, 0x7F
 CONTENT = 0b1111  # time, force, rate; and angles, since a frame is sure once the next one begins
 RATES = {0x03: 1.0, 0x04: 2.0, 0x05: 5.0, 0x06: 10.0, 0x07: 20.0, 0x08: 50.0, 0x09: 100.0, 0x0B: 200.0}
 MOST_REPLIES = 16
-ANSWERS_S, SAYS_S = 0.3, 1.5
+ANSWERS_S, STATES_S = 0.3, 1.5
 ENOUGH_ROWS = 3
 
 
 def frame(kind: int, payload: bytes) -> bytes:
     """A frame as it is sent; `payload` has eight bytes."""
-    said = bytes([HEAD, kind]) + payload
-    return said + bytes([sum(said) & 0xFF])
+    stated = bytes([HEAD, kind]) + payload
+    return stated + bytes([sum(stated) & 0xFF])
 
 
 def writing(register: int, value: int) -> bytes:
@@ -51,7 +51,7 @@ class WitFramer:
     """
 
     def __init__(self) -> None:
-        self.heard = Heard()
+        self.received = Received()
         self._rest = b""
         self._is_in_step = False
         self._time_s: float | None = None
@@ -98,7 +98,7 @@ class WitFramer:
 
     def _pass_over(self, count: int) -> None:
         if count and self._is_in_step:
-            self.heard.damaged += 1
+            self.received.damaged += 1
             self._is_in_step = False
 
     def _take(self, kind: int, payload: bytes) -> None:
@@ -118,12 +118,12 @@ class WitFramer:
             case 0x59:
                 w, x, y, z = (number * ORIENTATION_UNIT for number in AXES.unpack(payload))
                 if self._time_s is not None:
-                    self.heard.orientations.append((self._time_s, w, x, y, z))
+                    self.received.orientations.append((self._time_s, w, x, y, z))
             case 0x5F:
-                if len(self.heard.replies) < MOST_REPLIES:
-                    self.heard.replies.append(payload)
+                if len(self.received.replies) < MOST_REPLIES:
+                    self.received.replies.append(payload)
             case _:
-                self.heard.skipped += 1
+                self.received.skipped += 1
 
     def _begin(self, payload: bytes) -> None:
         year, month, day, hour, minute, second, ms = CLOCK.unpack(payload)
@@ -132,7 +132,7 @@ class WitFramer:
         except ValueError:
             days = -1
         if days < 0 or hour > 23 or minute > 59 or second > 59 or ms > 999:
-            self.heard.damaged += 1
+            self.received.damaged += 1
             self._time_s = None
             return
         self._time_s = days * 86400.0 + hour * 3600 + minute * 60 + second + ms / 1000
@@ -141,9 +141,9 @@ class WitFramer:
 
     def _pair(self) -> None:
         if self._time_s is None:
-            self.heard.skipped += 1  # without a time it is no sample
+            self.received.skipped += 1  # without a time it is no sample
         elif self._force is not None and self._rate is not None:
-            self.heard.rows.append((self._time_s, *self._rate, *self._force))
+            self.received.rows.append((self._time_s, *self._rate, *self._force))
             self._force = self._rate = None
             self._is_sent = True
 
@@ -178,7 +178,7 @@ def scaled(numbers: Sequence[int], unit: float) -> tuple[float, ...]:
 
 
 class WitMotion:
-    """The `SensorProtocol` of a WitMotion sensor. What it is told is forgotten when it is switched off.
+    """The `SensorProtocol` of a WitMotion sensor. What it is reported is forgotten when it is switched off.
 
     Parameters
     ----------
@@ -196,7 +196,7 @@ class WitMotion:
     def __init__(self, rate_hz: float | None = None) -> None:
         if rate_hz is not None and rate_hz not in RATES.values():
             raise ValueError(f"rate_hz is {rate_hz}, expected one of {sorted(RATES.values())}")
-        self._wanted_hz = rate_hz
+        self._required_hz = rate_hz
 
     def framer(self, info: SourceInfo) -> Framer:
         return WitFramer()
@@ -208,14 +208,14 @@ class WitMotion:
         framer = WitFramer()
         channel.write(UNLOCK)
         channel.write(writing(CONTENT_AT, CONTENT))
-        if self._wanted_hz is not None:
-            channel.write(writing(RATE_AT, next(code for code, hz in RATES.items() if hz == self._wanted_hz)))
+        if self._required_hz is not None:
+            channel.write(writing(RATE_AT, next(code for code, hz in RATES.items() if hz == self._required_hz)))
         number = (_registers(channel, framer, NUMBER_AT) + _registers(channel, framer, NUMBER_AT + 4)[:4]).strip(b"\0 ")
         code = _registers(channel, framer, RATE_AT)[:1]
         rate_hz = RATES.get(code[0]) if code else None
-        listen(channel, framer, lambda heard: b"enough" if len(heard.rows) >= ENOUGH_ROWS else b"", SAYS_S)
-        if not framer.heard.rows:
-            raise _refusal(channel.place, is_heard=framer.heard.skipped > 0)
+        listen(channel, framer, lambda received: b"enough" if len(received.rows) >= ENOUGH_ROWS else b"", STATES_S)
+        if not framer.received.rows:
+            raise _refusal(channel.place, is_received=framer.received.skipped > 0)
         serial = number.decode("ascii", "replace") if number.isalnum() else ""
         sensor = serial or channel.serial or channel.place
         settings = {"rate_hz": rate_hz} if rate_hz else {}
@@ -225,12 +225,12 @@ class WitMotion:
 
 def _registers(channel: Channel, framer: WitFramer, first: int) -> bytes:
     """Eight bytes of four registers from `first` on; empty where the sensor does not answer."""
-    framer.heard.replies.clear()
+    framer.received.replies.clear()
     return ask(channel, framer, writing(READ_AT, first), lambda _reply: True, ANSWERS_S)
 
 
-def _refusal(place: str, is_heard: bool) -> SourceRefusedError:
-    if is_heard:
+def _refusal(place: str, is_received: bool) -> SourceRefusedError:
+    if is_received:
         return SourceRefusedError(
             "The sensor at {place} sends no time, so lost samples would go unnoticed",
             "Switch on its time output with the manufacturer's program",

@@ -1,8 +1,8 @@
 """WitMotion's sensors with Bluetooth LE 5: frames of twenty bytes in notifications, without time, counter or checksum.
 
 Source: WIT's manual of its Bluetooth 5.0 protocol: `55 61`, then acceleration, angular rate and angles, three numbers
-each, scaled as by cable (`witmotion.py`). Nothing tells when a sample was taken: `clocks/arrival_clock.py`.
-Samples that are lost singly are not seen, and every recording says so. Not tried on hardware.
+each, scaled as by cable (`witmotion.py`). Nothing gives when a sample was taken: `clocks/arrival_clock.py`.
+Samples that are lost singly are not seen, and every recording reports it. Not tried on hardware.
 """
 
 import re
@@ -20,13 +20,13 @@ from devices.clocks.live_clock import LiveClock
 from devices.drivers.witmotion import FORCE_UNIT, RATE_AT, RATE_UNIT, RATES, UNLOCK, scaled, writing
 from devices.live import Keep, SensorDetails, SourceLostError, SourceRefusedError
 from devices.source import SourceInfo
-from devices.stream import Heard
+from devices.stream import Received
 from devices.transport.bluetooth import Announced, BluetoothLink, Radio
 from devices.transport.channels import READ_S
 from devices.transport.notifications import NotificationFrames, framed
 
 DRIVER, VERSION = "witmotion-ble", "1"
-MODEL = "WitMotion BLE, losses not seen"  # as it stands with every recording and in every report
+MODEL = "WitMotion BLE, losses not seen"  # as it is with every recording and in every report
 UUID = "0000{:04x}-0000-1000-8000-00805f9a34fb"  # its own base: not the Bluetooth SIG's, which ends in 9b34fb
 SERVICE, MEASURED, COMMANDS = 0xFFE5, 0xFFE4, 0xFFE9
 NAME = re.compile(r"B?WT\d{2}")  # WT901BLE68, WT9011DCL-BT50, BWT901BLE5.0
@@ -34,7 +34,7 @@ EMULATED = "WT00 EMULATED"  # the name of our own emulator
 FRAME = Struct("<BB9h")
 HEAD, DATA = 0x55, 0x61
 RATE_HZ = 100.0
-SAYS_S = 3.0
+STATES_S = 3.0
 MOST_WAITING = 6000  # notifications that nobody fetched: a minute
 
 
@@ -52,7 +52,7 @@ class WitBleFramer:
     """See `devices.stream.Framer`. A notification holds whole frames."""
 
     def __init__(self, info: SourceInfo) -> None:
-        self.heard = Heard()
+        self.received = Received()
         self._frames, self._damaged = NotificationFrames({MEASURED}), 0
         rate_hz = info.settings.get("rate_hz")
         self._clock = ArrivalClock(rate_hz if isinstance(rate_hz, float) and rate_hz > 0 else RATE_HZ)
@@ -69,17 +69,17 @@ class WitBleFramer:
     def _take(self, payload: bytes, host_s: float) -> None:
         for at in range(0, len(payload), FRAME.size):
             if len(payload) - at < FRAME.size or payload[at] != HEAD:
-                self.heard.damaged += 1
+                self.received.damaged += 1
                 return
             _, kind, *numbers = FRAME.unpack_from(payload, at)
             if kind != DATA:
-                self.heard.skipped += 1
+                self.received.skipped += 1
                 continue
             rate, force = scaled(numbers[3:6], RATE_UNIT), scaled(numbers[:3], FORCE_UNIT)
-            self.heard.rows.append((self._clock.take(host_s), *rate, *force))
+            self.received.rows.append((self._clock.take(host_s), *rate, *force))
 
     def _count_damaged(self) -> None:
-        self.heard.damaged += self._frames.damaged - self._damaged
+        self.received.damaged += self._frames.damaged - self._damaged
         self._damaged = self._frames.damaged
 
 
@@ -98,7 +98,7 @@ class WitBleSource:
     Parameters
     ----------
     rate_hz
-        One of `devices.drivers.witmotion.RATES`; what it is told is forgotten when it is switched off.
+        One of `devices.drivers.witmotion.RATES`; what it is reported is forgotten when it is switched off.
 
     Raises
     ------
@@ -141,7 +141,7 @@ class WitBleSource:
                 "{sensor} does not respond", "Switch it on, and bring it closer", sensor=self.name
             ) from problem
         self._arrived.clear()
-        self._radio.wait(self._arrived, SAYS_S)
+        self._radio.wait(self._arrived, STATES_S)
         if not self._notified:
             self.close()
             raise SourceRefusedError(
@@ -177,7 +177,7 @@ class WitBleSource:
         keep(data)
         now_s = self._radio.now_ns() / 1e9
         framer.feed(data, now_s)
-        rows, framer.heard.rows = np.array(framer.heard.rows, dtype=float), []
+        rows, framer.received.rows = np.array(framer.received.rows, dtype=float), []
         if not len(rows):
             return ()
         stamps_s = self._clock.stamp(rows[:, 0], now_s)

@@ -1,4 +1,4 @@
-"""x-io x-IMU3: messages end with a line feed; JSON, text or binary, told apart by their first byte.
+"""x-io x-IMU3: messages end with a line feed; JSON, text or binary, distinguished by their first byte.
 
 Source: x-IMU3 User Manual, x-io Technologies, chapters on commands and data messages. There is no checksum, so what no
 sensor of this kind can measure counts as damaged.
@@ -11,7 +11,7 @@ from struct import Struct
 
 from devices.live import SensorDetails, SourceRefusedError
 from devices.source import DecodedSensor, SourceInfo
-from devices.stream import Framer, Heard, ask, decoded
+from devices.stream import Framer, Received, ask, decoded
 from devices.transport.channels import Channel
 
 DRIVER, VERSION, MODEL = "ximu3", "1", "x-IMU3"
@@ -86,9 +86,9 @@ class Ximu3Framer:
     """The `Framer` of a stream of messages."""
 
     def __init__(self) -> None:
-        self.heard = Heard()
+        self.received = Received()
         self._rest = b""
-        self._is_cut = True  # whoever joins a stream hears the end of a message first
+        self._is_cut = True  # whoever joins a stream receives the end of a message first
         self._letters = {ord("I"): self._inertial, ord("Q"): self._quaternion, ord("B"): self._battery}
 
     def feed(self, data: bytes, host_s: float) -> None:
@@ -99,10 +99,10 @@ class Ximu3Framer:
                 self._take(message)
             except DamagedError:
                 if not self._is_cut:
-                    self.heard.damaged += 1
+                    self.received.damaged += 1
             self._is_cut = False
         if len(self._rest) > MOST_MESSAGE:
-            self.heard.damaged += not self._is_cut
+            self.received.damaged += not self._is_cut
             self._rest, self._is_cut = b"", True
 
     def flush(self) -> None:
@@ -118,13 +118,13 @@ class Ximu3Framer:
         letter = first & 0x7F
         if not ord("A") <= letter <= ord("Z"):
             if message[:1] == b"^":  # of a sensor behind this one
-                self.heard.skipped += 1
+                self.received.skipped += 1
                 return
             raise DamagedError
         if take := self._letters.get(letter):
             take(unstuffed(message))
         elif first & 0x80 or message[1:2] == b",":
-            self.heard.skipped += 1
+            self.received.skipped += 1
         else:
             raise DamagedError
 
@@ -135,27 +135,27 @@ class Ximu3Framer:
             raise DamagedError
         if not (-heavy < ax < heavy and -heavy < ay < heavy and -heavy < az < heavy):
             raise DamagedError
-        self.heard.rows.append((us / 1e6, gx * RAD, gy * RAD, gz * RAD, ax * G, ay * G, az * G))
+        self.received.rows.append((us / 1e6, gx * RAD, gy * RAD, gz * RAD, ax * G, ay * G, az * G))
 
     def _quaternion(self, message: bytes) -> None:
         us, w, x, y, z = numbers_of(message, QUATERNION, 4)
         if not 0.9 < w * w + x * x + y * y + z * z < 1.1:
             raise DamagedError
-        self.heard.orientations.append((us / 1e6, w, x, y, z))
+        self.received.orientations.append((us / 1e6, w, x, y, z))
 
     def _battery(self, message: bytes) -> None:
         percent = numbers_of(message, BATTERY, 3)[1]
         if not 0.0 <= percent <= 101.0:
             raise DamagedError
-        self.heard.battery = min(percent / 100.0, 1.0)
+        self.received.battery = min(percent / 100.0, 1.0)
 
     def _reply(self, message: bytes) -> None:
         try:
             json.loads(message)
         except (ValueError, RecursionError) as problem:
             raise DamagedError from problem
-        if len(self.heard.replies) < MOST_REPLIES:
-            self.heard.replies.append(message.strip())
+        if len(self.received.replies) < MOST_REPLIES:
+            self.received.replies.append(message.strip())
 
 
 def read_file(path: Path) -> DecodedSensor:
@@ -166,11 +166,11 @@ def read_file(path: Path) -> DecodedSensor:
     OSError
         The file cannot be read.
     """
-    heard = heard_in(path)
-    return decoded(path.stem, heard, [row[0] for row in heard.rows])
+    received = received_in(path)
+    return decoded(path.stem, received, [row[0] for row in received.rows])
 
 
-def heard_in(path: Path) -> Heard:
+def received_in(path: Path) -> Received:
     """All messages of such a file, in its order.
 
     Raises
@@ -182,11 +182,11 @@ def heard_in(path: Path) -> Heard:
     with path.open("rb") as file:
         while data := file.read(PIECE):
             framer.feed(data, 0.0)
-    return framer.heard
+    return framer.received
 
 
 class Ximu3:
-    """The `SensorProtocol` of an x-IMU3. It is left as its owner set it up, unless a rate is wanted.
+    """The `SensorProtocol` of an x-IMU3. It is left as its owner set it up, unless a rate is required.
 
     Parameters
     ----------
@@ -197,7 +197,7 @@ class Ximu3:
     driver, version = DRIVER, VERSION
 
     def __init__(self, rate_hz: float | None = None) -> None:
-        self._wanted_hz = rate_hz
+        self._required_hz = rate_hz
 
     def framer(self, info: SourceInfo) -> Framer:
         return Ximu3Framer()
@@ -208,8 +208,8 @@ class Ximu3:
     def greet(self, channel: Channel) -> tuple[SourceInfo, SensorDetails]:
         framer = Ximu3Framer()
         ping = self._ping(channel, framer)
-        if self._wanted_hz is not None:
-            self._set_up(channel, framer, self._wanted_hz)
+        if self._required_hz is not None:
+            self._set_up(channel, framer, self._required_hz)
         divisor = _asked(channel, framer, "inertial_message_rate_divisor")
         rate_hz = BASE_HZ / divisor if isinstance(divisor, int | float) and divisor >= 1 else None
         firmware = _asked(channel, framer, "firmware_version")
@@ -230,7 +230,7 @@ class Ximu3:
         for _ in range(PINGS):
             if answer := ask(channel, framer, command("ping"), _answers("ping"), PING_S):
                 return json.loads(answer)["ping"]
-        if not framer.heard.rows:
+        if not framer.received.rows:
             raise SourceRefusedError(
                 "No x-IMU3 responds at {place}", "Check that it is switched on, then search again", place=channel.place
             )
@@ -238,8 +238,12 @@ class Ximu3:
 
     def _set_up(self, channel: Channel, framer: Ximu3Framer, rate_hz: float) -> None:
         divisor = round(BASE_HZ / rate_hz)
-        wanted = {"inertial_message_rate_divisor": divisor, "ahrs_message_rate_divisor": 0, "binary_mode_enabled": True}
-        for key, value in wanted.items():
+        required = {
+            "inertial_message_rate_divisor": divisor,
+            "ahrs_message_rate_divisor": 0,
+            "binary_mode_enabled": True,
+        }
+        for key, value in required.items():
             ask(channel, framer, command(key, value), _answers(key), ASK_S)
         ask(channel, framer, command("apply"), _answers("apply"), ASK_S)
 
@@ -265,7 +269,7 @@ class _Answers:
 
 
 def _asked(channel: Channel, framer: Ximu3Framer, key: str) -> object:
-    framer.heard.replies.clear()
+    framer.received.replies.clear()
     answer = ask(channel, framer, command(key), _answers(key), ASK_S)
     return json.loads(answer)[key] if answer else None
 

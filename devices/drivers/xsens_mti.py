@@ -1,8 +1,8 @@
 """Driver of Xsens MTi sensors: how they are set up, and what their messages hold.
 
 Samples are put in order and stamped by the sensor's fine clock, of messages with rate and acceleration only: those with
-what the satellites told come late and carry an earlier time. A rate is the mean over the interval before its stamp, for
-it is the rotation of that interval (item 8030) divided by its length, as recorded streams show.
+what the satellites reported come late and carry an earlier time. A rate is the mean over the interval before its
+stamp, for it is the rotation of that interval (item 8030) divided by its length, as recorded streams show.
 """
 
 import struct
@@ -25,7 +25,7 @@ from devices.drivers.xbus import (
 )
 from devices.live import SensorDetails, SourceRefusedError
 from devices.source import SourceInfo
-from devices.stream import Heard, Row, ask
+from devices.stream import Received, Row, ask
 from devices.transport.channels import Channel
 
 DRIVER, VERSION = "xsens-mti", "1"
@@ -35,7 +35,7 @@ ORIENTED_HZ = 170  # so far the orientation fits beside it, 66 bytes in all
 FINE_HZ, FINE_BITS, COUNTER_BITS = 10_000.0, 32, 16
 FINE_TURN_S = 2**FINE_BITS / FINE_HZ
 ANSWERS_S = 0.5
-TRIES = 4  # a sensor that is measuring hears the first request late
+TRIES = 4  # a sensor that is measuring receives the first request late
 # one that was left in its configuration is silent; this asks for its number
 KNOCK = message(Mid.DEVICE_ID, b""), bytes([0xFA, 0xFF, Mid.DEVICE_ID + 1])
 ALWAYS = 0xFFFF  # in place of a frequency: with every message
@@ -50,7 +50,7 @@ class MtiFramer:
     """See `devices.stream.Framer`. `replies` are the other messages: identifier and data."""
 
     def __init__(self, info: SourceInfo) -> None:
-        self.heard = Heard()
+        self.received = Received()
         self._framer = XbusFramer()
         self._damaged = 0
         self._host_s = 0.0
@@ -69,46 +69,46 @@ class MtiFramer:
         self._take(self._framer.flush())
 
     def _take(self, messages: Sequence[Message]) -> None:
-        heard = self.heard
+        received = self.received
         for one in messages:
             if one.mid == Mid.MT_DATA2:
                 self._sample(one.items)
             else:
-                heard.replies.append(bytes([one.mid]) + one.data)
-        heard.damaged += self._framer.damaged - self._damaged
+                received.replies.append(bytes([one.mid]) + one.data)
+        received.damaged += self._framer.damaged - self._damaged
         self._damaged = self._framer.damaged
 
     def _sample(self, items: Items) -> None:
         here = self._where(items)
         rate, force = _values(items, here.rate), _values(items, here.acceleration)
         if not rate or not force:
-            self.heard.skipped += 1  # what the satellites told
+            self.received.skipped += 1  # what the satellites reported
             return
         if not _is_meant(rate, MOST_RAD_S) or not _is_meant(force, MOST_M_S2):
-            self.heard.damaged += 1  # a checksum of 8 bits is right by chance one time in 256
+            self.received.damaged += 1  # a checksum of 8 bits is right by chance one time in 256
             return
         if fine := _values(items, here.fine):
             device_s = self._fine.ticks(int(fine[0]), self._host_s) / FINE_HZ
-            if self._turns_s is None:  # so that the clock goes on after a cut, although it may have begun anew
+            if self._turns_s is None:  # so that the clock goes on after a cut, although it may have begun again
                 self._turns_s = round((self._host_s - device_s) / FINE_TURN_S) * FINE_TURN_S
             device_s += self._turns_s
         elif (counter := _values(items, here.counter)) and self._rate_hz:
             device_s = self._counter.ticks(int(counter[0]), self._host_s) / self._rate_hz
         else:
-            self.heard.damaged += 1
+            self.received.damaged += 1
             return
-        self.heard.rows.append((device_s, *rate, *force))
+        self.received.rows.append((device_s, *rate, *force))
         if q := _values(items, here.orientation):
             is_down = here.orientation & AXES_MASK == NORTH_EAST_DOWN
-            self.heard.orientations.append((device_s, *(upward(q) if is_down else q)))
+            self.received.orientations.append((device_s, *(upward(q) if is_down else q)))
 
     def _where(self, items: Items) -> "_Where":
-        """Under which identifiers a message carries what is wanted; most messages carry the same."""
+        """Under which identifiers a message carries what is required; most messages carry the same."""
         here = self._layouts.get(key := tuple(items))
         if here is None:
             if len(self._layouts) > MOST_LAYOUTS:
                 self._layouts.clear()
-            here = self._layouts[key] = _Where(*(_whole(items, kind) for kind in WANTED))
+            here = self._layouts[key] = _Where(*(_whole(items, kind) for kind in REQUIRED))
         return here
 
 
@@ -122,7 +122,7 @@ class _Where(NamedTuple):
     orientation: int
 
 
-WANTED = (Item.FINE_TIME, Item.COUNTER, Item.RATE, Item.ACCELERATION, Item.QUATERNION)
+REQUIRED = (Item.FINE_TIME, Item.COUNTER, Item.RATE, Item.ACCELERATION, Item.QUATERNION)
 
 
 def _whole(items: Items, kind: int) -> int:
@@ -150,13 +150,13 @@ class XsensMti:
     Parameters
     ----------
     rate_hz
-        Of all that is wanted; None: as its owner set it, but `RATE_HZ` at least and `FASTEST_HZ` at most.
+        Of all that is required; None: as its owner set it, but `RATE_HZ` at least and `FASTEST_HZ` at most.
     """
 
     driver, version = DRIVER, VERSION
 
     def __init__(self, rate_hz: float | None = None) -> None:
-        self._wanted_hz = rate_hz
+        self._required_hz = rate_hz
 
     def framer(self, info: SourceInfo) -> MtiFramer:
         return MtiFramer(info)
@@ -188,7 +188,7 @@ class XsensMti:
 
     def _set_up(self, channel: Channel, framer: MtiFramer) -> float:
         """Ask for what is needed, with the orientation where there is one; the rate that the sensor chose, or 0."""
-        rate = round(self._wanted_hz or _owned_hz(channel, framer))
+        rate = round(self._required_hz or _owned_hz(channel, framer))
         for hz in dict.fromkeys((rate, RATE_HZ)):  # some models have no other
             needed = [(Item.COUNTER, ALWAYS), (Item.FINE_TIME, ALWAYS), (Item.ACCELERATION, hz), (Item.RATE, hz)]
             for orientation in ([(Item.QUATERNION, hz)], []) if hz <= ORIENTED_HZ else ([],):
@@ -199,15 +199,15 @@ class XsensMti:
 
 
 def _owned_hz(channel: Channel, framer: MtiFramer) -> int:
-    """At what rate its owner let it tell how it moves, where that is of use; else the nearest that is."""
+    """At what rate its owner let it report how it moves, where that is of use; else the nearest that is."""
     motion = [hz for identifier, hz in _settings(channel, framer, ()).items() if identifier & ITEM_MASK in MOTION]
     return min(max([RATE_HZ, *motion]), FASTEST_HZ)
 
 
-def _settings(channel: Channel, framer: MtiFramer, wanted: Sequence[tuple[int, int]]) -> dict[int, int]:
-    """What it sends, and how often, once it was told what is wanted; as it is where that is nothing."""
-    framer.heard.replies.clear()
-    answer = _asked(channel, framer, Mid.OUTPUT, b"".join(SETTING.pack(*setting) for setting in wanted))[1:]
+def _settings(channel: Channel, framer: MtiFramer, required: Sequence[tuple[int, int]]) -> dict[int, int]:
+    """What it sends, and how often, once it was given what is required; as it is where that is nothing."""
+    framer.received.replies.clear()
+    answer = _asked(channel, framer, Mid.OUTPUT, b"".join(SETTING.pack(*setting) for setting in required))[1:]
     return dict(SETTING.iter_unpack(answer[: len(answer) // SETTING.size * SETTING.size]))
 
 

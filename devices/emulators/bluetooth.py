@@ -1,6 +1,6 @@
 """Air that is not there: links to emulated sensors, behind the interface that bleak has for backends.
 
-What a sensor is to its link stands here once; Bumble's virtual radio (tests) carries the same sensors.
+What a sensor is to its link is here once; Bumble's virtual radio (tests) carries the same sensors.
 """
 
 import asyncio
@@ -131,7 +131,7 @@ class FakeClient(UnpairedClient):
             timeout=more.get("timeout", 10.0),
         )
         self._sensor = self.AIR.sensors[self.address]
-        self._heard: dict[int, Callable[[bytearray], None]] = {}
+        self._received: dict[int, Callable[[bytearray], None]] = {}
         self._is_connected = False
         self._task: asyncio.Task[None] | None = None
         self._operations = 0
@@ -186,8 +186,8 @@ class FakeClient(UnpairedClient):
                 loop.call_at(self._last_s, self._arrive, characteristic, bytearray(data))
 
     def _arrive(self, characteristic: int, data: bytearray) -> None:
-        if self._is_connected and characteristic in self._heard:
-            self._heard[characteristic](data)
+        if self._is_connected and characteristic in self._received:
+            self._received[characteristic](data)
 
     async def _operate(self) -> None:
         await asyncio.sleep(OPERATION_S)
@@ -211,12 +211,12 @@ class FakeClient(UnpairedClient):
         self, characteristic: BleakGATTCharacteristic, callback: Callable[[bytearray], None], **kwargs: Any
     ) -> None:
         await self._operate()
-        self._heard[characteristic.handle] = callback
+        self._received[characteristic.handle] = callback
         self._sensor.subscribed.add(characteristic.handle)
 
     async def stop_notify(self, characteristic: BleakGATTCharacteristic) -> None:
         await self._operate()
-        self._heard.pop(characteristic.handle, None)
+        self._received.pop(characteristic.handle, None)
         self._sensor.subscribed.discard(characteristic.handle)
 
 

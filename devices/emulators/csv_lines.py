@@ -26,9 +26,9 @@ class LineVoice:
 
     def say(self) -> bytes:
         due = int((self._now_ns() - self._begin_ns) / 1e9 * self.rate_hz)
-        said = b"".join(self.sample(number) for number in range(self._sent, due))
+        stated = b"".join(self.sample(number) for number in range(self._sent, due))
         self._sent = max(self._sent, due)
-        return said
+        return stated
 
     def sample(self, number: int) -> bytes:
         """The line of one sample."""

@@ -76,7 +76,7 @@ class EmulatedDot:
         faults: DotFaults | None = None,
         *,
         skew: float = 0.0,
-        says_so: bool = True,
+        states_so: bool = True,
     ) -> None:
         self.mac = bytes([0xD4, 0x22, 0xCD, 0x00, 0x00, number + 1])
         self.local_name = "Movella DOT"
@@ -85,7 +85,7 @@ class EmulatedDot:
         self.faults = faults or DotFaults()
         self.chance = np.random.default_rng(number)
         self._motion, self._now_ns = motion, now_ns
-        self._code = b"EMUDOT" if says_so else b"XS-T02"
+        self._code = b"EMUDOT" if states_so else b"XS-T02"
         self._own = DotClock(now_ns() - int(self.chance.integers(10**9, 4 * 10**12)), skew)
         self._common: DotClock | None = None  # the root's as it was when they were synchronised
         self.settings = bytearray(struct.pack("<24xHB5x", 30, 0))
@@ -112,7 +112,7 @@ class EmulatedDot:
             dot._peers = dots
 
     def restart(self) -> None:
-        """It was switched off and on: it does nothing, and its clock begins anew. What it recorded is there."""
+        """It was switched off and on: it does nothing, and its clock begins again. What it recorded is there."""
         self.memory.end_recording()
         self.is_streaming, self._common, self._sync_root = False, None, None
         self._own = replace(self._own, power_on_ns=self._now_ns())
@@ -165,7 +165,7 @@ class EmulatedDot:
         self._sent_of_file = 0
         self._end_synchronising()
         if self.is_streaming:
-            self._streamed()  # what was sent meanwhile nobody heard
+            self._streamed()  # what was sent meanwhile nobody received
         self.is_up = True
 
     def disconnected(self) -> None:
@@ -211,14 +211,14 @@ class EmulatedDot:
             if data[0] == 2:
                 self._synchronise(data[2:-1])
             else:
-                self._tell_answer(self.memory.answered(data[2:-1], is_streaming=self.is_streaming))
+                self._show_answer(self.memory.answered(data[2:-1], is_streaming=self.is_streaming))
 
     def notifications(self) -> list[Notification]:
         """What is due now."""
-        said = self._streamed() if self.is_streaming else []
-        said += [(0x7003, notice + bytes(160 - len(notice))) for notice in [*self._notices, *self.memory.due()]]
+        stated = self._streamed() if self.is_streaming else []
+        stated += [(0x7003, notice + bytes(160 - len(notice))) for notice in [*self._notices, *self.memory.due()]]
         self._notices.clear()
-        return [one for one in said if one[0] in self.subscribed] if self.is_up else []
+        return [one for one in stated if one[0] in self.subscribed] if self.is_up else []
 
     def _set(self, data: bytes) -> None:
         if data[0] & 0x01:
@@ -254,7 +254,7 @@ class EmulatedDot:
         return ticks, tuple(np.array(self._motion(taken_ns), dtype=np.float32).tolist()), taken_ns
 
     def _streamed(self) -> list[Notification]:
-        said: list[Notification] = []
+        stated: list[Notification] = []
         characteristic, size = MODE_SIZES[self.mode]
         last = self._grid(self._now_ns())
         for number in range(self._next, last + 1):
@@ -267,9 +267,9 @@ class EmulatedDot:
                 payload = payload[:20]
             if self.chance.random() < self.faults.loss:
                 continue
-            said += [(characteristic, payload)] * (1 + (self.chance.random() < self.faults.doubles))
+            stated += [(characteristic, payload)] * (1 + (self.chance.random() < self.faults.doubles))
         self._next = max(self._next, last + 1)
-        return said
+        return stated
 
     # synchronising
 
@@ -291,19 +291,19 @@ class EmulatedDot:
         result = self.faults.sync_results.pop(0) if self.faults.sync_results else 0
         if not was_together:
             result = 0x09
-        self._tell_answer(message(2, bytes([3, result, 1, *self._sync_root] if self.faults.echoes else [3, result])))
+        self._show_answer(message(2, bytes([3, result, 1, *self._sync_root] if self.faults.echoes else [3, result])))
         self._sync_root = None
         if result == 0 and root is not None:
             drift_us = float(self.chance.uniform(-100, 100)) + self.faults.stale_s * 1e6
             self._common = replace(root._own, drift_us=drift_us)
             self._must_read_first = True
 
-    def _tell_answer(self, answer: bytes) -> None:
+    def _show_answer(self, answer: bytes) -> None:
         self._answer_before, self._answer = self._answer, answer
 
     @property
     def began_ns(self) -> int:
-        """When it was told to synchronise."""
+        """When it was given to synchronise."""
         return self._sync_from_ns
 
     @property

@@ -32,11 +32,11 @@ class DotFaults:
     stale_answers: int = 0
     """So many readings of an answer give what was answered before."""
     ends_after_s: float = 0.0
-    """So long it writes what it holds, once told to end a recording."""
+    """So long it writes what it holds, once asked to end a recording."""
     full_by_notice: bool = False
-    """Whether only a notice says that its memory is full."""
+    """Whether only a notice states that its memory is full."""
     echoes: bool = False
-    """Whether the result of synchronising is told with what it answers: printed both ways."""
+    """Whether the result of synchronising is reported with what it answers: printed both ways."""
     drops_after: list[int] = field(default_factory=list)
     """After so many operations each the link is lost."""
     drops_export_after: list[int] = field(default_factory=list)

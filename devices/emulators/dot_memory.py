@@ -66,12 +66,12 @@ class EmulatedMemory:
         self.erased: list[EmulatedFile] = []
         self.room = MOST_SAMPLES
         self.unreadable: set[int] = set()
-        self.unheard: list[int] = []
+        self.not_received: list[int] = []
         self.exported = self.cut_recordings = 0
         self._notices: list[bytes] = []
         self._record_utc_s = self._record_from = self._timer_s = 0
         self._ends_ns: int | None = None
-        self._told_end_ns = 0
+        self._reported_end_ns = 0
         self._export: list[bytes] = []
         self._exported: EmulatedFile | None = None
 
@@ -125,8 +125,8 @@ class EmulatedMemory:
                 self._record_utc_s, self._timer_s = struct.unpack("<IH", data)
                 self._record_from, self.state = self._grid(self._now_ns()) + 1, RECORDING
             case 0x41 if self._ends_ns is None and self.state == RECORDING:
-                self._told_end_ns = self._now_ns()
-                self._ends_ns = self._told_end_ns + round(self._faults.ends_after_s * 1e9)
+                self._reported_end_ns = self._now_ns()
+                self._ends_ns = self._reported_end_ns + round(self._faults.ends_after_s * 1e9)
                 self._look_for_end()
             case 0x41:
                 pass
@@ -135,7 +135,7 @@ class EmulatedMemory:
                 self._notices += [message(1, b"\x51" + whole[at : at + 128]) for at in range(0, len(whole), 128)]
                 self._notices.append(message(1, b"\x52"))
             case 0x60:
-                self._notices += self._told_of(data[0])
+                self._notices += self._reported_of(data[0])
             case 0x74:
                 return 0 if data == bytes([0, 1, 7, 8, 10]) else 0x03
             case 0x70:
@@ -159,12 +159,12 @@ class EmulatedMemory:
                 return 0x03
         return 0
 
-    def _told_of(self, number: int) -> list[bytes]:
+    def _reported_of(self, number: int) -> list[bytes]:
         if not 0 < number <= len(self.files):
             return [message(1, b"\x63")]
         file = self.files[number - 1]
-        told = struct.pack("<4sIHIH112x", bytes.fromhex("6F636552"), 128, 0x0100, file.utc_s, file.timer_s)
-        return [message(1, b"\x61" + told), message(1, b"\x62")]
+        reported = struct.pack("<4sIHIH112x", bytes.fromhex("6F636552"), 128, 0x0100, file.utc_s, file.timer_s)
+        return [message(1, b"\x61" + reported), message(1, b"\x62")]
 
     def _flash(self) -> bytes:
         """Its header, whose bytes may look like the beginnings of files, and a byte for each piece of its memory."""
@@ -177,8 +177,8 @@ class EmulatedMemory:
         file = self._exported
         self._export = []
         for number in range(first, len(file.ticks)):
-            if number in self.unheard:
-                self.unheard.remove(number)
+            if number in self.not_received:
+                self.not_received.remove(number)
                 continue
             if number in self.unreadable or self._chance.random() < self._faults.damaged:
                 self._export.append(message(1, b"\x76" + struct.pack("<I", number) + bytes(46)))
@@ -205,10 +205,10 @@ class EmulatedMemory:
             self._notices.append(message(1, b"\x41"))
 
     def end_recording(self) -> None:
-        """What was recorded is a file, up to now or to when it was told to end."""
+        """What was recorded is a file, up to now or to when it was given to end."""
         if self.state != RECORDING:
             return
-        end_ns = self._now_ns() if self._ends_ns is None else self._told_end_ns
+        end_ns = self._now_ns() if self._ends_ns is None else self._reported_end_ns
         last = min(self._grid(end_ns), self._record_from + self.room - self._used())
         samples = [self._measured(number) for number in range(self._record_from, last + 1)]
         ticks, values, taken_s = (

@@ -58,11 +58,13 @@ class WornDot:
 
 
 def worn_air(
-    patient: EmulatedPatient, count: int, now_ns: Callable[[], int] = host_time_ns, *, says_so: bool = True
+    patient: EmulatedPatient, count: int, now_ns: Callable[[], int] = host_time_ns, *, states_so: bool = True
 ) -> tuple[Air, list[EmulatedDot]]:
     """Air with so many DOTs, worn at the sites in their order; their clocks are askew, their links unlike."""
     dots = [
-        EmulatedDot(number, WornDot(patient, site, 60.0), now_ns, skew=(-1) ** number * 2e-5 * number, says_so=says_so)
+        EmulatedDot(
+            number, WornDot(patient, site, 60.0), now_ns, skew=(-1) ** number * 2e-5 * number, states_so=states_so
+        )
         for number, site in enumerate(list(Site)[:count])
     ]
     EmulatedDot.meet(dots)

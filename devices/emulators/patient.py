@@ -1,6 +1,6 @@
 """A patient who is not there wears emulated sensors, and does what is asked.
 
-The motion is that of `simulation/walker.py`; each sensor measures it whenever its own clock says so. The truth is
+The motion is that of `simulation/walker.py`; each sensor measures it whenever its own clock reports it. The truth is
 known.
 """
 
@@ -28,7 +28,7 @@ from devices.emulators.xsens_mti import MtiVoice
 from devices.simulation.walker import FreeMotion, Motion, SimulatedSession, Standing, Walk, WalkerSettings, simulate
 
 KINDS = ("ximu3", "witmotion", "csv", "xsens-mti", "shimmer3")
-AVERAGING, AVERAGED_OVER = frozenset({"xsens-mti"}), 6  # sensors that tell how far they turned since the last sample
+AVERAGING, AVERAGED_OVER = frozenset({"xsens-mti"}), 6  # sensors that report how far they turned since the last sample
 CONSENSYS_TICKS_HZ = 32_000  # it calls 102.4 Hz what others call 100, and 204.8 what they call 200
 FINE_HZ = 500.0  # of the table that sensors measure from: between its rows the motion is straight to a thousandth
 MOST_DEG_S, MOST_G, MOST_RAW = 1999.0, 15.9, 32767
@@ -70,7 +70,7 @@ class Clip:
 
 
 class EmulatedPatient:
-    """Stands, and performs the next recording of the kind that is asked for. One thread asks, any measure.
+    """Is, and performs the next recording of the kind that is asked for. One thread asks, any measure.
 
     Noise is added to each sample as a sensor of that rate has it; bias and scale are those of the walker.
     """
@@ -90,14 +90,14 @@ class EmulatedPatient:
 
     def ask(self, kind: RecordingKind) -> Clip:
         """Perform the next recording of this kind, once the present one has ended; then stand."""
-        wanted = next(one for one in self._waiting if one.kind is kind)
-        self._waiting.remove(wanted)
-        self._waiting.append(wanted)
+        required = next(one for one in self._waiting if one.kind is kind)
+        self._waiting.remove(required)
+        self._waiting.append(required)
         present = self.clips[-1]
         start_ns = self._now_ns()
         if present.recording.kind is not RecordingKind.STANDING:
             start_ns = max(start_ns, present.end_ns)
-        self.clips = [*self.clips, self._clip(wanted, start_ns)]  # others are looking at the old ones
+        self.clips = [*self.clips, self._clip(required, start_ns)]  # others are looking at the old ones
         return self.clips[-1]
 
     def measured(
@@ -141,8 +141,8 @@ class EmulatedSensor:
     ----------
     rate_hz
         As its owner set it, until a driver sets it to another.
-    says_so
-        Tells whoever asks that it is emulated, so that what is recorded of it counts as simulated.
+    states_so
+        Reports whoever asks that it is emulated, so that what is recorded of it counts as simulated.
 
     Attributes
     ----------
@@ -151,29 +151,29 @@ class EmulatedSensor:
     """
 
     def __init__(
-        self, patient: EmulatedPatient, kind: str, number: int, rate_hz: int = 100, *, says_so: bool = True
+        self, patient: EmulatedPatient, kind: str, number: int, rate_hz: int = 100, *, states_so: bool = True
     ) -> None:
         self.site = patient.sites[number % len(patient.sites)]
         self.sent: list[FloatArray] = []
         self.sent_ns: list[float] = []
         self._patient, self._kind, self._rate_hz = patient, kind, rate_hz
         self._chance = np.random.default_rng(number)
-        self.voice: EmulatedVoice = self._voice(number, says_so)
+        self.voice: EmulatedVoice = self._voice(number, states_so)
 
-    def _voice(self, number: int, says_so: bool) -> "EmulatedVoice":
+    def _voice(self, number: int, states_so: bool) -> "EmulatedVoice":
         rate_hz = self._rate_hz
         match self._kind:
             case "ximu3":
-                name = XIMU3 if says_so else "x-IMU3"
+                name = XIMU3 if states_so else "x-IMU3"
                 return Ximu3Voice(f"EMU{number + 1:05d}", self._in_degrees, rate_hz=rate_hz, name=name)
             case "witmotion":
                 return WitVoice(
-                    f"{number + 1:04d}", self._in_degrees, rate_hz=rate_hz, name=WITMOTION if says_so else "WT"
+                    f"{number + 1:04d}", self._in_degrees, rate_hz=rate_hz, name=WITMOTION if states_so else "WT"
                 )
             case "csv":
                 return LineVoice(self._in_degrees, rate_hz=rate_hz)
             case "xsens-mti":
-                product = XSENS_MTI if says_so else "MTi-3"
+                product = XSENS_MTI if states_so else "MTi-3"
                 return MtiVoice(
                     f"028000{number + 1:02X}",
                     lambda at: self._measured(at).tolist(),
@@ -183,7 +183,7 @@ class EmulatedSensor:
                 )
             case "shimmer3":
                 period = CONSENSYS_TICKS_HZ // rate_hz
-                name = f"{SHIMMER3 if says_so else 'Shimmer3'} {number + 1:04X}"
+                name = f"{SHIMMER3 if states_so else 'Shimmer3'} {number + 1:04X}"
                 return Shimmer3Voice(self._raw, period=period, name=name)
         raise ValueError(f"{self._kind} is none of {KINDS}")
 
@@ -227,7 +227,7 @@ RAW = (_uncalibrating(GYR_CALIBRATION, 100.0 * np.pi / 180), _uncalibrating(ACC_
 
 
 def _between(table: FloatArray, passed_ns: float) -> FloatArray:
-    """What a table (n, ...) says of a moment; it begins anew after its end."""
+    """What a table (n, ...) states of a moment; it begins again after its end."""
     at = passed_ns / 1e9 * FINE_HZ % (len(table) - 1)
     row = int(at)
     value: FloatArray = table[row] + (at - row) * (table[row + 1] - table[row])

@@ -22,7 +22,7 @@ Motion = Callable[[int], Sequence[int]]
 
 CHANNELS = bytes([BATTERY, *ACC, *GYR])
 BATTERY_RAW = 2600  # 3.79 V
-FIRST_TICKS = TURN - 4096  # its clock begins anew an eighth of a second after it was switched on
+FIRST_TICKS = TURN - 4096  # its clock begins again an eighth of a second after it was switched on
 ARGUMENTS = {  # bytes behind a command
     Command.SET_RATE: 2,
     Command.SET_SENSORS: 3,
@@ -77,9 +77,9 @@ class Shimmer3Voice:
         if not self.is_streaming:
             return b""
         due = int((self._now_ns() - self._begin_ns) / 1e9 * TICK_HZ / self.period)
-        said = b"".join(self.sample(number) for number in range(self._sent, due))
+        stated = b"".join(self.sample(number) for number in range(self._sent, due))
         self._sent = max(self._sent, due)
-        return said
+        return stated
 
     def sample(self, number: int) -> bytes:
         """The packet of one sample."""
@@ -90,17 +90,17 @@ class Shimmer3Voice:
 
     def hear(self, data: bytes) -> bytes:
         self._rest += data
-        said = b""
+        stated = b""
         while self._rest:
             command, count = self._rest[0], ARGUMENTS.get(self._rest[0], 0)
             if len(self._rest) <= count:
                 break
             arguments, self._rest = self._rest[1 : 1 + count], self._rest[1 + count :]
-            said += self._answer(command, arguments)
-        return said
+            stated += self._answer(command, arguments)
+        return stated
 
-    def _checked(self, said: bytes) -> bytes:
-        return said + checksum(said) if self.has_checksum else said
+    def _checked(self, stated: bytes) -> bytes:
+        return stated + checksum(stated) if self.has_checksum else stated
 
     def _answer(self, command: int, arguments: bytes) -> bytes:
         answer = b""

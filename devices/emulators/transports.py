@@ -15,7 +15,7 @@ PIECE = 4096
 
 
 class Voice(Protocol):
-    """What an emulated sensor says and hears."""
+    """What an emulated sensor states and receives."""
 
     def say(self) -> bytes:
         """All that is due by now."""
@@ -103,7 +103,7 @@ class TcpServer:
 
 
 class UdpSender:
-    """A sensor that sends datagrams to a port of this machine, and hears at one of its own."""
+    """A sensor that sends datagrams to a port of this machine, and receives at one of its own."""
 
     def __init__(self, to_port: int, address: str = "127.0.0.1") -> None:
         self._socket = socket.socket(socket.AF_INET, socket.SOCK_DGRAM)
@@ -162,8 +162,8 @@ class Emulation:
         answer = b""
         while not self._is_closing.is_set():
             with self._lock:
-                said = self.voice.say()  # also what nobody hears: its clock goes on
-                came = b"" if self._is_away else self.transport.exchange(answer + said)
+                stated = self.voice.say()  # also what nobody receives: its clock goes on
+                came = b"" if self._is_away else self.transport.exchange(answer + stated)
             answer = self.voice.hear(came) if came else b""
             if self._is_away:
                 self._is_closing.wait(POLL_S)

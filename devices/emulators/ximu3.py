@@ -90,17 +90,17 @@ class Ximu3Voice:
         if not self.rate_hz:
             return b""
         due = int((self._now_ns() - self._begin_ns) / 1e9 * self.rate_hz)
-        said = b"".join(self.sample(number) for number in range(self._sent, due))
+        stated = b"".join(self.sample(number) for number in range(self._sent, due))
         self._sent = max(self._sent, due)
-        return said
+        return stated
 
     def sample(self, number: int) -> bytes:
         """What is sent of one sample."""
         us, is_binary = self._first_us + round(number * 1e6 / self.rate_hz), bool(self.settings["binary_mode_enabled"])
-        said = message("I", us, self._motion(number), is_binary)
+        stated = message("I", us, self._motion(number), is_binary)
         if number % BATTERY_EVERY == 0:
-            said += message("B", us, (84.0, 3.9, 0.0), is_binary)
-        return said
+            stated += message("B", us, (84.0, 3.9, 0.0), is_binary)
+        return stated
 
     def hear(self, data: bytes) -> bytes:
         *commands, self._rest = (self._rest + data).split(END)

@@ -11,7 +11,7 @@ Motion = Callable[[int], Sequence[float]]
 """Rate in rad/s (3), force in m/s2 (3) and orientation (4) of the sample of this number."""
 
 FASTEST_HZ = 400
-FIRST_TICKS = 0xFFFF_FC00  # its fine time begins anew a tenth of a second after it was switched on
+FIRST_TICKS = 0xFFFF_FC00  # its fine time begins again a tenth of a second after it was switched on
 FIRMWARE = bytes([1, 8, 2])
 CANNOT = b"\x03"  # the answer to what it does not do
 
@@ -77,9 +77,9 @@ class MtiVoice:
 
     def say(self) -> bytes:
         due = int((self._now_ns() - self._begin_ns) / 1e9 * self.rate_hz)
-        said = b"".join(sample(self, number) for number in range(self._sent, due)) if self.is_measuring else b""
+        stated = b"".join(sample(self, number) for number in range(self._sent, due)) if self.is_measuring else b""
         self._sent = max(self._sent, due)
-        return said
+        return stated
 
     def hear(self, data: bytes) -> bytes:
         return b"".join(self._answer(one) for one in self._framer.feed(data))
@@ -104,11 +104,11 @@ class MtiVoice:
             case Mid.FIRMWARE:
                 answer = FIRMWARE + bytes(8)
             case Mid.OUTPUT if not self.is_measuring:
-                wanted = dict(SETTING.iter_unpack(one.data))
-                if Item.QUATERNION in wanted and not self._has_orientation:
+                required = dict(SETTING.iter_unpack(one.data))
+                if Item.QUATERNION in required and not self._has_orientation:
                     return message(Mid.ERROR, CANNOT)
-                if wanted:  # else it is asked only
-                    self.settings = {k: hz if hz == ALWAYS else min(hz, FASTEST_HZ) for k, hz in wanted.items()}
+                if required:  # else it is asked only
+                    self.settings = {k: hz if hz == ALWAYS else min(hz, FASTEST_HZ) for k, hz in required.items()}
                     self._begin_ns, self._sent = self._now_ns(), 0
                 answer = b"".join(SETTING.pack(*setting) for setting in self.settings.items())
             case _:

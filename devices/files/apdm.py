@@ -108,7 +108,7 @@ def read_apdm(path: Path) -> ApdmFile:
 
 
 def apdm_trial(files: Sequence[Path], _rate_hz: float | None = None) -> ImportedTrial:
-    """The sensors of one trial, all in one file; they share its stamps, which tell the rate.
+    """The sensors of one trial, all in one file; they share its stamps, which report the rate.
 
     Raises
     ------
@@ -195,11 +195,11 @@ def _named(head: list[list[str]], where: str) -> tuple[dict[str, Columns], int, 
                 if unit not in UNITS[quantity]:
                     raise FileRefusedError(
                         where,
-                        "{name} is in {unit}, expected {wanted}",
+                        "{name} is in {unit}, expected {required}",
                         "Export it again in SI units",
                         name=quoted(part),
                         unit=quoted(unit),
-                        wanted=UNITS[quantity][0],
+                        required=UNITS[quantity][0],
                     )
         columns[sensor] = _found(found, sensor, where)
     rate = next((line[1] for line in head[:at] if line and line[0].startswith("Sample Rate") and len(line) > 1), "")

@@ -66,7 +66,7 @@ class _Layout:
 
 
 def is_apdm_hdf5(path: Path) -> bool:
-    """Whether an HDF5 file says that it is of these programs.
+    """Whether an HDF5 file states that it is of these programs.
 
     Raises
     ------
@@ -175,10 +175,10 @@ def _matrix(file: Hdf5File, place: str, shape: tuple[int, int]) -> FloatArray | 
     if values.shape != shape:
         raise FileRefusedError(
             f"{file.where}, {place}",
-            "its values have shape {shape}, expected {wanted}",
+            "its values have shape {shape}, expected {required}",
             SAVE_AGAIN,
             shape=values.shape,
-            wanted=shape,
+            required=shape,
         )
     values[np.isinf(values)] = np.nan
     return values
@@ -206,10 +206,10 @@ def _check_unit(file: Hdf5File, place: str, quantity: str) -> None:
         if unit not in SI[quantity]:
             raise FileRefusedError(
                 f"{file.where}, {place}",
-                "it is in {unit}, expected {wanted}",
+                "it is in {unit}, expected {required}",
                 "Save the recording again in SI units, in the APDM software",
                 unit=quoted(unit),
-                wanted=SI[quantity][0],
+                required=SI[quantity][0],
             )
 
 

@@ -1,12 +1,12 @@
 """Recordings of BIDS-Motion: a table of samples, one of its channels, and a file of settings for each tracking system.
 
-`*_motion.tsv` has no heads: its columns are the rows of `*_channels.tsv`, which says what each is of which tracked
+`*_motion.tsv` has no heads: its columns are the rows of `*_channels.tsv`, which states what each is of which tracked
 point and in which unit; `*_motion.json` has the sampling frequency. The files belong together by their names, as BIDS
-has it; which they are is told by the table of channels. Times are those of a LATENCY channel, in seconds from
+has it; which they are is given by the table of channels. Times are those of a LATENCY channel, in seconds from
 `acq_time` in `*_scans.tsv`, else even. Settings that BIDS lets stand in a folder above are not looked for there.
 
 Two columns that `gaitwright export` adds say what BIDS has no word for: the sensor's number, and what its rates are. A
-setting of ours says that nobody was measured.
+setting of ours states that nobody was measured.
 Held against the table of channels of a public set of a commercial system, and against our own exports.
 """
 
@@ -63,7 +63,7 @@ def bids_motion_trial(files: Sequence[Path], rate_hz: float | None = None) -> Im
     Parameters
     ----------
     rate_hz
-        Samples per second where the files do not tell.
+        Samples per second where the files do not report.
 
     Raises
     ------
@@ -175,8 +175,8 @@ def _scale(
     point: str,
 ) -> FloatArray:
     """(3,) what brings the three channels to SI units."""
-    said = [system.channels[of_point[kind, axis]].units for axis in AXES]
-    for unit in said:
+    stated = [system.channels[of_point[kind, axis]].units for axis in AXES]
+    for unit in stated:
         if unit not in units:
             raise FileRefusedError(
                 f"{system.base.name}{CHANNELS}",
@@ -187,7 +187,7 @@ def _scale(
                 unit=quoted(unit),
                 known=", ".join(units),
             )
-    return np.array([units[unit] for unit in said])
+    return np.array([units[unit] for unit in stated])
 
 
 def _times(
@@ -222,7 +222,7 @@ def _times(
 
 
 def _check_axes(acc_m_s2: FloatArray, gyr_rad_s: FloatArray, rate_hz: float, point: str, where: str) -> None:
-    """What is said to be in global axes may be: where a sensor turns, gravity has to turn in its own axes."""
+    """What is stated to be in global axes may be: where a sensor turns, gravity has to turn in its own axes."""
     rows = max(int(WINDOW_S * rate_hz), 2)
     turned = -np.cross(gyr_rad_s, acc_m_s2) / rate_hz
     windows = len(turned) // rows
@@ -233,7 +233,7 @@ def _check_axes(acc_m_s2: FloatArray, gyr_rad_s: FloatArray, rate_hz: float, poi
     is_there = np.isfinite(expected + seen).all(axis=1)
     weight = float(np.sum(expected[is_there] ** 2))
     if weight < 1.0 * max(int(is_there.sum()), 1):
-        return  # it hardly turns: no axes can be told from others
+        return  # it hardly turns: no axes can be distinguished from others
     if float(np.sum(expected[is_there] * seen[is_there])) < 0.4 * weight:
         raise FileRefusedError(
             where,

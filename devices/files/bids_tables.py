@@ -78,7 +78,7 @@ def _beside(base: Path, ending: str) -> Path:
 
 
 def has_channels(path: Path) -> bool:
-    """Whether a table of channels stands beside a file."""
+    """Whether a table of channels is beside a file."""
     channels = _beside(common_base(path), CHANNELS)
     if not channels.is_file():
         return False
@@ -231,7 +231,7 @@ def _lines(path: Path) -> Iterator[tuple[int, str]]:
 
 
 def _acquired(base: Path) -> str:
-    """When the recording started, as the table of scans says it; empty where none does."""
+    """When the recording started, as the table of scans states it; empty where none does."""
     for folder in (base.parent, base.parent.parent):
         for scans in sorted(folder.glob(SCANS))[:MOST_SCANS]:
             names: list[str] = []

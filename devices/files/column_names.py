@@ -1,4 +1,4 @@
-"""What the name of a column says: the quantity, its axis, the unit where it is told, and of which sensor it is.
+"""What the name of a column states: the quantity, its axis, the unit where it is reported, and of which sensor it is.
 
 "acc_x_m_s2", "LeftShank Gyroscope X (deg/s)", "ax", "q0". What a name does not say is not guessed here.
 """
@@ -104,7 +104,7 @@ MOST_NAMES = 12  # in a sentence
 
 @dataclass(frozen=True, slots=True)
 class NamedQuantity:
-    """What one column's name says: `axis` empty where it names none, `unit` one of `SCALES` or empty."""
+    """What one column's name states: `axis` empty where it names none, `unit` one of `SCALES` or empty."""
 
     sensor: str
     quantity: Quantity
@@ -130,7 +130,7 @@ class SensorColumns:
 
 
 def meaning_of(name: str, unit: str = "") -> NamedQuantity | None:
-    """What a column's name says, with its unit where that stands elsewhere; None where it is something else."""
+    """What a column's name states, with its unit where that is elsewhere; None where it is something else."""
     text, bracketed = without_brackets(name)
     plain = re.sub(r"[\W_]+", "", text).lower()
     if plain in COUNTERS:
@@ -143,7 +143,7 @@ def meaning_of(name: str, unit: str = "") -> NamedQuantity | None:
     words = [text[start:end] for start, end in spans]
     if any(word.lower() in OTHER_WORDS for word in words):
         return None
-    found = {at: said for at, word in enumerate(words) if (said := _said_by(word)) is not None}
+    found = {at: stated for at, word in enumerate(words) if (stated := _stated_by(word)) is not None}
     if not found and words[:1] == ["t"] and (len(words) == 1 or unit_of(Quantity.TIME, "".join(words[1:]))):
         found = {0: (Quantity.TIME, "")}
     if len({quantity for quantity, _ in found.values()}) != 1:
@@ -157,8 +157,8 @@ def meaning_of(name: str, unit: str = "") -> NamedQuantity | None:
         spent.add(at)
     after = [k for k in range(min(found), len(words)) if k not in spent]
     spoken, of_unit = _spoken_unit(quantity, words, after)
-    told = next(filter(None, (unit_of(quantity, one) for one in (unit, bracketed))), "")
-    return NamedQuantity(_left_of(text, spans, spent | of_unit), quantity, axis, told or spoken)
+    reported = next(filter(None, (unit_of(quantity, one) for one in (unit, bracketed))), "")
+    return NamedQuantity(_left_of(text, spans, spent | of_unit), quantity, axis, reported or spoken)
 
 
 def is_unit(text: str) -> bool:
@@ -174,8 +174,8 @@ def sensor_columns(names: Sequence[str], units: Mapping[str, str] | None = None)
     FileRefusedError
         Two columns that mean the same; its `where` is empty.
     """
-    told = units or {}
-    meant = {name: meaning for name in names if (meaning := meaning_of(name, told.get(name, ""))) is not None}
+    reported = units or {}
+    meant = {name: meaning for name in names if (meaning := meaning_of(name, reported.get(name, ""))) is not None}
     places: dict[tuple[str, Quantity], dict[str, list[str]]] = {}
     called: dict[str, str] = {}
     for name, meaning in meant.items():
@@ -185,12 +185,12 @@ def sensor_columns(names: Sequence[str], units: Mapping[str, str] | None = None)
 
     def whole(key: str, quantity: Quantity) -> tuple[str, ...]:
         axes = places.get((key, quantity), {})
-        wanted = AXES.get(quantity, XYZ)
-        if not all(axis in axes for axis in wanted):
+        required = AXES.get(quantity, XYZ)
+        if not all(axis in axes for axis in required):
             return ()
-        for axis in wanted:
+        for axis in required:
             _refuse_both(axes[axis])
-        return tuple(axes[axis][0] for axis in wanted)
+        return tuple(axes[axis][0] for axis in required)
 
     sensors = []
     for key, sensor in called.items():
@@ -215,13 +215,13 @@ def sensor_columns(names: Sequence[str], units: Mapping[str, str] | None = None)
 def _one_time(
     places: Mapping[tuple[str, Quantity], Mapping[str, list[str]]], meant: Mapping[str, NamedQuantity], key: str
 ) -> str:
-    """The column of times of a sensor, or of all; of several the one that tells its unit."""
+    """The column of times of a sensor, or of all; of several the one that reports its unit."""
     for owner in (key, ""):
         names = places.get((owner, Quantity.TIME), {}).get("", [])
-        told = [name for name in names if meant[name].unit]
+        reported = [name for name in names if meant[name].unit]
         if names:
-            _refuse_both(told or names)
-            return (told or names)[0]
+            _refuse_both(reported or names)
+            return (reported or names)[0]
     return ""
 
 
@@ -252,7 +252,7 @@ def _left_of(text: str, spans: Sequence[tuple[int, int]], spent: Collection[int]
     return "_".join(filter(None, pieces))
 
 
-def _said_by(word: str) -> tuple[Quantity, str] | None:
+def _stated_by(word: str) -> tuple[Quantity, str] | None:
     """The quantity and the axis that one word names: "Acc", "accx", "q0"."""
     lower = word.lower()
     if lower in WORDS:

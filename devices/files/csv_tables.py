@@ -53,11 +53,11 @@ def csv_trial(files: Sequence[Path], rate_hz: float | None = None) -> ImportedTr
 def _table(path: Path) -> NamedTable:
     shape = _shape(path)
 
-    def read(wanted: Collection[str]) -> Table:
+    def read(required: Collection[str]) -> Table:
         return read_csv(
             path,
             path.name,
-            wanted,
+            required,
             comment=COMMENT,
             delimiters=DELIMITERS,
             keep_others=False,

@@ -1,4 +1,4 @@
-"""HDF5 files of other programs: their groups, numbers and texts, with every way of being damaged told as a refusal.
+"""HDF5 files of other programs: their groups, numbers and texts, with every way of being damaged reported as a refusal.
 
 A file may point into other files (external links, storage elsewhere, virtual data). None of that is followed: what is
 read has to stand in the file that somebody chose.
@@ -36,7 +36,7 @@ class Hdf5File:
     Raises
     ------
     FileRefusedError
-        The library is not installed, or the file is no HDF5. All methods: what they read is damaged or stands in
+        The library is not installed, or the file is no HDF5. All methods: what they read is damaged or is in
         another file.
     """
 
@@ -62,13 +62,13 @@ class Hdf5File:
             self._file.close()
 
     def names(self, place: str = "/") -> list[str]:
-        """What stands in a group; nothing where there is no such group."""
+        """What is in a group; nothing where there is no such group."""
         with self._damage(place):
             group = self._at(place)
             return [str(name) for name in group] if isinstance(group, self._h5py.Group) else []
 
     def is_group(self, place: str) -> bool:
-        """Tell whether there is a group of this name."""
+        """Return whether there is a group of this name."""
         with self._damage(place):
             return isinstance(self._at(place), self._h5py.Group)
 

@@ -149,7 +149,7 @@ def _refuse_apart(sensors: Sequence[ImportedSensor]) -> None:
 
 
 def _refuse_jumps(sensors: Sequence[ImportedSensor]) -> None:
-    """How much time passed between two stamps, each sensor's clock tells alone; the others show where it is wrong."""
+    """How much time passed between two stamps, each sensor's clock reports alone; the others show where it is wrong."""
     spans = [spans_of(sensor.block.time_s) for sensor in sensors]
     for number, sensor in enumerate(sensors):
         jump = jump_of(spans[number], [*spans[:number], *spans[number + 1 :]])
@@ -172,7 +172,8 @@ def add_recording(
 ) -> Session:
     """`session` with one recording more, the latest; of a simulated one the whole session is.
 
-    What is known of a sensor stays as it was said first; rates and their kind only while all recordings agree on them.
+    What is known of a sensor stays as it was stated first; rates and their kind only while all recordings agree on
+    them.
 
     Raises
     ------

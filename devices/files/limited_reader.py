@@ -114,7 +114,7 @@ class LimitedReader:
         waiting: Waiting,
         most_bytes: int = MOST_FILE_BYTES,
     ) -> T:
-        """What is made of what the process tells and of the arrays that it names.
+        """What is made of what the process reports and of the arrays that it names.
 
         Raises
         ------
@@ -207,7 +207,7 @@ def end(process: Process) -> None:
     process.wait()
     for stream in (process.stdin, process.stdout):
         if stream is not None:
-            with contextlib.suppress(OSError):  # what could not be said to it any more
+            with contextlib.suppress(OSError):  # what could not be stated to it any more
                 stream.close()
 
 
@@ -248,7 +248,7 @@ def _exchange(process: Process, asked: Details, deadline_s: float, waiting: Wait
 
 
 def _is_running(thread: threading.Thread) -> bool:
-    """Tell whether the thread has not ended within a short while."""
+    """Return whether the thread has not ended within a short while."""
     thread.join(WAIT_S)
     return thread.is_alive()
 

@@ -1,8 +1,8 @@
 """Units held to the size of what was measured: every importer refuses what no sensor on a person can have felt.
 
-Gravity is in every accelerometer, so the middle of its sizes tells m/s2 from g, and from acceleration without gravity.
-Angular rates have no such constant; beyond the ranges of sensors their unit is another, and where there is an
-orientation, it tells the rates by itself.
+Gravity is in every accelerometer, so the middle of its sizes reports m/s2 from g, and from acceleration without
+gravity. Angular rates have no such constant; beyond the ranges of sensors their unit is another, and where there is an
+orientation, it reports the rates by itself.
 """
 
 import numpy as np
@@ -29,18 +29,18 @@ def check_magnitudes(
     gyr_unit: str = "rad/s",
     is_export: bool = True,
 ) -> None:
-    """Refuse samples whose sizes are not those of the units that they are said to be in. Missing ones tell nothing.
+    """Refuse samples whose sizes are not those of the units that they are stated to be in. Missing ones report nothing.
 
     Parameters
     ----------
     acc_m_s2 : (n, 3)
-        In SI units as the file says.
+        In SI units as the file states.
     gyr_rad_s : (n, 3) or None
         Likewise; None: derived here, or held to an orientation elsewhere.
     sensor, where
         By which a person finds the samples.
     gyr_unit
-        In which the file says that its rates are.
+        In which the file states that its rates are.
     is_export
         A program wrote the file, and can write it again in another unit; else the sensor did.
 

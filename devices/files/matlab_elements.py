@@ -31,7 +31,7 @@ def check_elements(content: bytes) -> None:
     Raises
     ------
     BrokenElementsError
-        One is of no type that it can have at its place, or does not fit where it stands.
+        One is of no type that it can have at its place, or does not fit where it is.
     zlib.error
         One that is packed is damaged.
     """

@@ -1,6 +1,6 @@
 """MATLAB files of any program: variables and structures that say by their names what they are, see `named_columns`.
 
-A structure with acceleration and angular rates is a sensor, called as the structure is or as its text "name" says;
+A structure with acceleration and angular rates is a sensor, called as the structure is or as its text "name" states;
 times, a rate and units may stand beside it or in a structure around it. Samples are vectors of one axis (`acc_x`),
 matrices of three (`acc`, a column or a row for each axis), or one matrix with a cell of its columns' names. Tables and
 timetables are objects that only MATLAB can open.
@@ -32,7 +32,7 @@ from devices.files.refusal import FileRefusedError, quoted
 from devices.files.trial import ImportedTrial
 
 OF_THREE_AXES = (Quantity.ACC, Quantity.FREE_ACC, Quantity.GYR, Quantity.MAG)
-OF_ALL = (Quantity.TIME, Quantity.COUNTER)  # what a structure may tell of those that it holds
+OF_ALL = (Quantity.TIME, Quantity.COUNTER)  # what a structure may report of those that it holds
 UNITS = ("units", "unit")
 NAMES = ("name", "label", "sensor", "location", "segment", "placement", "site", "id", "serial")
 TABLES = ("table", "timetable", "timeseries")
@@ -44,7 +44,7 @@ TURN_TABLE = (
 
 @dataclass(slots=True)
 class _Group:
-    """What stands in one structure, as columns, and what it takes over from those around it."""
+    """What is in one structure, as columns, and what it takes over from those around it."""
 
     path: tuple[str, ...] = ()
     columns: dict[str, FloatArray] = field(default_factory=dict)
@@ -87,7 +87,9 @@ def _tables(path: Path) -> Sequence[NamedTable]:
         everything = [name for one in groups for name in (*one.columns, *one.left_out)]
         found = [_Group(left_out=everything)]
     around = zip(*(one.path[:-1] for one in found), strict=False)
-    common = sum(1 for _ in takewhile(lambda names: len(set(names)) == 1, around))  # what is around all tells no sensor
+    common = sum(
+        1 for _ in takewhile(lambda names: len(set(names)) == 1, around)
+    )  # what is around all reports no sensor
     calls = ["_".join(one.path[common:]) for one in found]
     return [
         NamedTable(
@@ -122,15 +124,15 @@ def _groups(path: tuple[str, ...], variables: Mapping[str, Variable], around: _G
 def _group(path: tuple[str, ...], variables: Mapping[str, Variable]) -> _Group:
     group = _Group(path)
     texts: list[list[str]] = [value for value in variables.values() if isinstance(value, list) and _are_texts(value)]
-    told: dict[str, str] = {}
+    reported: dict[str, str] = {}
     for name, value in variables.items():
         if isinstance(value, str):
             base = name.removesuffix("s").removesuffix("_unit")
-            told |= {base: value} if base != name.removesuffix("s") else {}
+            reported |= {base: value} if base != name.removesuffix("s") else {}
         elif isinstance(value, np.ndarray):
             _put(group, name, value, texts)
         elif isinstance(value, dict) and name.lower() in UNITS:
-            told |= {inner: unit for inner, unit in value.items() if isinstance(unit, str)}
+            reported |= {inner: unit for inner, unit in value.items() if isinstance(unit, str)}
         elif isinstance(value, dict) and _is_of_axes(meaning_of(name)):
             for inner, of_axis in value.items():
                 if isinstance(of_axis, np.ndarray):
@@ -141,7 +143,7 @@ def _group(path: tuple[str, ...], variables: Mapping[str, Variable]) -> _Group:
             group.inner += [(f"{name}_{k}", one) for k, one in enumerate(value, start=1)]
         elif isinstance(value, ClosedObject):
             group.left_out.append(name)
-    group.units = _of_columns(told, group.columns) | told | group.units
+    group.units = _of_columns(reported, group.columns) | reported | group.units
     return group
 
 
@@ -174,12 +176,12 @@ def _add(group: _Group, name: str, values: FloatArray) -> None:
         group.columns[name] = values
 
 
-def _of_columns(told: Mapping[str, str], columns: Mapping[str, FloatArray]) -> dict[str, str]:
-    """The units of columns, told of these or of what they are the axes of."""
+def _of_columns(reported: Mapping[str, str], columns: Mapping[str, FloatArray]) -> dict[str, str]:
+    """The units of columns, informed of these or of what they are the axes of."""
     found = {}
     for column in columns:
         base = column[:-2] if column[-2:].lower() in ("_x", "_y", "_z") else column
-        if unit := told.get(column) or told.get(base):
+        if unit := reported.get(column) or reported.get(base):
             found[column] = unit
     return found
 

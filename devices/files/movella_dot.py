@@ -25,7 +25,7 @@ from devices.files.magnitudes import check_magnitudes, times_the_turning
 from devices.files.orientation_rates import Numbers, derive_rates, rate_kind_by, with_gravity
 from devices.files.refusal import FileRefusedError
 from devices.files.site_names import without_site
-from devices.files.spreadsheets import ZIP, read_xlsx, sheet_says
+from devices.files.spreadsheets import ZIP, read_xlsx, sheet_states
 from devices.files.tables import Table, header_of, read_csv
 from devices.files.trial import ImportedSensor, ImportedTrial, read_each
 
@@ -54,7 +54,7 @@ CLOCK = "Movella DOT"
 GRAVITY_M_S2 = 9.8127  # by which the sensors make free acceleration
 ROTATION_ERROR = 0.01
 WRONG_UNIT = 0.05  # of the orientation's turning; rates in rad/s that are taken for deg/s are a 57th
-MEASURE_ANEW = (
+MEASURE_AGAIN = (
     'Record again in "Custom mode 5" or, to sensor memory, with orientation, acceleration and angular velocity'
 )
 EXPORT_AGAIN = "Export it again from the Movella DOT app"
@@ -88,7 +88,7 @@ class DotFile:
 def is_movella_dot(path: Path, head: bytes) -> bool:
     """Whether a file that begins so is one of these, by the lines above its columns or by the columns."""
     if head.startswith(ZIP):
-        return sheet_says(path, TIME.encode())
+        return sheet_states(path, TIME.encode())
     lines = head.decode("utf-8", "replace").lstrip("\ufeff").splitlines()
     header = next((number for number, line in enumerate(lines) if TIME in line), None)
     if header is None or lines[0].startswith("//"):  # of MT Manager, whose columns have the same names
@@ -123,9 +123,9 @@ def read_dot(path: Path, asked_hz: float | None = None) -> DotFile:
     where = path.name
     settings, table = _read(path, where)
     ticks = unwrapped(table, TIME, TICKS_TURN_AT, where)
-    told_hz = _told_rate(settings) or asked_hz
+    reported_hz = _reported_rate(settings) or asked_hz
     steps: Numbers = np.diff(ticks)
-    tick_s, rate_hz = _clock(steps[steps > 0], told_hz, where)
+    tick_s, rate_hz = _clock(steps[steps > 0], reported_hz, where)
     clock = repaired(ticks, FileClock(where, table.place, TIME, tick_s))
     is_new = clock.is_new
     ticks = np.rint(clock.stamps[is_new]).astype(np.int64)
@@ -137,7 +137,7 @@ def read_dot(path: Path, asked_hz: float | None = None) -> DotFile:
     is_empty = np.logical_and.accumulate((acc == 0.0).all(axis=1) & (gyr == 0.0).all(axis=1))
     if not is_empty.all():  # the export begins with a row of nothing but zeros
         acc[is_empty] = gyr[is_empty] = np.nan
-    check_magnitudes(acc, None, path.stem, where)  # of rates in deg/s the orientation tells
+    check_magnitudes(acc, None, path.stem, where)  # of rates in deg/s the orientation reports
     is_rate_derived = not (set(GYR) <= set(table.numbers) or set(TURNS) <= set(table.numbers))
     ids = tuple(dict.fromkeys([*_named(path), *filter(None, [settings.get(TAG)])]))
     return DotFile(
@@ -169,12 +169,12 @@ def movella_dot_trial(files: Sequence[Path], rate_hz: float | None = None) -> Im
     """The files of one trial, one sensor in each.
 
     Synchronised sensors share one clock, and their samples stand at its times. Others start together at zero, each
-    on a clock of its own: how far they are apart is for the motion to tell.
+    on a clock of its own: how far they are apart is for the motion to report.
 
     Parameters
     ----------
     rate_hz
-        Samples per second where neither the files nor their times tell.
+        Samples per second where neither the files nor their times report.
 
     Raises
     ------
@@ -228,31 +228,31 @@ def _read(path: Path, where: str) -> tuple[dict[str, str], Table]:
     return settings, table
 
 
-def _told_rate(settings: Mapping[str, str]) -> float | None:
+def _reported_rate(settings: Mapping[str, str]) -> float | None:
     rate = re.match(r"(\d{1,4}(\.\d{1,3})?)\s*Hz", settings.get("OutputRate", ""))
     return float(rate[1]) or None if rate else None
 
 
-def _clock(steps: Numbers, told_hz: float | None, where: str) -> tuple[float, float]:
+def _clock(steps: Numbers, reported_hz: float | None, where: str) -> tuple[float, float]:
     """Length of a tick in s and samples per second: the unit in which the common step is one of the sensors' rates."""
     if not len(steps):
-        return MICROSECOND_S, told_hz or 60.0
+        return MICROSECOND_S, reported_hz or 60.0
     step = float(np.sort(steps)[int(FEW_STEPS * len(steps))])
     for tick_s in (MICROSECOND_S, TENTH_OF_A_MILLISECOND_S):
-        for rate_hz in [told_hz] if told_hz else RATES_HZ:
+        for rate_hz in [reported_hz] if reported_hz else RATES_HZ:
             if abs(step * tick_s * rate_hz - 1.0) < RATE_ERROR:
                 return tick_s, rate_hz
-    if told_hz:  # so many are lost that hardly two follow each other
+    if reported_hz:  # so many are lost that hardly two follow each other
         for tick_s in (MICROSECOND_S, TENTH_OF_A_MILLISECOND_S):
-            periods = step * tick_s * told_hz
+            periods = step * tick_s * reported_hz
             if 1.5 < periods < 20.0 and abs(periods - round(periods)) < RATE_ERROR * periods:
-                return tick_s, told_hz
+                return tick_s, reported_hz
         raise FileRefusedError(
             where,
             "its time step of {step} does not match {rate} samples per second",
             "Give its recording rate in Hz (--rate), or export it again",
             step=f"{step:.0f}",
-            rate=f"{told_hz:g}",
+            rate=f"{reported_hz:g}",
         )
     raise FileRefusedError(
         where,
@@ -314,7 +314,7 @@ def _rates(
         return gyr, RateKind.AVERAGED
     if q is None:
         raise FileRefusedError(
-            where, "there are neither angular rates (Gyr_X) nor an orientation to derive them from", MEASURE_ANEW
+            where, "there are neither angular rates (Gyr_X) nor an orientation to derive them from", MEASURE_AGAIN
         )
     return derive_rates(q, counter, rate_hz), RateKind.INSTANTANEOUS
 
@@ -329,12 +329,12 @@ def _specific_force(
     if names >= set(VELOCITIES):
         return table.matrix(VELOCITIES)[is_new] * rate_hz, False
     if not names >= set(FREE_ACC):
-        raise FileRefusedError(where, "there is no acceleration (Acc_X, Acc_Y, Acc_Z)", MEASURE_ANEW)
+        raise FileRefusedError(where, "there is no acceleration (Acc_X, Acc_Y, Acc_Z)", MEASURE_AGAIN)
     if q is None:
         raise FileRefusedError(
             where,
             "its acceleration is without gravity (FreeAcc_X), and there is no orientation to restore it",
-            MEASURE_ANEW,
+            MEASURE_AGAIN,
         )
     return with_gravity(table.matrix(FREE_ACC)[is_new], q, GRAVITY_M_S2), True
 

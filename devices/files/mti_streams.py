@@ -3,7 +3,7 @@
 What a message holds is read as by the live driver, `drivers/xbus.py`, held against recorded streams and another
 program's reading of them. Times are those of the sensor's fine clock, else of its packet counter. Rates are means over
 the interval before their stamps. Where rates or acceleration were not sent, they are made of what was: the turns and
-velocities of each interval, or the orientation, with gravity added to free acceleration; the latter two are said.
+velocities of each interval, or the orientation, with gravity added to free acceleration; the latter two are stated.
 """
 
 from collections.abc import Iterator, Sequence
@@ -54,9 +54,9 @@ SET_OUTPUT = "Set the sensor to send rate of turn, acceleration and sample time 
 
 @dataclass(frozen=True, slots=True)
 class MtiStream:
-    """What was read of one stream: one row for each message with motion, NaN where it did not tell.
+    """What was read of one stream: one row for each message with motion, NaN where it did not report.
 
-    `lone`: how many messages told a rate or an acceleration and not both.
+    `lone`: how many messages reported a rate or an acceleration and not both.
     """
 
     ticks: FloatArray
@@ -89,12 +89,12 @@ def mti_trial(files: Sequence[Path], rate_hz: float | None = None) -> ImportedTr
     Parameters
     ----------
     rate_hz
-        Samples per second, for streams that tell a counter and no time.
+        Samples per second, for streams that report a counter and no time.
 
     Raises
     ------
     FileRefusedError
-        No motion was sent, or nothing that tells its time, in the only file.
+        No motion was sent, or nothing that reports its time, in the only file.
     OSError
         A file cannot be read.
     """
@@ -159,10 +159,10 @@ class _Rows:
             self.is_old |= one.mid == OLD_DATA
 
     def _sample(self, items: Items) -> None:
-        told = {identifier & ITEM_MASK: identifier for identifier in items}
+        reported = {identifier & ITEM_MASK: identifier for identifier in items}
 
         def of(kind: int, count: int, most: float = np.inf) -> tuple[float, ...]:
-            found = values(told[kind], items[told[kind]]) if kind in told else ()
+            found = values(reported[kind], items[reported[kind]]) if kind in reported else ()
             is_meant = len(found) == count and all(-most < value < most for value in found)
             return found if is_meant else (np.nan,) * count
 
@@ -171,14 +171,14 @@ class _Rows:
         free, q = of(FREE_ACCELERATION, 3, MOST_M_S2), of(Item.QUATERNION, 4, 2.0)
         if np.isnan(q[0]):
             q = _of_matrix(of(MATRIX, 9, 2.0))
-        if told.get(Item.QUATERNION, told.get(MATRIX, 0)) & AXES_MASK == NORTH_EAST_DOWN:
+        if reported.get(Item.QUATERNION, reported.get(MATRIX, 0)) & AXES_MASK == NORTH_EAST_DOWN:
             q = upward(q)
-        if told.get(FREE_ACCELERATION, 0) & AXES_MASK == NORTH_EAST_DOWN:
+        if reported.get(FREE_ACCELERATION, 0) & AXES_MASK == NORTH_EAST_DOWN:
             free = free[1], free[0], -free[2]
         has_rate = np.isfinite([rate[0], turn[0], q[0]]).any()
         has_force = np.isfinite([force[0], velocity[0], free[0]]).any()
         if not has_rate or not has_force:
-            self.lone += bool(has_rate or has_force)  # else it is what the satellites told
+            self.lone += bool(has_rate or has_force)  # else it is what the satellites reported
             return
         ticks, counter = of(Item.FINE_TIME, 1), of(Item.COUNTER, 1)
         mag = of(Item.MAGNETIC_FIELD, 3)
@@ -227,7 +227,7 @@ def _times(stream: MtiStream, asked_hz: float | None, where: str) -> RepairedClo
     Raises
     ------
     FileRefusedError
-        Some message tells neither, or the clock steps back for good.
+        Some message reports neither, or the clock steps back for good.
     """
     if np.isfinite(stream.ticks).all():
         time_s = np.unwrap(stream.ticks, period=2.0**FINE_BITS) / FINE_HZ
@@ -268,7 +268,7 @@ def _forces(
     Raises
     ------
     FileRefusedError
-        Gravity is taken out, and nothing tells where down is.
+        Gravity is taken out, and nothing gives where down is.
     """
     if np.isfinite(stream.force).any():
         return stream.force[is_new], False

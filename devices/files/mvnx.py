@@ -96,7 +96,7 @@ def mvnx_trial(files: Sequence[Path], rate_hz: float | None = None) -> ImportedT
     Parameters
     ----------
     rate_hz
-        Frames per second where the file does not tell.
+        Frames per second where the file does not report.
 
     Raises
     ------
@@ -191,17 +191,17 @@ def _numbers(found: MvnxFile, text: str, width: int, frame: str) -> FloatArray:
     if len(values) != width * len(found.sensors):
         raise FileRefusedError(
             f"{found.where}, frame {frame}",
-            "it has {count} values for {sensors} sensors, expected {wanted}",
+            "it has {count} values for {sensors} sensors, expected {required}",
             EXPORT_AGAIN,
             count=len(values),
             sensors=len(found.sensors),
-            wanted=width * len(found.sensors),
+            required=width * len(found.sensors),
         )
     return values
 
 
 def _check_stamps(file: MvnxFile, index: Numbers, rate_hz: float) -> None:
-    """The stamps in ms and the frames' numbers have to tell the same rate."""
+    """The stamps in ms and the frames' numbers have to report the same rate."""
     stamps_s = np.array(file.stamps_ms) / 1000.0
     if len(index) < 2 or not np.isfinite(stamps_s[[0, -1]]).all():
         return

@@ -1,7 +1,7 @@
 """Sensors of tables of no particular program, whose columns say by their names what they are (`column_names`).
 
-What a name does not say is found by size where size leaves one answer only, and told as a finding; where it leaves two,
-the file is refused with the name that would settle it. What is told is held to its size, too.
+What a name does not say is found by size where size leaves one answer only, and reported as a finding; where it leaves
+two, the file is refused with the name that would settle it. What is reported is held to its size, too.
 """
 
 from collections.abc import Callable, Sequence
@@ -45,18 +45,18 @@ def sensors_of_table(table: NamedTable, rate_hz: float | None) -> list[ImportedS
     Parameters
     ----------
     rate_hz
-        Samples per second as somebody told it; None: nobody did.
+        Samples per second as somebody reported it; None: nobody did.
 
     Raises
     ------
     FileRefusedError
-        No sensor, two columns that mean the same, units that are not what they are said to be or that cannot be told,
-        neither times nor a rate, times that step back.
+        No sensor, two columns that mean the same, units that are not what they are stated to be or that cannot be
+        reported, neither times nor a rate, times that step back.
     """
     try:
         found = sensor_columns(list(table.columns), table.units)
     except FileRefusedError as refusal:
-        raise FileRefusedError.said_elsewhere(table.where, refusal.what, refusal.remedy, refusal.values) from None
+        raise FileRefusedError.stated_elsewhere(table.where, refusal.what, refusal.remedy, refusal.values) from None
     if not found:
         raise FileRefusedError(
             table.where,
@@ -117,7 +117,7 @@ def _sensor(table: NamedTable, named: SensorColumns, asked_hz: float | None, oth
         "acc_unit": acc_unit,
         "gyr": listed(named.gyr),
         "gyr_unit": gyr_unit,
-        "time": stamps.told,
+        "time": stamps.reported,
     }
     findings.insert(0, Finding("columns_understood", Severity.INFO, "", understood))
     if others:
@@ -137,21 +137,21 @@ def _sensor(table: NamedTable, named: SensorColumns, asked_hz: float | None, oth
 
 
 def _acc_unit(table: NamedTable, named: SensorColumns, acc: FloatArray, findings: list[Finding]) -> str:
-    told = _told_unit(table, named.acc, Quantity.ACC)
+    reported = _reported_unit(table, named.acc, Quantity.ACC)
     middle = middle_size(acc)
     if np.isnan(middle):
-        return told or "m/s2"
-    if told and FELT_M_S2[0] < middle * FORCE_UNITS[told] < FELT_M_S2[1]:
-        return told
+        return reported or "m/s2"
+    if reported and FELT_M_S2[0] < middle * FORCE_UNITS[reported] < FELT_M_S2[1]:
+        return reported
     least, most = GRAVITY_M_S2
     fits = [unit for unit, scale in FORCE_UNITS.items() if least < middle * scale < most]
-    if told and fits:
+    if reported and fits:
         raise FileRefusedError(
             table.where,
-            "the acceleration {names} is labelled {told}, but its median of {middle} is gravity in {unit}",
+            "the acceleration {names} is labelled {reported}, but its median of {middle} is gravity in {unit}",
             "Correct the unit, or export it again in m/s2",
             names=listed(named.acc),
-            told=told,
+            reported=reported,
             middle=f"{middle:.3g}",
             unit=fits[0],
         )
@@ -162,27 +162,28 @@ def _acc_unit(table: NamedTable, named: SensorColumns, acc: FloatArray, findings
             "Export acceleration in m/s2 with gravity, not free or linear acceleration",
             names=listed(named.acc),
             middle=f"{middle:.3g}",
-            units=told or ", ".join(FORCE_UNITS),
+            units=reported or ", ".join(FORCE_UNITS),
         )
     findings.append(Finding("unit_by_size", Severity.INFO, "", {"names": listed(named.acc), "unit": fits[0]}))
     return fits[0]
 
 
 def _gyr_unit(table: NamedTable, named: SensorColumns, gyr: FloatArray, findings: list[Finding]) -> str:
-    told = _told_unit(table, named.gyr, Quantity.GYR)
+    reported = _reported_unit(table, named.gyr, Quantity.GYR)
     rates = np.abs(gyr[np.isfinite(gyr)])
     largest = float(np.quantile(rates, FEW)) if len(rates) else 0.0
-    if told:
-        if largest * RATE_UNITS[told] > MOST_RAD_S:
+    if reported:
+        if largest * RATE_UNITS[reported] > MOST_RAD_S:
             raise FileRefusedError(
                 table.where,
-                "the angular rates {names} are labelled {told}, but reach {largest}, beyond the range of any sensor",
+                "the angular rates {names} are labelled {reported}, but reach {largest}, beyond the range of "
+                "any sensor",
                 "Correct the unit, or export them again in rad/s",
                 names=listed(named.gyr),
-                told=told,
+                reported=reported,
                 largest=f"{largest:.3g}",
             )
-        return told
+        return reported
     if not len(rates):
         return "rad/s"
     if not MOST_RAD_S < largest < MOST_RAD_S / RATE_UNITS["deg/s"]:
@@ -196,8 +197,8 @@ def _gyr_unit(table: NamedTable, named: SensorColumns, gyr: FloatArray, findings
     return "deg/s"
 
 
-def _told_unit(table: NamedTable, names: Sequence[str], quantity: Quantity) -> str:
-    """The unit that the names of three columns tell, or that is told of them; empty where none is.
+def _reported_unit(table: NamedTable, names: Sequence[str], quantity: Quantity) -> str:
+    """The unit that the names of three columns report, or that is given of them; empty where none is.
 
     Raises
     ------
@@ -214,11 +215,11 @@ def _told_unit(table: NamedTable, names: Sequence[str], quantity: Quantity) -> s
             if text.strip() and not unit_of(quantity, text):
                 raise FileRefusedError(
                     table.where,
-                    "{name} is in {unit}, expected one of {wanted}",
+                    "{name} is in {unit}, expected one of {required}",
                     "Export it again in one of these, or correct the unit",
                     name=quoted(name),
                     unit=quoted(text),
-                    wanted=", ".join(SCALES[quantity]),
+                    required=", ".join(SCALES[quantity]),
                 )
     if len(units) > 1:
         raise FileRefusedError(
@@ -233,7 +234,7 @@ def _told_unit(table: NamedTable, names: Sequence[str], quantity: Quantity) -> s
 def _orientation(q: FloatArray, acc: FloatArray) -> FloatArray | None:
     """(n, 4) unit quaternions, earth from sensor; None where they do not turn the specific force upwards.
 
-    Whether a program means earth from sensor or sensor from earth stands in no name; gravity tells.
+    Whether a program means earth from sensor or sensor from earth is in no name; gravity reports.
     """
     length = np.linalg.norm(q, axis=1)
     is_whole = np.abs(length - 1.0) < 0.05

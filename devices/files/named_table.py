@@ -12,22 +12,22 @@ from devices.files.tables import Table
 
 @dataclass(frozen=True, slots=True)
 class NamedTable:
-    """Columns of one table or file, all that is told of them, and where they stand.
+    """Columns of one table or file, all that is given of them, and where they stand.
 
     Attributes
     ----------
     columns : name -> (n,)
         Numbers, NaN where empty; of one sensor all of one length.
     units
-        Of columns whose unit stands elsewhere than in their name.
+        Of columns whose unit is elsewhere than in their name.
     where, file
         The file's name in refusals, and its path.
     called
         The sensor's name where the columns name none.
     place
-        Where a row stands in the file ("line 12").
+        Where a row is in the file ("line 12").
     rate_hz
-        Samples per second as the file tells; None where it does not.
+        Samples per second as the file reports; None where it does not.
     time_s : (n,) or None
         Stamps in seconds that the file keeps beside its columns.
     left_out
@@ -56,7 +56,7 @@ def named_table_of(
     Parameters
     ----------
     names, units
-        Of all its columns; units of those whose unit stands elsewhere than in their name.
+        Of all its columns; units of those whose unit is elsewhere than in their name.
     read
         Reads the columns of these names as numbers.
 
@@ -65,14 +65,14 @@ def named_table_of(
     FileRefusedError
         What `read` refuses, two columns that mean the same.
     """
-    wanted = {name for one in sensor_columns(list(names), units) for name in one.names()}
-    table = read(wanted)
+    required = {name for one in sensor_columns(list(names), units) for name in one.names()}
+    table = read(required)
     return NamedTable(
-        columns={name: table.numbers[name] for name in names if name in wanted},
+        columns={name: table.numbers[name] for name in names if name in required},
         where=path.name,
         file=str(path),
         called=path.stem,
         place=table.place,
         units=units,
-        left_out=[name for name in names if name not in wanted],
+        left_out=[name for name in names if name not in required],
     )

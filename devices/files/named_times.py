@@ -1,6 +1,6 @@
 """The times of the samples of a table of no particular program: by its stamps, by a counter or by a rate alone.
 
-A unit that no name tells is found by the rates that sensors have, where these leave one answer only.
+A unit that no name reports is found by the rates that sensors have, where these leave one answer only.
 """
 
 from dataclasses import dataclass
@@ -22,12 +22,12 @@ MOST_DOUBLED = 0.2  # of the samples: beyond, the stamps are too coarse to go by
 
 @dataclass(frozen=True, slots=True)
 class Stamps:
-    """Seconds of the samples that are new; of all samples which are; by what they are told."""
+    """Seconds of the samples that are new; of all samples which are; by what they are reported."""
 
     time_s: FloatArray
     is_new: BoolArray
     rate_hz: float | None
-    told: str
+    reported: str
 
 
 def stamps_of(
@@ -38,7 +38,7 @@ def stamps_of(
     Parameters
     ----------
     asked_hz
-        Samples per second as somebody told it; None: nobody did.
+        Samples per second as somebody reported it; None: nobody did.
     is_there : (n,)
         The rows of the table that hold samples of this sensor.
     findings
@@ -47,34 +47,34 @@ def stamps_of(
     Raises
     ------
     FileRefusedError
-        Neither times nor a rate, two rates, a unit that nothing tells, times that are missing, step back or repeat.
+        Neither times nor a rate, two rates, a unit that nothing reports, times that are missing, step back or repeat.
     """
-    told_hz = _one_rate(table, asked_hz)
+    reported_hz = _one_rate(table, asked_hz)
     rows = np.flatnonzero(is_there)
     if table.time_s is not None:
-        values, scale, told = _unwrapped(table, table.time_s[rows], rows, "time"), 1.0, "time [s]"
+        values, scale, reported = _unwrapped(table, table.time_s[rows], rows, "time"), 1.0, "time [s]"
     elif named.time and len(table.columns[named.time]) == len(is_there):
         values = _unwrapped(table, table.columns[named.time][rows], rows, named.time)
         meaning = meaning_of(named.time, table.units.get(named.time, ""))
-        unit = _time_unit(table, named.time, meaning.unit if meaning else "", values, told_hz, findings)
-        scale, told = (
-            (1.0 / (told_hz or 1.0), named.time) if unit == "samples" else (SECONDS[unit], f"{named.time} [{unit}]")
+        unit = _time_unit(table, named.time, meaning.unit if meaning else "", values, reported_hz, findings)
+        scale, reported = (
+            (1.0 / (reported_hz or 1.0), named.time) if unit == "samples" else (SECONDS[unit], f"{named.time} [{unit}]")
         )
-    elif told_hz is None:
+    elif reported_hz is None:
         raise FileRefusedError(
             table.where,
             "its samples have no times",
             "Add a column time_s, time_ms or time_us, or give the samples per second with --rate",
         )
     elif named.counter and len(table.columns[named.counter]) == len(is_there):
-        values, scale, told = (
+        values, scale, reported = (
             _unwrapped(table, table.columns[named.counter][rows], rows, named.counter),
-            1.0 / told_hz,
-            f"{named.counter} / {told_hz:g} Hz",
+            1.0 / reported_hz,
+            f"{named.counter} / {reported_hz:g} Hz",
         )
     else:
-        values, scale, told = rows.astype(float), 1.0 / told_hz, f"{told_hz:g} Hz"
-        findings.append(Finding("time_from_rate", Severity.WARNING, "", {"rate_hz": told_hz}))
+        values, scale, reported = rows.astype(float), 1.0 / reported_hz, f"{reported_hz:g} Hz"
+        findings.append(Finding("time_from_rate", Severity.WARNING, "", {"rate_hz": reported_hz}))
     name = quoted(named.time or named.counter) if table.time_s is None else '"time"'
     clock = repaired(values, FileClock(table.where, lambda row: table.place(int(rows[row])), name, scale))
     if clock.doubled > MOST_DOUBLED * len(values):
@@ -87,36 +87,36 @@ def stamps_of(
         )
     findings += clock.findings
     time_s = clock.stamps[clock.is_new] * scale
-    return Stamps(time_s, clock.is_new, _checked_rate(table, time_s, told_hz), told)
+    return Stamps(time_s, clock.is_new, _checked_rate(table, time_s, reported_hz), reported)
 
 
 def _one_rate(table: NamedTable, asked_hz: float | None) -> float | None:
-    told_hz = table.rate_hz
-    if asked_hz is not None and told_hz is not None and abs(asked_hz - told_hz) > 0.02 * asked_hz:
+    reported_hz = table.rate_hz
+    if asked_hz is not None and reported_hz is not None and abs(asked_hz - reported_hz) > 0.02 * asked_hz:
         raise FileRefusedError(
             table.where,
-            "the file gives {told} samples per second, but --rate {asked}",
+            "the file gives {reported} samples per second, but --rate {asked}",
             "Give the recording rate, or leave out --rate",
-            told=f"{told_hz:g}",
+            reported=f"{reported_hz:g}",
             asked=f"{asked_hz:g}",
         )
-    return asked_hz or told_hz
+    return asked_hz or reported_hz
 
 
-def _checked_rate(table: NamedTable, time_s: FloatArray, told_hz: float | None) -> float | None:
-    """Samples per second by the stamps, which have to be near what is told."""
+def _checked_rate(table: NamedTable, time_s: FloatArray, reported_hz: float | None) -> float | None:
+    """Samples per second by the stamps, which have to be near what is reported."""
     if len(time_s) < 2:
-        return told_hz
+        return reported_hz
     step_s = np.diff(time_s)
     found_hz = 1.0 / float(np.mean(step_s[step_s < 1.5 * np.median(step_s)]))  # stamps may be rounded, and have gaps
     least, most = POSSIBLE_HZ
-    if not least < found_hz < most or (told_hz is not None and abs(found_hz - told_hz) > 0.05 * told_hz):
+    if not least < found_hz < most or (reported_hz is not None and abs(found_hz - reported_hz) > 0.05 * reported_hz):
         raise FileRefusedError(
             table.where,
-            "its times give {found} samples per second, expected {told}",
+            "its times give {found} samples per second, expected {reported}",
             "Name the time column with its unit, such as time_ms, or correct the rate",
             found=f"{found_hz:.4g}",
-            told=f"{least:g} to {most:g}" if told_hz is None else f"{told_hz:g}",
+            reported=f"{least:g} to {most:g}" if reported_hz is None else f"{reported_hz:g}",
         )
     return round(found_hz, 1)
 
@@ -152,15 +152,15 @@ def _unwrapped(
 
 
 def _time_unit(
-    table: NamedTable, name: str, told: str, values: FloatArray, told_hz: float | None, findings: list[Finding]
+    table: NamedTable, name: str, reported: str, values: FloatArray, reported_hz: float | None, findings: list[Finding]
 ) -> str:
     """A unit of time, or "samples" where samples are counted."""
     step = np.diff(values)
     usual = float(np.median(step[step > 0])) if (step > 0).any() else np.nan
-    if told or not np.isfinite(usual):
-        return told or "s"
-    if told_hz is not None:
-        fits = [unit for unit, scale in SECONDS.items() if abs(usual * scale * told_hz - 1.0) < 0.05]
+    if reported or not np.isfinite(usual):
+        return reported or "s"
+    if reported_hz is not None:
+        fits = [unit for unit, scale in SECONDS.items() if abs(usual * scale * reported_hz - 1.0) < 0.05]
         fits = fits or (["samples"] if usual == 1.0 else [])
     else:
         least, most = LIKELY_HZ

@@ -1,4 +1,4 @@
-"""Files of sensors that each have a clock: they keep the times they tell, where these can be of one trial."""
+"""Files of sensors that each have a clock: they keep the times they report, where these can be of one trial."""
 
 from collections.abc import Sequence
 from dataclasses import replace
@@ -6,13 +6,14 @@ from dataclasses import replace
 from core.findings import Finding, Severity
 from devices.files.trial import ImportedSensor
 
-LEAST_COMMON = 0.5  # of the shortest recording, during which all of one trial have to be heard
+LEAST_COMMON = 0.5  # of the shortest recording, during which all of one trial have to be received
 
 
 def with_own_clocks(sensors: Sequence[ImportedSensor]) -> list[ImportedSensor]:
-    """Name each sensor's clock, so that the motion has to tell how far it is off, and let the trial begin at 0 s.
+    """Name each sensor's clock, so that the motion has to report how far it is off, and let the trial begin at 0 s.
 
-    Where the times that the clocks tell cannot be of one trial, each recording begins with the others, which is told.
+    Where the times that the clocks report cannot be of one trial, each recording begins with the others, which is
+    reported.
 
     Parameters
     ----------
@@ -28,8 +29,8 @@ def with_own_clocks(sensors: Sequence[ImportedSensor]) -> list[ImportedSensor]:
     named = [replace(one, info=replace(one.info, clock=one.block.sensor)) for one in sensors]
     if is_one_trial:
         return from_zero(named)
-    told = Finding("not_synchronised", Severity.WARNING, "")
-    return [replace(alone, findings=(*alone.findings, told)) for one in named for alone in from_zero([one])]
+    reported = Finding("not_synchronised", Severity.WARNING, "")
+    return [replace(alone, findings=(*alone.findings, reported)) for one in named for alone in from_zero([one])]
 
 
 def from_zero(sensors: Sequence[ImportedSensor]) -> list[ImportedSensor]:

@@ -89,7 +89,7 @@ def _stream(asked: "DuckDBPyRelation") -> "Array":
 @contextmanager
 def _opened(file: Path) -> "Iterator[DuckDBPyConnection]":
     with duckdb.connect(":memory:", config=dict(LOCKED)) as connection:
-        # said at the connection, it would leave files called ":memory:" in the folder of now to be written
+        # stated at the connection, it would leave files called ":memory:" in the folder of now to be written
         connection.execute("SET enable_external_access = false")
         try:
             rows = pa.dataset.dataset(str(file), format="parquet", filesystem=pa.fs.LocalFileSystem())
@@ -114,8 +114,8 @@ def _refuse_other_than_one_select(connection: "DuckDBPyConnection", sql: str) ->
         raise FileRefusedError("SQL", "{count} statements", "Enter one query at a time", count=len(statements))
     if statements[0].type != duckdb.StatementType.SELECT:
         kind = statements[0].type.name
-        said = "PIVOT without IN" if kind == "MULTI" else kind
-        raise FileRefusedError("SQL", NO_SELECT, "Begin with SELECT", kind=said)
+        stated = "PIVOT without IN" if kind == "MULTI" else kind
+        raise FileRefusedError("SQL", NO_SELECT, "Begin with SELECT", kind=stated)
 
 
 def quoted_name(name: str) -> str:
@@ -139,8 +139,8 @@ def _refused(problem: Exception) -> FileRefusedError:
 
 
 def _reason(problem: Exception) -> str:
-    """What a library says, in one line and without its mark of a mistake."""
+    """What a library states, in one line and without its mark of a mistake."""
     first, *more = str(problem).splitlines() or [type(problem).__name__]
-    said = KIND.sub("", first).rstrip("!.:")
+    stated = KIND.sub("", first).rstrip("!.:")
     hint = next((line.rstrip("?!.") for line in more if line.startswith(HINTS)), "")
-    return one_line(f"{said} ({hint})" if hint else said)
+    return one_line(f"{stated} ({hint})" if hint else stated)

@@ -46,12 +46,12 @@ def parquet_trial(files: Sequence[Path], rate_hz: float | None = None) -> Import
 
 def _table(path: Path) -> NamedTable:
     units = _columns(path)
-    told = {name: unit for name, unit in units.items() if unit}
-    return named_table_of(path, list(units), told, lambda wanted: read_parquet(path, path.name, wanted))
+    reported = {name: unit for name, unit in units.items() if unit}
+    return named_table_of(path, list(units), reported, lambda required: read_parquet(path, path.name, required))
 
 
 def _columns(path: Path) -> dict[str, str]:
-    """The units of the columns by their names; empty where none is told."""
+    """The units of the columns by their names; empty where none is reported."""
     import pyarrow as pa  # here, not above: the window starts without it
     import pyarrow.parquet as pq
 

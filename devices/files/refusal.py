@@ -1,4 +1,4 @@
-"""The refusal of a file that is not what it says it is."""
+"""The refusal of a file that is not what it states it is."""
 
 from collections.abc import Mapping
 
@@ -14,11 +14,11 @@ class FileRefusedError(Exception):
     def __init__(self, where: str, what: str, remedy: str, **values: object) -> None:
         self.where, self.what, self.remedy = one_line(where), one_line(what), one_line(remedy)
         self.values = {key: one_line(str(value)) for key, value in values.items()}
-        said = f"{self.what}. {self.remedy}."
-        super().__init__(f"{self.where}: {said.format(**self.values) if values else said}")
+        stated = f"{self.what}. {self.remedy}."
+        super().__init__(f"{self.where}: {stated.format(**self.values) if values else stated}")
 
     @classmethod
-    def said_elsewhere(cls, where: str, what: str, remedy: str, values: Mapping[str, str]) -> "FileRefusedError":
+    def stated_elsewhere(cls, where: str, what: str, remedy: str, values: Mapping[str, str]) -> "FileRefusedError":
         """The refusal of another process, in its words."""
         return cls(where, what, remedy, **values)
 

@@ -1,7 +1,7 @@
 """`session.toml`, read to a session and written from one.
 
-Every key that means something stands in one of the tables below, once, with the check that its value must pass. What
-stands in none of them is unknown: it is kept where it was, with a finding.
+Every key that means something is in one of the tables below, once, with the check that its value must pass. What
+is in none of them is unknown: it is kept where it was, with a finding.
 """
 
 import datetime
@@ -27,7 +27,7 @@ from devices.files.stored_findings import finding_tables, findings_of_tables
 FORMAT = "gaitwright-session/1"
 FILE_NAME = "session.toml"
 CORRECT_IT = f"Correct {FILE_NAME}"
-SAYS_FORMAT = f'A session folder says format = "{FORMAT}" in its first line'
+STATES_FORMAT = f'A session folder says format = "{FORMAT}" in its first line'
 SIDES = ("left", "right", "both", "none", "")
 DEEPEST = 50  # tables and lists within each other; ours need four
 
@@ -186,7 +186,7 @@ SIGN: Mapping[str, Known] = {joint.value: (joint.value, _sign) for joint in LEG_
 
 
 def parse(text: str) -> tuple[Session, tuple[Plan, ...]]:
-    """What the file says: a session without recordings, and the recordings to read.
+    """What the file states: a session without recordings, and the recordings to read.
 
     Raises
     ------
@@ -321,8 +321,8 @@ def _check_format(document: Table) -> None:
             version=quoted(name),
         )
     if name is None:
-        raise FileRefusedError(FILE_NAME, "the format is missing", SAYS_FORMAT)
-    raise FileRefusedError(FILE_NAME, "the format {name} is unknown", SAYS_FORMAT, name=quoted(name))
+        raise FileRefusedError(FILE_NAME, "the format is missing", STATES_FORMAT)
+    raise FileRefusedError(FILE_NAME, "the format {name} is unknown", STATES_FORMAT, name=quoted(name))
 
 
 def _plans(tables: object) -> tuple[Plan, ...]:
@@ -393,11 +393,11 @@ def _take(table: Table, known: Mapping[str, Known], where: str) -> tuple[dict[st
         except ValueError as error:
             raise FileRefusedError(
                 f"{FILE_NAME}, {where}",
-                "{key} is {value}, expected {wanted}",
+                "{key} is {value}, expected {required}",
                 CORRECT_IT,
                 key=key,
                 value=quoted(value),
-                wanted=error,
+                required=error,
             ) from error
     return values, {key: value for key, value in table.items() if key not in known}
 

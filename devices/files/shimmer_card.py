@@ -8,9 +8,9 @@
 
 Each sample is a time of 3 bytes and the channels in a fixed order; where sensors were synchronised, each block begins
 with a sign and 8 bytes: how far this clock is ahead of the leading one's, all bits set where that is not known. By
-what an open reader of such files says of them (pyshimmer); one of its own test files and what Consensys made of it
-were read to the same numbers once, by hand. Calibrated as what is heard live. Parts of an hour each, of one folder and
-called by numbers, are one recording.
+what an open reader of such files states of them (pyshimmer); one of its own test files and what Consensys made of it
+were read to the same numbers once, by hand. Calibrated as what is received live. Parts of an hour each, of one folder
+and called by numbers, are one recording.
 """
 
 import struct
@@ -35,11 +35,11 @@ SYNCHRONISED, SHIMMER3 = 0x04, 3
 MOST_TICKS = 1 << 53  # 8000 years; what is more, was not set
 PERIODS = (16, 32768)  # ticks: 2048 Hz to 1 Hz
 LEAST_SAMPLES = 3
-MOST_AHEAD_OFF = 0.05 * TICK_HZ  # what the radio tells is that far off its line only where it is wrong
+MOST_AHEAD_OFF = 0.05 * TICK_HZ  # what the radio reports is that far off its line only where it is wrong
 MOST_OFF_RATE = 0.02
 GYR_SCALE = 100.0 * np.pi / 180  # what its sensitivities are stored in multiples of, per rad/s
 TIME_SIZE = 3
-# what is measured in the order in which it stands in a sample: bit of its switch, bytes
+# what is measured in the order in which it is in a sample: bit of its switch, bytes
 ORDER: Mapping[str, tuple[int, int]] = {
     "acc_low_noise": (7, 6),
     "battery": (13, 2),
@@ -196,7 +196,8 @@ def _since(raw: Ticks, begun: int, period: int) -> Ticks:
 
 
 def _ahead(name: str, offsets: Sequence[tuple[int, int]], count: int, period: int) -> FloatArray:
-    """(count,) ticks by which the clock is ahead, on a line through what the radio told; a few of it may be wrong."""
+    """(count,) ticks by which the clock is ahead, on a line through what the radio reported; a few of it may be
+    wrong."""
     at_sample, ahead = np.array(offsets, dtype=float).T
     if len(offsets) < 2:
         return np.full(count, ahead[0])
@@ -210,10 +211,10 @@ def _ahead(name: str, offsets: Sequence[tuple[int, int]], count: int, period: in
     if abs(slope) > MOST_OFF_RATE * period:
         raise FileRefusedError(
             name,
-            "its times give {found} samples per second, expected {told}",
+            "its times give {found} samples per second, expected {reported}",
             "Synchronise the sensors again in Consensys, then record again",
             found=f"{TICK_HZ / (period - slope):.4g}",
-            told=f"{TICK_HZ / period:.4g}",
+            reported=f"{TICK_HZ / period:.4g}",
         )
     return np.asarray(np.polyval(line, np.arange(count)))
 

@@ -3,9 +3,9 @@
 CSV holds calibrated data of one sensor, or of several side by side.
 
 A line `sep=`, a line of names such as `Shimmer_40AC_Accel_LN_X_CAL`, a line of units, as public files show them; a
-delimiter stands behind the last column. Times are milliseconds since 1970. Sensors that were synchronised by their
-base tell `TimestampSync`, and share its clock. Of two accelerometers that of the wide range is taken: a foot's landing
-is beyond the 2 g of the other.
+delimiter is behind the last column. Times are milliseconds since 1970. Sensors that were synchronised by their
+base report `TimestampSync`, and share its clock. Of two accelerometers that of the wide range is taken: a foot's
+landing is beyond the 2 g of the other.
 """
 
 import re
@@ -121,8 +121,8 @@ def _sensors(path: Path) -> list[ImportedSensor]:
     before, names = header_of(path, where, delimiters=DELIMITERS, header_names=CALIBRATED)
     with path.open("rb") as file:
         line = next(islice(file, len(before) + 1, None), b"").decode("utf-8", "replace").rstrip("\r\n")
-    told = [one.strip() for one in line.split(max(DELIMITERS, key=line.count))]
-    units = dict(zip(names, told, strict=False))  # a delimiter more or less stands behind the last
+    reported = [one.strip() for one in line.split(max(DELIMITERS, key=line.count))]
+    units = dict(zip(names, reported, strict=False))  # a delimiter more or less is behind the last
     found: dict[str, ShimmerColumns] = {}
     for name in names:
         if parts := NAME.fullmatch(name):
@@ -135,9 +135,9 @@ def _sensors(path: Path) -> list[ImportedSensor]:
     }
     if not whole:
         raise FileRefusedError(where, NOT_CALIBRATED, EXPORT_AGAIN)
-    wanted = {name for one in whole.values() for axes in one.columns.values() for name in axes.values()}
+    required = {name for one in whole.values() for axes in one.columns.values() for name in axes.values()}
     table = read_csv(
-        path, where, wanted, delimiters=DELIMITERS, keep_others=False, has_units=True, header_names=CALIBRATED
+        path, where, required, delimiters=DELIMITERS, keep_others=False, has_units=True, header_names=CALIBRATED
     )
     return [_sensor(path, table, units, sensor, columns) for sensor, columns in whole.items()]
 
@@ -174,10 +174,10 @@ def _scale(path: Path, units: Mapping[str, str], names: Sequence[str], quantity:
     Raises
     ------
     FileRefusedError
-        Their unit is not told, or none of the quantity.
+        Their unit is not reported, or none of the quantity.
     """
-    told = {unit_of(quantity, units.get(name, "")) for name in names}
-    unit = told.pop() if len(told) == 1 else ""
+    reported = {unit_of(quantity, units.get(name, "")) for name in names}
+    unit = reported.pop() if len(reported) == 1 else ""
     if not unit:
         raise FileRefusedError(
             path.name,

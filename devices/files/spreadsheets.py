@@ -15,7 +15,7 @@ from devices.files.tables import COPY_AGAIN, CORRECT_IT, Table
 ZIP = b"PK\x03\x04"
 WORDS_OF_SHEETS = ("xl/sharedStrings.xml", "xl/worksheets/sheet1.xml")  # where an Excel file keeps what cells say
 MOST_ROWS = 1_048_576  # of a sheet; a damaged file may name a row far beyond it
-HEADER_WITHIN = 50  # rows; what stands before the header of a measurement is short
+HEADER_WITHIN = 50  # rows; what is before the header of a measurement is short
 # what the library raises of damaged files; it has no error of its own for most of them
 DAMAGED = (
     zipfile.BadZipFile,
@@ -34,7 +34,7 @@ DAMAGED = (
 )
 
 
-def sheet_says(path: Path, word: bytes, within: int = 65_536) -> bool:
+def sheet_states(path: Path, word: bytes, within: int = 65_536) -> bool:
     """Whether an Excel file holds a word near the beginning of its first sheet or of the texts of its cells."""
     try:
         with zipfile.ZipFile(path) as archive:
@@ -58,7 +58,7 @@ def read_xlsx(path: Path, where: str, numeric: Collection[str], header_names: st
     numeric
         Columns to be read as numbers, NaN where empty; others are left out.
     header_names
-        The header is the first row with a cell that says this.
+        The header is the first row with a cell that states this.
 
     Raises
     ------
@@ -78,7 +78,7 @@ def read_xlsx(path: Path, where: str, numeric: Collection[str], header_names: st
         with path.open("rb") as file:
             book = openpyxl.load_workbook(file, read_only=True, data_only=True)
             for sheet in book.worksheets:
-                sheet.reset_dimensions()  # what it says of its own size may be wrong
+                sheet.reset_dimensions()  # what it states of its own size may be wrong
                 found = _read_sheet(sheet.iter_rows(values_only=True), where, numeric, header_names)
                 if found is not None:
                     return found

@@ -29,7 +29,7 @@ CORRECT_IT = "Correct the file or export it again"
 class Table:
     """One file's columns, all of one length: `numbers` those that were asked for as numbers, `texts` all others.
 
-    `place` says where a row of the table stands in the file ("line 12"). `is_open` is true for a text whose last line
+    `place` states where a row of the table is in the file ("line 12"). `is_open` is true for a text whose last line
     has no end: its last cell may have been cut.
     """
 
@@ -55,7 +55,7 @@ class TextShape:
     names
         Of the columns, in their order.
     units
-        What a line of units below the header says of each column; empty where there is no such line.
+        What a line of units below the header states of each column; empty where there is no such line.
     decimal
         The decimal point: "," in files of some countries.
     first
@@ -76,8 +76,8 @@ def shape_of(path: Path, where: str, is_unit: Callable[[str], bool], *, comment:
         has_units = len(units) == len(names) and any(map(is_unit, units)) and not any(map(_is_value, units))
         first = _cells_after(file, delimiter) if has_units else units
     has_comma = delimiter != "," and any(DECIMAL_COMMA.fullmatch(cell) for cell in first)
-    told = {name: unit for name, unit in zip(names, units, strict=True) if unit} if has_units else {}
-    return TextShape(tuple(names), told, "," if has_comma else ".", first)
+    reported = {name: unit for name, unit in zip(names, units, strict=True) if unit} if has_units else {}
+    return TextShape(tuple(names), reported, "," if has_comma else ".", first)
 
 
 def read_csv(
@@ -111,7 +111,7 @@ def read_csv(
     decimal
         The decimal point.
     header_names
-        The header is the first line in which this stands; lines before it are passed over.
+        The header is the first line in which this is; lines before it are passed over.
 
     Raises
     ------
@@ -122,8 +122,8 @@ def read_csv(
         names, delimiter, header_line = _read_header(file, where, comment, delimiters, header_names)
         header_line += _skip_line(file) if has_units else 0
         start = file.tell()
-        wanted = [name for name in names if keep_others or name in numeric]
-        arrow = _read_body(file, names, wanted, numeric, delimiter, decimal)
+        required = [name for name in names if keep_others or name in numeric]
+        arrow = _read_body(file, names, required, numeric, delimiter, decimal)
         is_open = _is_open(file, start)
         if isinstance(arrow, Exception) or _swallows_lines(arrow, numeric):
             _refuse_line(path, where, start, header_line, names, numeric, delimiter, decimal)
@@ -132,7 +132,7 @@ def read_csv(
             arrow = None
 
     unnamed = {f"{UNNAMED} {i}" for i in range(1, len(names) + 1)}
-    columns = {name: arrow.column(i) if arrow is not None else None for i, name in enumerate(wanted)}
+    columns = {name: arrow.column(i) if arrow is not None else None for i, name in enumerate(required)}
 
     def place(row: int) -> str:
         for i, (line, _) in enumerate(_lines(path, start, header_line)):
@@ -262,7 +262,7 @@ def _refuse_twice(names: list[str], where: str, place: str) -> None:
 
 
 def _read_body(
-    file: BinaryIO, names: list[str], wanted: list[str], numeric: Collection[str], delimiter: str, decimal: str
+    file: BinaryIO, names: list[str], required: list[str], numeric: Collection[str], delimiter: str, decimal: str
 ) -> Any:
     """The rows after the header as an Arrow table, or the error that Arrow raised."""
     import pyarrow as pa
@@ -276,14 +276,14 @@ def _read_body(
             parse_options=pcsv.ParseOptions(delimiter=delimiter),
             convert_options=pcsv.ConvertOptions(
                 column_types=types,
-                include_columns=wanted,
+                include_columns=required,
                 null_values=EMPTY_CELLS,
                 strings_can_be_null=False,
                 decimal_point=decimal,
             ),
         )
     except pa.ArrowMemoryError:
-        raise  # which says nothing of the file's lines
+        raise  # which gives nothing of the file's lines
     except pa.ArrowException as error:
         return error
 

@@ -4,7 +4,7 @@ A stream is a sensor, or several side by side, by the labels and units of its ch
 of the recording computer. Senders stamp when a packet comes, so stamps jump where packets were late; they are then put
 on one straight line through the stamps, and samples that are missing for good remain a gap in it.
 
-Not held against a recording of LabRecorder: against files that are laid out here as the format's description says.
+Not held against a recording of LabRecorder: against files that are laid out here as the format's description states.
 """
 
 from collections.abc import Iterator, Sequence
@@ -35,7 +35,7 @@ EVEN = 0.25  # of a step: stamps nearer to whole steps were made by the sensor's
 MOST_UNEVEN = 0.02  # of the samples
 LATE_S = 2.0  # so long a packet may be late; what is missing for longer was lost
 LEAST_LOSS_S = 0.03  # packets are not more punctual
-MOST_OFF_RATE = 0.02  # of what the sender tells; clocks of sensors are off by a thousandth of that
+MOST_OFF_RATE = 0.02  # of what the sender reports; clocks of sensors are off by a thousandth of that
 SEND_RATE = "Set the sender to give its sample rate, or to send the sensor's own times"
 
 
@@ -170,7 +170,7 @@ def _table(
 def _columns(stream: XdfStream) -> tuple[dict[str, FloatArray], dict[str, str], list[str]]:
     """Channels by their labels, their units, and the labels that are left out because several channels have them.
 
-    Where labels alone name no sensor it is one by the rules by which a stream is heard live: of a Shimmer's two
+    Where labels alone name no sensor it is one by the rules by which a stream is received live: of a Shimmer's two
     accelerometers the wide one. Its channels are called by their quantities then.
     """
     labels = list(stream.labels)[: stream.samples.shape[1]]
@@ -191,7 +191,7 @@ def _columns(stream: XdfStream) -> tuple[dict[str, FloatArray], dict[str, str], 
 
 
 def _straightened(stamp_s: FloatArray, rate_hz: float, clock: FileClock) -> StraightTimes | None:
-    """Straight times, where the stamps need them and the line has the rate that the sender tells."""
+    """Straight times, where the stamps need them and the line has the rate that the sender reports."""
     back = lasting_step_back(stamp_s, rate_hz)
     if back is not None:
         raise steps_back(clock, back, float(stamp_s[back - 1]), float(stamp_s[back]))
@@ -199,23 +199,23 @@ def _straightened(stamp_s: FloatArray, rate_hz: float, clock: FileClock) -> Stra
     if straight is not None and abs(straight.rate_hz / rate_hz - 1.0) > MOST_OFF_RATE:
         raise FileRefusedError(
             f"{clock.where}, {clock.place(0).partition(',')[0]}",
-            "its times give {found} samples per second, expected {told}",
+            "its times give {found} samples per second, expected {reported}",
             SEND_RATE,
             found=f"{straight.rate_hz:.4g}",
-            told=f"{rate_hz:g}",
+            reported=f"{rate_hz:g}",
         )
     return straight
 
 
 def lasting_step_back(stamp_s: FloatArray, rate_hz: float) -> int | None:
-    """Find the first sample from which on stamps of packets are earlier than those before tell, and stay so.
+    """Find the first sample from which on stamps of packets are earlier than those before report, and stay so.
 
     Parameters
     ----------
     stamp_s : (n,)
         Finite.
     rate_hz
-        As the sender tells it.
+        As the sender reports it.
     """
     window, least_s = max(round(LATE_S * rate_hz), 4), max(1.5 / rate_hz, LEAST_LOSS_S)
     back = np.flatnonzero(np.diff(stamp_s) < -least_s) + 1
@@ -244,12 +244,12 @@ def straight_times(stamp_s: FloatArray, rate_hz: float) -> StraightTimes | None:
     stamp_s : (n,)
         Finite, else they are left as they are.
     rate_hz
-        As the sender tells it.
+        As the sender reports it.
 
     Returns
     -------
     StraightTimes or None
-        None: the stamps are even as they are, or too few to tell.
+        None: the stamps are even as they are, or too few to report.
     """
     window = max(round(LATE_S * rate_hz), 4)
     if len(stamp_s) <= 2 * window or not np.isfinite(stamp_s).all():

@@ -14,7 +14,7 @@ import numpy as np
 from core.findings import Finding, Severity
 from core.samples import FloatArray, ImuBlock, SensorInfo
 from devices.clocks.clock import BACK_S
-from devices.drivers.ximu3 import DRIVER, MODEL, G, Ximu3Framer, heard_in
+from devices.drivers.ximu3 import DRIVER, MODEL, G, Ximu3Framer, received_in
 from devices.files.clock_repair import FileClock, repaired
 from devices.files.magnitudes import check_magnitudes
 from devices.files.own_clocks import with_own_clocks
@@ -42,8 +42,8 @@ def is_ximu3(path: Path, head: bytes) -> bool:
         return set(first.split(",")) >= {*GYR, *ACC}
     framer = Ximu3Framer()
     framer.feed(head, 0.0)
-    heard = framer.heard
-    return len(heard.rows) >= LEAST_MESSAGES and 10 * heard.damaged < len(heard.rows) + heard.skipped
+    received = framer.received
+    return len(received.rows) >= LEAST_MESSAGES and 10 * received.damaged < len(received.rows) + received.skipped
 
 
 def ximu3_trial(files: Sequence[Path], rate_hz: float | None = None) -> ImportedTrial:
@@ -85,14 +85,14 @@ def _begins(path: Path) -> str:
 
 
 def _of_bytes(path: Path) -> tuple[ImuBlock, list[Finding]]:
-    heard = heard_in(path)
+    received = received_in(path)
     name = FileClock(path.name, lambda row: f"sample {row + 1}", "its clock")
-    clock = repaired(np.array([row[0] for row in heard.rows]), name, slack=BACK_S)  # messages overtake each other
-    timed = [(float(time_s), *row[1:]) for time_s, row in zip(clock.stamps, heard.rows, strict=True) if time_s >= 0]
-    found = decoded(path.stem, replace(heard, rows=timed), [row[0] for row in timed])
+    clock = repaired(np.array([row[0] for row in received.rows]), name, slack=BACK_S)  # messages overtake each other
+    timed = [(float(time_s), *row[1:]) for time_s, row in zip(clock.stamps, received.rows, strict=True) if time_s >= 0]
+    found = decoded(path.stem, replace(received, rows=timed), [row[0] for row in timed])
     damaged = found.counts.damaged
-    told = [Finding("damaged_stretches", Severity.WARNING, "", {"count": damaged})] if damaged else []
-    return found.block, [*clock.findings, *told]
+    reported = [Finding("damaged_stretches", Severity.WARNING, "", {"count": damaged})] if damaged else []
+    return found.block, [*clock.findings, *reported]
 
 
 def _of_table(path: Path) -> tuple[ImuBlock, list[Finding]]:

@@ -72,7 +72,7 @@ from devices.simulation.walker_truth import (
     MovedRecording,
     RecordingTruth,
     SessionTruth,
-    tell_truth,
+    show_truth,
     truth_table,
 )
 from devices.simulation.walker_variation import NO_CHANGES, StepChanges, draw_changes, draw_gain, follow_joint
@@ -142,7 +142,7 @@ def simulate(settings: WalkerSettings) -> SimulatedSession:
     ValueError
         Two recordings of one name; a clock that is off by more than 0.2 s.
     """
-    names = [wanted.name for wanted in settings.recordings]
+    names = [required.name for required in settings.recordings]
     if len(set(names)) < len(names):
         raise ValueError(f"recordings need names of their own, got {names}")
     if any(abs(late_s) > MAX_LATE_S for late_s in settings.clock_late_s.values()):
@@ -155,8 +155,8 @@ def simulate(settings: WalkerSettings) -> SimulatedSession:
     rides: dict[tuple[Site, RecordingKind], Ride] = {}
     recordings: list[Recording] = []
     moved: list[MovedRecording] = []
-    for number, wanted in enumerate(settings.recordings):
-        if wanted.is_restrapped_before:
+    for number, required in enumerate(settings.recordings):
+        if required.is_restrapped_before:
             strapping = number
             mountings, rides = _mount(settings, strapping), {}
         soft = [joint for joint in LEG_JOINTS if not _is_bare(legs, joint.distal)]
@@ -165,7 +165,7 @@ def simulate(settings: WalkerSettings) -> SimulatedSession:
         recording, take, faults = _take(settings, number, legs, worn, faults, rides)
         recordings.append(recording)
         moved.append(take)
-    truth = tell_truth(settings, legs, moved, {site: fault.acc_bias_m_s2 for site, fault in start_faults.items()})
+    truth = show_truth(settings, legs, moved, {site: fault.acc_bias_m_s2 for site, fault in start_faults.items()})
     return SimulatedSession(_session(settings, recordings), truth, tuple(moved))
 
 
@@ -212,8 +212,8 @@ def _take(
 
     `rides` holds how each sensor rode when these straps were first moved so, and is filled where this is the first.
     """
-    wanted = settings.recordings[number]
-    kind = _kind_of(wanted)
+    required = settings.recordings[number]
+    kind = _kind_of(required)
     motions, pelvis, duration_s = _move(settings, number, worn.strapping, legs)
     imu: dict[Site, ImuBlock] = {}
     clocks: dict[Site, SensorClock] = {}
@@ -247,25 +247,25 @@ def _take(
         biases[site] = bias.mean(axis=0)
         after[site] = replace(faults[site], gyr_bias_rad_s=bias[-1])
     recording = Recording(
-        name=wanted.name,
+        name=required.name,
         kind=kind,
-        folder=wanted.name.replace(" ", "_"),
+        folder=required.name.replace(" ", "_"),
         imu=imu,
-        is_restrapped_before=wanted.is_restrapped_before,
+        is_restrapped_before=required.is_restrapped_before,
     )
     return (
         recording,
         MovedRecording(
-            wanted.name, isinstance(wanted, Standing), motions, clocks, worn.mountings, biases, worn.gains, pelvis
+            required.name, isinstance(required, Standing), motions, clocks, worn.mountings, biases, worn.gains, pelvis
         ),
         after,
     )
 
 
-def _kind_of(wanted: Standing | FreeMotion | Walk | TimedCourse) -> RecordingKind:
-    if isinstance(wanted, Standing):
+def _kind_of(required: Standing | FreeMotion | Walk | TimedCourse) -> RecordingKind:
+    if isinstance(required, Standing):
         return RecordingKind.STANDING
-    return RecordingKind.FREE_MOTION if isinstance(wanted, FreeMotion) else RecordingKind.WALKING
+    return RecordingKind.FREE_MOTION if isinstance(required, FreeMotion) else RecordingKind.WALKING
 
 
 def _pelvis_poses(
@@ -304,27 +304,27 @@ def _move(
 
     The pelvis is None where no sensor is on it: then each leg's hip goes its own way.
     """
-    wanted = settings.recordings[number]
+    required = settings.recordings[number]
     pelvis = None
     rng = _rng(settings, 6, number)
     per_leg = {side: _rng(settings, 7, number, i) for i, side in enumerate(Side)}
-    if isinstance(wanted, FreeMotion) and is_lunging(wanted):
-        duration_s = wanted.duration_s
-        pelvis, motions = lunge(legs, wanted, _fine_clock(settings, duration_s), _rng(settings, 9, number))
-    elif isinstance(wanted, TimedCourse):
-        motions, seated, _, duration_s = walk_course(wanted, legs)
+    if isinstance(required, FreeMotion) and is_lunging(required):
+        duration_s = required.duration_s
+        pelvis, motions = lunge(legs, required, _fine_clock(settings, duration_s), _rng(settings, 9, number))
+    elif isinstance(required, TimedCourse):
+        motions, seated, _, duration_s = walk_course(required, legs)
         if Site.PELVIS in settings.sites:
             pelvis, motions = course_pelvis(motions, seated)
-    elif isinstance(wanted, FreeMotion):
-        duration_s = wanted.duration_s * (2 if wanted.is_in_turn else 1)
+    elif isinstance(required, FreeMotion):
+        duration_s = required.duration_s * (2 if required.is_in_turn else 1)
         time_s = _fine_clock(settings, duration_s)
-        starts = {Side.LEFT: 0.0, Side.RIGHT: wanted.duration_s if wanted.is_in_turn else 0.0}
-        motions = {side: move_freely(legs[side], wanted, time_s, starts[side], per_leg[side]) for side in Side}
+        starts = {Side.LEFT: 0.0, Side.RIGHT: required.duration_s if required.is_in_turn else 0.0}
+        motions = {side: move_freely(legs[side], required, time_s, starts[side], per_leg[side]) for side in Side}
     else:
-        changes = draw_changes(settings, number, strapping, wanted) if isinstance(wanted, Walk) else NO_CHANGES
-        motions, duration_s = _stand_or_walk(settings, wanted, changes, legs, rng, per_leg)
-    if isinstance(wanted, Walk) and wanted.treadmill is not None:
-        motions = on_treadmill(motions, wanted.treadmill, wanted.speed_m_s)
+        changes = draw_changes(settings, number, strapping, required) if isinstance(required, Walk) else NO_CHANGES
+        motions, duration_s = _stand_or_walk(settings, required, changes, legs, rng, per_leg)
+    if isinstance(required, Walk) and required.treadmill is not None:
+        motions = on_treadmill(motions, required.treadmill, required.speed_m_s)
     compass = rotation_about(Z_AXIS, rng.uniform(0.0, 2.0 * np.pi, 1))[0]
     if Site.PELVIS in settings.sites and pelvis is None:
         pelvis, motions = with_pelvis(motions, _rng(settings, 9, number))
@@ -334,25 +334,25 @@ def _move(
 
 def _stand_or_walk(
     settings: WalkerSettings,
-    wanted: Standing | Walk,
+    required: Standing | Walk,
     changes: StepChanges,
     legs: Mapping[Side, Leg],
     rng: np.random.Generator,
     per_leg: Mapping[Side, np.random.Generator],
 ) -> tuple[dict[Side, LegMotion], float]:
-    if isinstance(wanted, Walk):
-        # no stride moved longer than 2.2 s; the plan says how much of this is needed
-        slowest = max(1.0, float(changes.of_steps(2 * wanted.strides)[0].max()))
-        ample = wanted.standing_before_s + wanted.standing_after_s + 2.2 * slowest * (wanted.strides + 2)
+    if isinstance(required, Walk):
+        # no stride moved longer than 2.2 s; the plan states how much of this is needed
+        slowest = max(1.0, float(changes.of_steps(2 * required.strides)[0].max()))
+        ample = required.standing_before_s + required.standing_after_s + 2.2 * slowest * (required.strides + 2)
         time_s = _fine_clock(settings, ample)
         first = list(Side)[int(rng.integers(2))]
-        plan = plan_walk(wanted, time_s, first, settings.prosthetic_side, rng, changes)
+        plan = plan_walk(required, time_s, first, settings.prosthetic_side, rng, changes)
         time_s = time_s[time_s <= plan.duration_s + MARGIN_S]
         plan = replace(plan, hip_path_m=plan.hip_path_m[: len(time_s)])
-        legs = {side: set_up(leg, wanted.prosthesis) for side, leg in legs.items()}
+        legs = {side: set_up(leg, required.prosthesis) for side, leg in legs.items()}
     else:
-        time_s = _fine_clock(settings, wanted.duration_s)
-        plan = plan_standing(time_s, wanted.duration_s)
+        time_s = _fine_clock(settings, required.duration_s)
+        plan = plan_standing(time_s, required.duration_s)
     sway_m = sway_of(time_s, rng)
     return {side: walk_leg(legs[side], plan, time_s, sway_m, per_leg[side]) for side in Side}, plan.duration_s
 

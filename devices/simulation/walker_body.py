@@ -27,7 +27,7 @@ class Tissue(StrEnum):
 class Motion(StrEnum):
     """How a leg is moved to identify its joints.
 
-    SIDE_LYING: knee and ankle bend, the thigh hardly moves, the knee axis stands near vertical. LUNGES: left and right
+    SIDE_LYING: knee and ankle bend, the thigh hardly moves, the knee axis is near vertical. LUNGES: left and right
     in turn, the body turning round between them.
     """
 
@@ -47,7 +47,7 @@ class Manner(StrEnum):
     ankle-foot orthosis. DRAGGING: a foot that hangs, its toes on the floor in early swing, landing on the toes or flat;
     toe-off is where the toes begin to slide. TOE_FIRST: lands on the toes, then lowers the heel. HEMIPARETIC: of one
     side, after a stroke: the foot lands and lifts nearly flat, the knee bends little in swing, and the leg lands late
-    and stands for a shorter time than the other.
+    and represents a shorter time than the other.
     """
 
     ORDINARY = "ordinary"
@@ -91,7 +91,8 @@ class Variation:
     """Standard deviations beyond the walker's own small ones.
 
     From stride to stride, where `correlation` is that of successive strides; from walk to walk; and from strapping to
-    strapping, whose `knee_deg` and `ankle_deg` are of what the sensors tell, the joints themselves staying as they are.
+    strapping, whose `knee_deg` and `ankle_deg` are of what the sensors report, the joints themselves staying as they
+    are.
     """
 
     strides: GaitChange = NO_CHANGE
@@ -194,7 +195,7 @@ class Walk:
 class SensorErrors:
     """Densities per root hertz (of the half sample rate), standard deviations of what is constant in one session.
 
-    `..._step_...` is the least difference between two values that the sensor can tell (0: any), `..._range_...` the
+    `..._step_...` is the least difference between two values that the sensor can report (0: any), `..._range_...` the
     largest value, positive or negative; `COARSE` and `VERY_COARSE` are those of real sensors.
     """
 
@@ -248,7 +249,7 @@ class TimedCourse:
     lap_m
         Of the courses to and fro, from turn to turn.
     pauses
-        How often the patient stands still on the way, in courses to and fro.
+        How often the patient is still on the way, in courses to and fro.
     hesitates
         Before a turn the patient waits for a moment and takes shorter steps.
     slowing
@@ -316,7 +317,7 @@ class WalkerSettings:
         truth (`JointTruth.sensor_gain`), whose angles stay those of the bones.
     tissue_turn_rad
         How far tissue turns a thigh's sensor about the flexion axis, to and fro in step with the gait, where there is
-        tissue; shank and foot by their share. Nothing tells it from flexion. On people it may be 2 to 4 deg.
+        tissue; shank and foot by their share. Nothing reports it from flexion. On people it may be 2 to 4 deg.
     variation
         How gait varies beyond the walker's own small spread: `PEOPLE` is as people do.
     """

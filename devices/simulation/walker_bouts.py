@@ -134,8 +134,8 @@ def plan_bout(
 
 def _alike(change: GaitChange, strides: int) -> FootChanges:
     """The same in every stride."""
-    told = (change.knee_deg, change.ankle_deg, change.stance_percent)
-    return FootChanges(*(np.full(strides, value) for value in told))
+    reported = (change.knee_deg, change.ankle_deg, change.stance_percent)
+    return FootChanges(*(np.full(strides, value) for value in reported))
 
 
 def walk_bouts(
@@ -182,7 +182,7 @@ def walk_bouts(
 def climb(motion: LegMotion, heights_m: FloatArray) -> LegMotion:
     """The same motion on stairs: each swing leads the foot to the height of its next foothold.
 
-    The leg goes up as it is, with the angles of level walking: what is told of it is the way of the foot alone.
+    The leg goes up as it is, with the angles of level walking: what is given of it is the way of the foot alone.
 
     Parameters
     ----------

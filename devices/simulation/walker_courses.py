@@ -143,8 +143,8 @@ def simulate_course(course: TimedCourse) -> SimulatedCourse:
             imu[name][site] = record(settings, site, clock, leg.time_s, poses, faults[site], chance)[0]
     for site, (from_s, to_s) in course.silent_s.items():
         time_s = imu["course"][site].time_s
-        heard: BoolArray = (time_s < from_s) | (time_s > to_s)
-        imu["course"][site] = imu["course"][site].select(heard)
+        received: BoolArray = (time_s < from_s) | (time_s > to_s)
+        imu["course"][site] = imu["course"][site].select(received)
     recordings = (
         Recording("standing", RecordingKind.STANDING, "standing", imu["standing"]),
         Recording("course", RecordingKind.WALKING, "course", imu["course"]),
@@ -378,14 +378,14 @@ def _truth(
     contacts = np.sort(np.concatenate([m.events.initial_contact_s for m in motions.values()]))
     offs = np.sort(np.concatenate([m.events.toe_off_s for m in motions.values()]))
     following = np.searchsorted(offs, contacts)
-    stands = [(float(a), float(offs[k])) for a, k in zip(contacts, following, strict=True) if k < len(offs)]
+    shown = [(float(a), float(offs[k])) for a, k in zip(contacts, following, strict=True) if k < len(offs)]
     seat = _seat_truth(motions, changes)
     return CourseTruth(
         time_s=time_s,
         way_m=way,
         contacts_s=contacts,
         turns=tuple(turns),
-        pauses_s=tuple((a, b) for a, b in stands if b - a >= PAUSE_S and not np.any((contacts > a) & (contacts < b))),
+        pauses_s=tuple((a, b) for a, b in shown if b - a >= PAUSE_S and not np.any((contacts > a) & (contacts < b))),
         left_seat_s=seat["left_seat_s"],
         upright_s=seat["upright_s"],
         seated_s=seat["seated_s"],

@@ -1,9 +1,9 @@
 """Standing and walking of a simulated leg, whose foot never slides and whose knee bends as a human's does.
 
-The order of things for one leg: when and where the foot stands (`StepPlan`); the forward path of the hips, shared by
+The order of things for one leg: when and where the foot is (`StepPlan`); the forward path of the hips, shared by
 both legs; the knee curve; the pitch of the foot while it rolls over heel, sole and toe. These give the ankle in stance.
 In swing the ankle's curve and the hip's path are bridged from toe-off to the next initial contact; the foot follows.
-Each hip has a path of its own: a pelvis would have to give by some centimetres, which no sensor on the legs can tell.
+Each hip has a path of its own: a pelvis would have to give by some centimetres, which no sensor on the legs can report.
 """
 
 from dataclasses import replace
@@ -129,7 +129,7 @@ def walk_leg(leg: Leg, plan: WalkPlan, time_s: FloatArray, sway_m: FloatArray, r
 
 
 def _as_set(leg: Leg, plan: WalkPlan, time_s: FloatArray) -> WalkPlan:
-    """The plan as the prosthesis is set: where it stands, when it is flat and when its heel rises."""
+    """The plan as the prosthesis is set: where it is, when it is flat and when its heel rises."""
     setting = leg.prosthesis
     if setting == AS_BUILT:
         return plan
@@ -182,11 +182,11 @@ def _knee_curve(leg: Leg, steps: StepPlan, gait: Gait, time_s: FloatArray, rng: 
             on = off - stance_s
             rows.append((steps.heel_rise_s[i], rest))
         for p, deg in KNEE_STANCE:
-            is_wanted = (i > 0 or on + p * stance_s > steps.heel_rise_s[i] + 0.02) and (i < last or p < 0.3)
-            if i < last and is_wanted:
+            is_required = (i > 0 or on + p * stance_s > steps.heel_rise_s[i] + 0.02) and (i < last or p < 0.3)
+            if i < last and is_required:
                 size = loading if p < 0.6 else swing
                 rows.append((on + p * (off - on), 3.5 + (deg - 3.5) * size))
-            elif is_wanted:
+            elif is_required:
                 rows.append((on + p * stance_s, 3.5 + (deg - 3.5) * loading))
         if i == last:
             rows.append((on + 0.6 * stance_s, rest))
@@ -228,10 +228,10 @@ def _contact_pitch(leg: Leg, gait: Gait, hip_ahead_m: float) -> float:
     """The pitch over that of mid-stance that lands the heel with the ankle at about zero; the last step nearly flat."""
     if gait.contact_pitch_rad < 0.0:  # on the toes
         return gait.contact_pitch_rad
-    wanted = np.deg2rad(-3.0 if leg.is_prosthetic else 1.0) - leg.prosthesis.plantar_rad
+    required = np.deg2rad(-3.0 if leg.is_prosthetic else 1.0) - leg.prosthesis.plantar_rad
     lean = _shank_lean(leg, np.array([hip_ahead_m]), np.deg2rad(np.array([4.0])))
     most = gait.contact_pitch_rad + max(0.0, -leg.prosthesis.plantar_rad)
-    return float(np.clip(wanted - lean[0], np.deg2rad(2.0), most))
+    return float(np.clip(required - lean[0], np.deg2rad(2.0), most))
 
 
 def _toe_off_pitch(leg: Leg, gait: Gait, hip_ahead_m: float, knee_deg: float, ankle_deg: float) -> float:
@@ -241,10 +241,10 @@ def _toe_off_pitch(leg: Leg, gait: Gait, hip_ahead_m: float, knee_deg: float, an
         return gait.toe_off_pitch_rad - more_rad
     knee = np.deg2rad(np.array([3.5 + 27.5 * leg.knee_gain * gait.knee_swing + 27.5 * knee_deg / KNEE_PEAK_DEG]))
     built = np.deg2rad(-2.0) - leg.prosthesis.plantar_rad
-    wanted = built if leg.is_prosthetic else gait.toe_off_ankle_rad * leg.ankle_gain - more_rad
+    required = built if leg.is_prosthetic else gait.toe_off_ankle_rad * leg.ankle_gain - more_rad
     pitch = np.array([-0.5])
     for _ in range(8):  # the rolling foot carries the ankle forward: a contraction by a fifth each time
-        pitch = wanted - _shank_lean(leg, hip_ahead_m - _roll(pitch)[0], knee)
+        pitch = required - _shank_lean(leg, hip_ahead_m - _roll(pitch)[0], knee)
     return float(pitch[0])
 
 
@@ -295,7 +295,7 @@ def _roll(pitch: FloatArray) -> tuple[FloatArray, FloatArray]:
 
 
 def _shank_lean(leg: Leg, ahead_m: FloatArray, knee: FloatArray) -> FloatArray:
-    """How far the shank leans forward, rad (n,), when the hip stands `ahead_m` of the ankle and the knee is bent."""
+    """How far the shank leans forward, rad (n,), when the hip is `ahead_m` of the ankle and the knee is bent."""
     along = leg.shank_m + leg.thigh_m * np.cos(knee)
     across = leg.thigh_m * np.sin(knee)
     return np.arcsin(ahead_m / np.hypot(along, across)) + np.arctan2(across, along)

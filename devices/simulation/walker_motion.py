@@ -39,7 +39,7 @@ class LegMotion:
     """Poses of one leg on the fine clock `time_s` (n,), earth z up.
 
     `rotations` and `origins_m` hold thigh, shank and foot in this order: earth from segment (3, n, 3, 3), and the place
-    of the segment's proximal joint (3, n, 3). `footholds_m` (i, 2) is where the ankle stands over the floor at each
+    of the segment's proximal joint (3, n, 3). `footholds_m` (i, 2) is where the ankle is over the floor at each
     stance.
     """
 
@@ -245,9 +245,9 @@ def _changing_phase(t: FloatArray, frequency_hz: float, rng: np.random.Generator
 
 
 def _lie_on_the_side(leg: Leg, from_vertical_rad: float) -> FloatArray:
-    """The body turned about its forward axis so that the resting knee axis stands `from_vertical_rad` from vertical."""
+    """The body turned about its forward axis so that the resting knee axis is `from_vertical_rad` from vertical."""
     elevation = np.arctan2(leg.knee_axis[2], leg.knee_axis[1])
     # the axis keeps its forward component, which the turn about x cannot remove
     reach = np.hypot(leg.knee_axis[1], leg.knee_axis[2])
-    wanted = np.arcsin(min(np.cos(from_vertical_rad) / reach, 1.0))
-    return rotation_about(X_AXIS, np.array([wanted - elevation]))
+    required = np.arcsin(min(np.cos(from_vertical_rad) / reach, 1.0))
+    return rotation_about(X_AXIS, np.array([required - elevation]))

@@ -19,7 +19,7 @@ HIP_AHEAD_OF_ANKLE_M = 0.03  # standing, over the middle of the foot
 class StepPlan:
     """The stances of one foot: the first and the last are standing, so contact and toe-off are infinite at the ends.
 
-    All (i,). `ankle_m` is where along the path the ankle stands. `knee_deg` and `ankle_deg` are added to the peaks of
+    All (i,). `ankle_m` is where along the path the ankle is. `knee_deg` and `ankle_deg` are added to the peaks of
     the swing that follows and of the toe-off that ends the stance.
     """
 
@@ -123,7 +123,7 @@ def plan_foot(
     stride_time: FloatArray,
     changes: FootChanges,
 ) -> StepPlan:
-    """The stances of one foot from when it lands and where its ankle then stands.
+    """The stances of one foot from when it lands and where its ankle then is.
 
     Parameters
     ----------

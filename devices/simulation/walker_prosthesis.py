@@ -4,7 +4,7 @@ Modelled, since no choice of the patient is in it:
 
 - a foot set more plantarflexed points so much further down wherever nothing bends it: in swing, as it lands and as it
   leaves the floor. It lands flatter, is flat sooner, and the heel rises while the shank leans by so much less;
-- a foot set further back stands so much further behind the hip: the shank leans further forward in all of stance, and
+- a foot set further back is so much further behind the hip: the shank leans further forward in all of stance, and
   the heel rises sooner by what the hip takes for that way;
 - what stops the knee stops it so much earlier: in late swing, and wherever it was straighter in stance;
 - resistance to extension brings the knee to its stop later, resistance to flexion lowers the peak of swing, and
@@ -14,7 +14,7 @@ Modelled, since no choice of the patient is in it:
 Not modelled: that people compensate. Where the knee of above-knee users was moved by 2 cm, the hip's moment, the length
 of the step and the trunk answered (Koehler-McNicholas, Lipschutz & Gard 2016, J Rehabil Res Dev 53(6):1089, abstract
 read); in ten with a prosthesis below the knee neither angles nor times changed (Jonkergouw 2019, Gait Posture 68:122,
-abstract and highlights read). So a change here moves more than it will on people, and says nothing of them.
+abstract and highlights read). So a change here moves more than it will on people, and gives nothing of them.
 """
 
 from dataclasses import dataclass

@@ -54,7 +54,7 @@ class FootTruth:
     Attributes
     ----------
     footholds_m : (i, 2)
-        Where the ankle stands over the floor at each stance, the first and the last being standing.
+        Where the ankle is over the floor at each stance, the first and the last being standing.
     ankle_path_m : (m, 3)
         Earth axes, z up, at the instants `time_s` (m,).
     """
@@ -105,7 +105,7 @@ class MovedRecording:
     pelvis: PelvisMotion | None = None
 
 
-def tell_truth(
+def show_truth(
     settings: WalkerSettings,
     legs: Mapping[Side, Leg],
     moved: Sequence[MovedRecording],

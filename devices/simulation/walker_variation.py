@@ -55,7 +55,7 @@ def draw_changes(settings: WalkerSettings, number: int, strapping: int, walk: Wa
         is_changed = walk.changed_side in (None, side)
         change = walk.change if is_changed else NO_CHANGE
         feet[side] = FootChanges(
-            # a strapping changes what sensors tell of a joint, not the joint
+            # a strapping changes what sensors report of a joint, not the joint
             knee_deg=series.of("knee_deg", change.knee_deg, 0.0),
             ankle_deg=series.of("ankle_deg", change.ankle_deg, 0.0),
             stance_percent=series.of("stance_percent", change.stance_percent, variation.strappings.stance_percent),

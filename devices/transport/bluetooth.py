@@ -51,7 +51,7 @@ class Announced:
     device
         As the library wants it for a link.
     rssi_dbm
-        How strongly it was heard; None: that was not told.
+        How strongly it was received; None: that was not reported.
     """
 
     name: str
@@ -69,17 +69,17 @@ class Radio:
     ----------
     backend
         What makes links, if it is not this computer's own Bluetooth.
-    heard
+    received
         Who announces itself to that backend.
     """
 
     def __init__(
         self,
         backend: "type[BaseBleakClient] | None" = None,
-        heard: Callable[[], Sequence[Announced]] | None = None,
+        received: Callable[[], Sequence[Announced]] | None = None,
     ) -> None:
         self.backend = backend
-        self.heard = heard
+        self.received = received
         self.connecting = asyncio.Lock()
         self._loop: asyncio.AbstractEventLoop | None = None
         self._starting = threading.Lock()
@@ -119,8 +119,8 @@ class Radio:
         SourceRefusedError
             There is no Bluetooth here, or it is switched off.
         """
-        if self.heard is not None:
-            return list(self.heard())
+        if self.received is not None:
+            return list(self.received())
         if find_spec("bleak") is None:
             raise BluetoothMissingError(
                 "Bluetooth LE sensors cannot connect: a software library is missing",
@@ -139,14 +139,14 @@ class Radio:
                 ) from problem
         return [
             Announced(
-                told.local_name or device.name or "",
+                reported.local_name or device.name or "",
                 device.address,
-                tuple(told.manufacturer_data),
+                tuple(reported.manufacturer_data),
                 device,
-                tuple(map(str.lower, told.service_uuids)),
-                told.rssi,
+                tuple(map(str.lower, reported.service_uuids)),
+                reported.rssi,
             )
-            for device, told in found.values()
+            for device, reported in found.values()
         ]
 
     def _running(self) -> asyncio.AbstractEventLoop:
@@ -208,13 +208,13 @@ class BluetoothLink:
             await self._up().write_gatt_char(uuid, data, response=True if is_answered else None)
 
     async def subscribe(self, characteristic: int, uuid: str) -> None:
-        """Let what this notifies be heard."""
+        """Let what this notifies be received."""
 
-        def heard(_sender: object, data: bytearray) -> None:
+        def received(_sender: object, data: bytearray) -> None:
             self._notified(characteristic, bytes(data))
 
         async with self._turn, self._lost_within(OPERATION_S):
-            await self._up().start_notify(uuid, heard)
+            await self._up().start_notify(uuid, received)
 
     def _up(self) -> "BleakClient":
         if self._client is None or not self._client.is_connected:
@@ -239,7 +239,7 @@ async def _begun(work: Coroutine[Any, Any, Result], ended: threading.Event) -> "
 
 
 async def _left(client: "BleakClient") -> None:
-    with suppress(Exception):  # it is gone, whatever its adapter says to that
+    with suppress(Exception):  # it is gone, whatever its adapter states to that
         await _within(client.disconnect(), LEAVES_S)
 
 

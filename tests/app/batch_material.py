@@ -26,7 +26,7 @@ def swinging_session(seed: int, patient: Patient = NOBODY, notes: str = "") -> S
 
 @cache
 def walked_session() -> Session:
-    """A patient on whom everything was typed that says who it is, with a walk of both legs."""
+    """A patient on whom everything was typed that states who it is, with a walk of both legs."""
     session = simulate(WalkerSettings(seed=3, recordings=(Standing(), FreeMotion(), Walk(strides=8)))).session
     recordings = tuple(
         replace(one, condition="barefoot" if one.kind is RecordingKind.WALKING else "", note="Anna Muster limped")

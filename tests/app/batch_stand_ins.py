@@ -1,4 +1,4 @@
-"""What stands in for the analysis of a session where only the handing out is looked at; workers import it by name."""
+"""What is in for the analysis of a session where only the handing out is looked at; workers import it by name."""
 
 import hashlib
 import os
@@ -51,7 +51,7 @@ def fails(task: StandIn) -> str:
 
 
 def sleeps(task: StandIn) -> int:
-    """Take as many milliseconds as the number says."""
+    """Take as many milliseconds as the number states."""
     time.sleep(task.number / 1000)
     return task.number
 

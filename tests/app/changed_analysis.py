@@ -1,4 +1,4 @@
-"""An analysis with something changed by hand, judged anew as the program would."""
+"""An analysis with something changed by hand, judged again as the program would."""
 
 from collections.abc import Iterable
 from dataclasses import replace

@@ -38,7 +38,7 @@ def look(qapp: QApplication) -> Iterator[ThemeNotifier]:
     look = ThemeNotifier()
     look.set_dark(False)
     yield look
-    # what the test closed is gone first: a scene that Python let go of must not be told of a change
+    # what the test closed is gone first: a scene that Python let go of must not be given of a change
     qapp.sendPostedEvents(None, QEvent.Type.DeferredDelete)
     look.set_scale(1.0)
     qapp.setStyleSheet("")

@@ -10,7 +10,7 @@ from core.results import Analysis, Calibration, Method, RecordingAnalysis, SideG
 from core.samples import Recording
 from core.timed.protocols import TimedProtocol
 from tests.core.timed.built_tests import built_test
-from tests.core.verdicts.built_walk import Told, calibrations, each, judged_walk, leg, walk
+from tests.core.verdicts.built_walk import Reported, calibrations, each, judged_walk, leg, walk
 
 STRIDE_S = 1.1
 
@@ -22,7 +22,7 @@ def walked(
     speed_m_s: float = 1.0,
     stance_percent: float = 60.0,
     strides: int = 12,
-    told: Told | None = None,
+    reported: Reported | None = None,
 ) -> RecordingAnalysis:
     """A judged walk: the left knee bends by `knee_deg` from stance to swing, the right by 60; the right stance is 60 %.
 
@@ -32,7 +32,7 @@ def walked(
     left = leg(Side.LEFT, strides, length_m=length_m, stance_percent=stance_percent, time_s=STRIDE_S)
     right = leg(Side.RIGHT, strides, length_m=length_m, time_s=STRIDE_S)
     gait = walk(left=_with_knee(left, knee_deg), right=_with_knee(right, 60.0))
-    return judged_walk(replace(gait, name=name), told)
+    return judged_walk(replace(gait, name=name), reported)
 
 
 def timed(
@@ -42,31 +42,33 @@ def timed(
     distance_m: float = 10.0,
     name: str = "walk 9",
     is_end_by_key: bool = False,
-    told: Told | None = None,
+    reported: Reported | None = None,
 ) -> RecordingAnalysis:
     """A walk that is a timed test; from a chair alone it has no stride."""
     found = built_test(protocol, time_s=time_s, distance_m=distance_m, is_end_by_key=is_end_by_key)
-    made = replace(walked(name, told=told), timed=found)
+    made = replace(walked(name, reported=reported), timed=found)
     return replace(made, gait={}) if protocol is TimedProtocol.SIT_TO_STAND else made
 
 
 def course(
-    *walks: tuple[RecordingAnalysis, str], affected: Side | None = Side.LEFT, told: Told | None = None
+    *walks: tuple[RecordingAnalysis, str], affected: Side | None = Side.LEFT, reported: Reported | None = None
 ) -> Course:
     """The course of a visit with these walks, each with its condition."""
-    return course_of(analysis(*(one for one, _ in walks), affected=affected, told=told), recordings(*walks))
+    return course_of(analysis(*(one for one, _ in walks), affected=affected, reported=reported), recordings(*walks))
 
 
-def analysis(*walks: RecordingAnalysis, affected: Side | None = Side.LEFT, told: Told | None = None) -> Analysis:
-    calibration = Calibration(tuple(one.name for one in walks), dict(told or calibrations()))
+def analysis(
+    *walks: RecordingAnalysis, affected: Side | None = Side.LEFT, reported: Reported | None = None
+) -> Analysis:
+    calibration = Calibration(tuple(one.name for one in walks), dict(reported or calibrations()))
     return Analysis(Method.ROBUST, True, (calibration,), walks, affected_side=affected)
 
 
 def recordings(*walks: tuple[RecordingAnalysis, str]) -> list[Recording]:
-    return [Recording(one.name, one.kind, one.folder, {}, condition=said) for one, said in walks]
+    return [Recording(one.name, one.kind, one.folder, {}, condition=stated) for one, stated in walks]
 
 
-def unsure(joint: Joint) -> Told:
+def unsure(joint: Joint) -> Reported:
     """Calibrations that withhold all of one joint."""
     return calibrations(joint, axis_sd_rad=None)
 

@@ -1,7 +1,7 @@
-"""What do the report and the results on the screen say of each figure: told, to be read with care, or withheld?
+"""What do the report and the results on the screen say of each figure: reported, to be read with care, or not reported?
 
 Read from the words alone, as a reader has them: the text of the PDF and the cells of the tables. Figures are named as
-in strides.csv; what is withheld for want of a zero or of a sign is withheld here.
+in strides.csv; what is not reported for want of a zero or of a sign is not reported here.
 """
 
 import io
@@ -12,23 +12,23 @@ from enum import StrEnum
 import pypdf
 
 from app.results.result_page import ResultPage
-from app.summary.walk_figures import MAY_BE_MIRRORED, NO_HEIGHT, NO_ZERO, WITHHELD
+from app.summary.walk_figures import MAY_BE_MIRRORED, NO_HEIGHT, NO_ZERO, NOT_REPORTED
 from app.widgets.figures_table import CARE_MARK
 from app.widgets.table import CellTable
 from app.widgets.table_cells import EMPTY, TextCell
 from core.body import Side
 
 
-class Said(StrEnum):
+class Stated(StrEnum):
     """What a reader learns of one figure."""
 
-    TOLD = "told"
+    REPORTED = "told"
     CARE = "care"
-    WITHHELD = "withheld"
+    NOT_REPORTED = "withheld"
     NOT_MEASURED = "not_measured"
 
 
-Doubts = dict[tuple[Side, str], Said]
+Doubts = dict[tuple[Side, str], Stated]
 
 NUMBER = r"\u2212?\d+\.\d+(?: ± \d+\.\d+)?(?: \*)?"
 CELL = rf"({NUMBER}|not reported|not measured|no peak|–)"
@@ -59,7 +59,7 @@ OF_BOTH = {
 }
 
 
-def said_in_report(pdf: bytes) -> Doubts:
+def stated_in_report(pdf: bytes) -> Doubts:
     """Of the figures in the tables on pages two and three; those of both legs stand at each."""
     pages = [" ".join(page.extract_text().split()) for page in pypdf.PdfReader(io.BytesIO(pdf)).pages]
     found: Doubts = {}
@@ -84,12 +84,12 @@ def _row(text: str, pattern: str, column: str) -> Doubts:
     return {(side, column): _in_report(cell) for side, cell in zip(Side, match.groups(), strict=True)}
 
 
-def _in_report(cell: str) -> Said:
+def _in_report(cell: str) -> Stated:
     if cell == "not reported":
-        return Said.WITHHELD
+        return Stated.NOT_REPORTED
     if cell in ("not measured", "–"):
-        return Said.NOT_MEASURED
-    return Said.CARE if cell.endswith("*") else Said.TOLD
+        return Stated.NOT_MEASURED
+    return Stated.CARE if cell.endswith("*") else Stated.REPORTED
 
 
 ON_SCREEN = {  # rows of the tables beside the charts, peaks with the heading above them
@@ -108,23 +108,23 @@ ON_SCREEN = {  # rows of the tables beside the charts, peaks with the heading ab
     "Stance": "stance_percent",
     "Double support": "double_support_percent",
 }
-UNKNOWN: Mapping[str, Said] = {
-    WITHHELD: Said.WITHHELD,
-    NO_ZERO: Said.WITHHELD,
-    NO_HEIGHT: Said.WITHHELD,
-    MAY_BE_MIRRORED: Said.WITHHELD,
-    "none": Said.NOT_MEASURED,
-    "": Said.NOT_MEASURED,
+UNKNOWN: Mapping[str, Stated] = {
+    NOT_REPORTED: Stated.NOT_REPORTED,
+    NO_ZERO: Stated.NOT_REPORTED,
+    NO_HEIGHT: Stated.NOT_REPORTED,
+    MAY_BE_MIRRORED: Stated.NOT_REPORTED,
+    "none": Stated.NOT_MEASURED,
+    "": Stated.NOT_MEASURED,
 }
 
 
-def said_on_screen(page: ResultPage) -> Doubts:
+def stated_on_screen(page: ResultPage) -> Doubts:
     """Of the figures in the tables of the walk that is shown; those of both legs stand at each."""
     tables = (page.cycles.peaks.table, page.cycles.time_distance.table)
-    return {key: said for table in tables for key, said in _of_table(table)}
+    return {key: stated for table in tables for key, stated in _of_table(table)}
 
 
-def _of_table(table: CellTable) -> Iterator[tuple[tuple[Side, str], Said]]:
+def _of_table(table: CellTable) -> Iterator[tuple[tuple[Side, str], Stated]]:
     heading = ""
     for row in table.cells.rows:
         name, *sides, _band = row.cells
@@ -141,7 +141,7 @@ def _of_table(table: CellTable) -> Iterator[tuple[tuple[Side, str], Said]]:
             yield (side, column), _on_screen(cell.text, cell.small)
 
 
-def _on_screen(value: str, addition: str) -> Said:
+def _on_screen(value: str, addition: str) -> Stated:
     if not value:
         return UNKNOWN[addition]
-    return Said.CARE if f"{value} {addition}".rstrip().endswith(CARE_MARK) else Said.TOLD
+    return Stated.CARE if f"{value} {addition}".rstrip().endswith(CARE_MARK) else Stated.REPORTED

@@ -1,7 +1,7 @@
 """Does PySide still hold the layout item that a widget had before it was moved? That can end the process later.
 
 `outer.addLayout(inner)`, where `inner` is filled already, gives each item of `inner` a wrapper that `outer` keeps. Qt
-deletes an item when its widget is put elsewhere; its wrapper hears of that only from `removeWidget` and `takeAt`. An
+deletes an item when its widget is put elsewhere; its wrapper learns of that only from `removeWidget` and `takeAt`. An
 object that comes to lie at the item's address shares its entry in PySide's map, and when Qt deletes that object PySide
 6.11 touches freed memory: a segmentation fault in whatever `deleteLater` that is.
 """

@@ -24,7 +24,7 @@ def words_cut(page: QWidget) -> list[str]:
     """Give what is cut of all words in sight on `page`, in words; an empty list where everything has its room.
 
     Looked at are `Text` and other labels, buttons, boxes of choices, the words that wait in an empty field, and what
-    widgets paint themselves and tell by `painted_texts`. Each must have the room it needs in its own box, and that
+    widgets paint themselves and report by `painted_texts`. Each must have the room it needs in its own box, and that
     box must lie inside all that it is part of, up to the page or to an area that scrolls.
     """
     settle()
@@ -55,14 +55,14 @@ def _cut_of(widget: QWidget, page: QWidget) -> Iterator[str]:
         needed = widget.minimumSizeHint() if isinstance(widget, Choice) else widget.sizeHint()
         words = widget.text() if isinstance(widget, QAbstractButton) else widget.currentText()
         if words and (needed.width() > own.width() + SLACK or needed.height() > own.height() + SLACK):
-            yield _said(widget, words, f"needs {needed.width()} x {needed.height()}")
+            yield _stated(widget, words, f"needs {needed.width()} x {needed.height()}")
         if words:
             yield from _cut_by_parents(own, widget, page, words)
     elif isinstance(widget, QLineEdit) and not widget.text():
         needed_width = widget.fontMetrics().horizontalAdvance(widget.placeholderText())
         room = own.width() - widget.textMargins().left() - widget.textMargins().right()
         if needed_width > room + SLACK:
-            yield _said(widget, widget.placeholderText(), f"needs {needed_width} in {room}")
+            yield _stated(widget, widget.placeholderText(), f"needs {needed_width} in {room}")
 
 
 def _cut_of_painted(text: PaintedText, widget: QWidget) -> Iterator[str]:
@@ -71,7 +71,7 @@ def _cut_of_painted(text: PaintedText, widget: QWidget) -> Iterator[str]:
     ink = _ink(text)
     if ink.width() > text.box.width() + SLACK or (text.wraps and ink.height() > text.box.height() + SLACK):
         size = f"{text.box.width():.0f} x {text.box.height():.0f}"
-        yield _said(widget, text.text, f"needs {ink.width()} x {ink.height()} in {size}")
+        yield _stated(widget, text.text, f"needs {ink.width()} x {ink.height()} in {size}")
 
 
 def _ink(text: PaintedText) -> QRect:
@@ -92,13 +92,13 @@ def _cut_of_label(label: QLabel) -> Iterator[str]:
         needed = max((metrics.horizontalAdvance(word) for word in label.text().split()), default=0)
         high = label.heightForWidth(label.width())
         if high > label.height() + SLACK:
-            yield _said(label, label.text(), f"needs a height of {high}")
+            yield _stated(label, label.text(), f"needs a height of {high}")
     else:
         needed = max(metrics.horizontalAdvance(line) for line in label.text().split("\n"))
         if label.sizeHint().height() > label.height() + SLACK:
-            yield _said(label, label.text(), f"needs a height of {label.sizeHint().height()}")
+            yield _stated(label, label.text(), f"needs a height of {label.sizeHint().height()}")
     if needed > inside.width() + SLACK:
-        yield _said(label, label.text(), f"needs {needed} in {inside.width()}")
+        yield _stated(label, label.text(), f"needs {needed} in {inside.width()}")
 
 
 def _label_ink(label: QLabel) -> QRect:
@@ -107,7 +107,7 @@ def _label_ink(label: QLabel) -> QRect:
 
 
 def _cut_by_parents(ink: QRect, widget: QWidget, page: QWidget, words: str) -> Iterator[str]:
-    """Tell if the words lie outside what they are part of. What scrolls can be brought into sight."""
+    """Report if the words lie outside what they are part of. What scrolls can be brought into sight."""
     inside = widget
     while inside is not page:
         parent = inside.parentWidget()
@@ -117,9 +117,9 @@ def _cut_by_parents(ink: QRect, widget: QWidget, page: QWidget, words: str) -> I
         inside = parent
         outside = ink.adjusted(2, 2, -2, -2)
         if not inside.rect().contains(outside):
-            yield _said(widget, words, f"is cut by {type(inside).__name__}")
+            yield _stated(widget, words, f"is cut by {type(inside).__name__}")
             return
 
 
-def _said(widget: QWidget, words: str, what: str) -> str:
+def _stated(widget: QWidget, words: str, what: str) -> str:
     return f"{type(widget).__name__} {widget.width()} x {widget.height()} “{words}” {what}"

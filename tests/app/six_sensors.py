@@ -84,8 +84,8 @@ def _keys(value: Any) -> Any:
 if __name__ == "__main__":
     before: dict[str, Any] = json.loads(GOLDEN.read_text(encoding="utf-8"))
     kept = before["digests"] if before["machine"] == machine() else {}
-    told: dict[str, Any] = {"machine": machine(), "digests": kept | {vectors(): {}}, "structure": {}}
+    reported: dict[str, Any] = {"machine": machine(), "digests": kept | {vectors(): {}}, "structure": {}}
     for case, settings in SESSIONS.items():
         content = written(simulate(settings).session)
-        told["digests"][vectors()][case], told["structure"][case] = digests(content), structure(content)
-    GOLDEN.write_text(json.dumps(told, indent=1) + "\n", encoding="utf-8")
+        reported["digests"][vectors()][case], reported["structure"][case] = digests(content), structure(content)
+    GOLDEN.write_text(json.dumps(reported, indent=1) + "\n", encoding="utf-8")

@@ -22,7 +22,7 @@ def background(qtbot: QtBot) -> Iterator[Background]:
 
 
 def until(event: Event) -> Callable[[Report], object]:
-    """Give work that reports until `event`, and says so when it was stopped instead."""
+    """Give work that reports until `event`, and reports it when it was stopped instead."""
 
     def work(report: Report) -> str:
         while not event.wait(0.002):
@@ -46,7 +46,7 @@ def test_a_result_arrives_on_the_thread_of_the_screen(qtbot: QtBot, background: 
     assert not background.is_busy
 
 
-def test_progress_is_told_while_the_work_runs(qtbot: QtBot, background: Background) -> None:
+def test_progress_is_reported_while_the_work_runs(qtbot: QtBot, background: Background) -> None:
     go_on = Event()
     with qtbot.waitSignal(background.progressed) as got:
         background.start(until(go_on))
@@ -57,8 +57,8 @@ def test_progress_is_told_while_the_work_runs(qtbot: QtBot, background: Backgrou
 
 
 def test_work_that_reports_without_end_leaves_the_screen_in_peace(qtbot: QtBot, background: Background) -> None:
-    told: list[float] = []
-    background.progressed.connect(lambda share, _what: told.append(share))
+    reported: list[float] = []
+    background.progressed.connect(lambda share, _what: reported.append(share))
 
     def work(report: Report) -> None:
         for count in range(20_000):
@@ -66,12 +66,12 @@ def test_work_that_reports_without_end_leaves_the_screen_in_peace(qtbot: QtBot, 
 
     with qtbot.waitSignal(background.done):
         background.start(work)
-    assert 1 <= len(told) < 100
-    assert told == sorted(told)
+    assert 1 <= len(reported) < 100
+    assert reported == sorted(reported)
 
 
 @pytest.mark.parametrize("is_done", [False, True])
-def test_what_was_stopped_tells_once_it_has_ended_whether_it_was_done(
+def test_what_was_stopped_shows_once_it_has_ended_whether_it_was_done(
     qtbot: QtBot, background: Background, is_done: bool
 ) -> None:
     """Work whose last report is behind it comes to its end all the same."""
@@ -84,12 +84,12 @@ def test_what_was_stopped_tells_once_it_has_ended_whether_it_was_done(
 
     background.start(work)
     background.stop()
-    with qtbot.waitSignal(background.stopped) as told:
+    with qtbot.waitSignal(background.stopped) as reported:
         go_on.set()
-    assert told.args == [is_done]
+    assert reported.args == [is_done]
 
 
-def test_what_comes_to_its_end_is_not_told_as_stopped(qtbot: QtBot, background: Background) -> None:
+def test_what_comes_to_its_end_is_not_reported_as_stopped(qtbot: QtBot, background: Background) -> None:
     with qtbot.assertNotEmitted(background.stopped), qtbot.waitSignal(background.idle):
         background.start(lambda _report: 7)
 
@@ -112,7 +112,7 @@ def test_a_stop_ends_the_work_at_its_next_report(qtbot: QtBot, background: Backg
     assert stopped.is_set()
 
 
-def test_nothing_is_heard_of_stopped_work_that_ends_well_all_the_same(qtbot: QtBot, background: Background) -> None:
+def test_nothing_is_received_of_stopped_work_that_ends_well_all_the_same(qtbot: QtBot, background: Background) -> None:
     go_on = Event()
 
     def work(_report: Report) -> str:

@@ -1,6 +1,6 @@
 """Small inputs that once gave a wrong number, a wrong sentence or a dead end, each with its right outcome.
 
-Each is a folder of the shared recordings, whose README says how it is run and what is right.
+Each is a folder of the shared recordings, whose README states how it is run and what is right.
 """
 
 import json
@@ -29,7 +29,7 @@ CASES = "cases"
 
 @dataclass(frozen=True, slots=True)
 class Outcome:
-    """What the terminal was told, and the exit code."""
+    """What the terminal was reported, and the exit code."""
 
     code: int
     text: str
@@ -44,8 +44,8 @@ class Case:
 
     def run(self, *arguments: str | Path) -> Outcome:
         code = main([str(argument) for argument in arguments])
-        told = self._capsys.readouterr()
-        return Outcome(code, told.out + told.err)
+        reported = self._capsys.readouterr()
+        return Outcome(code, reported.out + reported.err)
 
     def import_two(
         self, *more: str, thigh: str = "lt.csv", shank: str = "ls.csv", files: tuple[str, ...] = ()
@@ -90,8 +90,8 @@ def xdf_stamps_step_back(case: Case) -> None:
 def xdf_block_jumps(case: Case) -> None:
     read_whole(case, outcome := xdf(case))
     assert "Some time stamps (100) are wrong, the first at sample 801, off by 200000 s" in outcome.text
-    told = [one for one in case.analyse(case.out)["findings"] if one["key"] == "stamps_mended"]
-    assert [one["where"] for one in told] == ["walk 1, left_shank"]
+    reported = [one for one in case.analyse(case.out)["findings"] if one["key"] == "stamps_mended"]
+    assert [one["where"] for one in reported] == ["walk 1, left_shank"]
 
 
 def xdf_no_clock_offsets(case: Case) -> None:
@@ -246,7 +246,7 @@ def case(
 
 
 @pytest.mark.parametrize("name", [marked(name) for name in RIGHT])
-def test_each_case_comes_out_as_its_readme_says(
+def test_each_case_comes_out_as_its_readme_states(
     test_data: Callable[[str], Path], case: Case, name: str, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.chdir(shutil.copytree(test_data(CASES) / name, case.out.with_name(name)))

@@ -29,8 +29,8 @@ CONDITIONS = {"walk 1": "barefoot", "walk 2": "AFO"}
 
 
 def session_of(seed: int, *walks: str) -> Session:
-    wanted = tuple(Walk(name=name, strides=15) for name in walks)
-    session = simulate(WalkerSettings(seed=seed, recordings=(Standing(), FreeMotion(), *wanted))).session
+    required = tuple(Walk(name=name, strides=15) for name in walks)
+    session = simulate(WalkerSettings(seed=seed, recordings=(Standing(), FreeMotion(), *required))).session
     recordings = tuple(replace(r, condition=CONDITIONS.get(r.name, "")) for r in session.recordings)
     return replace(session, recordings=recordings)
 
@@ -58,9 +58,9 @@ def row(found: list[Row], side: Side, parameter: str) -> Row:
     return only
 
 
-def test_conditions_are_told_against_the_first_and_visits_by_condition(visits: list[Visit]) -> None:
-    told = [[(part.letter, part.name) for part in found.parts] for found in comparisons_of(visits)]
-    assert told == [[("1A", "barefoot"), ("1B", "AFO")], [("1B", "AFO"), ("2A", "AFO")]]
+def test_conditions_are_reported_against_the_first_and_visits_by_condition(visits: list[Visit]) -> None:
+    reported = [[(part.letter, part.name) for part in found.parts] for found in comparisons_of(visits)]
+    assert reported == [[("1A", "barefoot"), ("1B", "AFO")], [("1B", "AFO"), ("2A", "AFO")]]
     session, analysis = visits[1]
     renamed = replace(
         session, recordings=(*session.recordings[:-1], replace(session.recordings[-1], condition="shoes"))
@@ -71,7 +71,7 @@ def test_conditions_are_told_against_the_first_and_visits_by_condition(visits: l
     assert comparisons_of(visits[1:]) == []
 
 
-def test_sessions_without_a_common_condition_are_refused_and_told(
+def test_sessions_without_a_common_condition_are_refused_and_reported(
     visits: list[Visit], folders: list[Path], tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
     session, _ = visits[1]
@@ -79,9 +79,9 @@ def test_sessions_without_a_common_condition_are_refused_and_told(
     write_session(replace(session, recordings=renamed), tmp_path / "3")
     arguments = ["compare", str(folders[1]), str(tmp_path / "3"), "--out", str(tmp_path / "out")]
     assert main(arguments) == 2
-    said = capsys.readouterr().err
-    assert "no condition in common with the first, so they are not compared" in said
-    assert "session 1: AFO. session 2: shoes." in said
+    stated = capsys.readouterr().err
+    assert "no condition in common with the first, so they are not compared" in stated
+    assert "session 1: AFO. session 2: shoes." in stated
     assert not (tmp_path / "out").exists()
     assert main(["compare", str(folders[0]), *arguments[2:]]) == 0  # the first has two of its own
     assert "session 2: shoes." in capsys.readouterr().out
@@ -119,8 +119,8 @@ def test_heights_without_a_common_zero_are_not_compared(visits: list[Visit]) -> 
         return judged(replace(analysis, calibrations=spans))
 
     found = rows([(visits[0][0], without_zero(visits[0][1]))])
-    assert row(found, Side.LEFT, "knee_swing_peak_deg").difference.judgement == Judgement.WITHHELD
-    assert not row(found, Side.LEFT, "knee_swing_peak_deg").difference.is_told
+    assert row(found, Side.LEFT, "knee_swing_peak_deg").difference.judgement == Judgement.NOT_REPORTED
+    assert not row(found, Side.LEFT, "knee_swing_peak_deg").difference.is_reported
     assert row(found, Side.LEFT, "knee_range_deg").difference.judgement == Judgement.INSIDE_ERROR
     assert not [one for one in found if "curve_difference" in one.parameter]
 
@@ -136,11 +136,11 @@ def test_heights_from_zeros_of_two_kinds_stand_apart_and_are_not_compared(visits
     (first, second) = visits
     found = [one for one in rows([first, (second[0], from_goniometer(second[1]))]) if one.part.letter == "2A"]
     knee = row(found, Side.LEFT, "knee_swing_peak_deg")
-    assert (knee.difference.judgement, knee.difference.is_told) == (Judgement.WITHHELD, False)
-    assert row(found, Side.LEFT, "knee_range_deg").difference.is_told
+    assert (knee.difference.judgement, knee.difference.is_reported) == (Judgement.NOT_REPORTED, False)
+    assert row(found, Side.LEFT, "knee_range_deg").difference.is_reported
 
 
-def test_the_terminal_marks_errors_that_nobody_could_check_and_says_withheld(visits: list[Visit]) -> None:
+def test_the_terminal_marks_errors_that_nobody_could_check_and_states_not_reported(visits: list[Visit]) -> None:
     (session, analysis) = visits[0]
     spans = tuple(
         replace(span, joints={j: replace(found, zero=ZeroKind.NONE) for j, found in span.joints.items()})
@@ -153,23 +153,25 @@ def test_the_terminal_marks_errors_that_nobody_could_check_and_says_withheld(vis
     assert lines["L", "knee_swing_peak_deg"].split() == ["L", "knee_swing_peak_deg", "withheld"]
 
 
-def test_the_command_writes_the_table_and_says_it(
+def test_the_command_writes_the_table_and_states_it(
     folders: list[Path], visits: list[Visit], tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
     arguments = ["compare", *map(str, folders), "--out", str(tmp_path / "out")]
     assert main(arguments) == 0
-    said = capsys.readouterr().out
-    assert "SIMULATED. 2A AFO less 1B AFO" in said
-    assert "inside measurement error" in said
-    assert "† The error rests on a figure of which the source could not be checked." in said
+    stated = capsys.readouterr().out
+    assert "SIMULATED. 2A AFO less 1B AFO" in stated
+    assert "inside measurement error" in stated
+    assert "† The error rests on a figure of which the source could not be checked." in stated
     first = (tmp_path / "out" / DIFFERENCES).read_bytes()
     with (tmp_path / "out" / DIFFERENCES).open(newline="") as file:
-        told = list(csv.DictReader(file))
-    assert len(told) == len(rows(visits)) > 2 * len(PARAMETERS)
-    assert {one["verdict"] for one in told} <= set(FLAGS)
+        reported = list(csv.DictReader(file))
+    assert len(reported) == len(rows(visits)) > 2 * len(PARAMETERS)
+    assert {one["verdict"] for one in reported} <= set(FLAGS)
     knee = row(rows(visits[:1]), Side.LEFT, "knee_range_deg")
     (written,) = [
-        one for one in told[: len(rows(visits[:1]))] if (one["side"], one["parameter"]) == ("left", "knee_range_deg")
+        one
+        for one in reported[: len(rows(visits[:1]))]
+        if (one["side"], one["parameter"]) == ("left", "knee_range_deg")
     ]
     assert written["difference"] == f"{knee.difference.difference:.5f}"
     assert main(arguments) == 0  # a comparison replaces a comparison
@@ -209,19 +211,19 @@ def test_export_writes_the_formats_asked_for(
     assert not out.exists()
 
 
-def test_export_says_what_would_leave_and_writes_nothing(
+def test_export_states_what_would_leave_and_writes_nothing(
     folders: list[Path], tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    said = []
+    stated = []
     listed = list(tmp_path.iterdir())
     for keep in ("", "conditions"):
         assert main(["export", str(folders[1]), "--as", "xlsx", "--keep", keep, "--preview"]) == 0
-        said.append(capsys.readouterr().out)
+        stated.append(capsys.readouterr().out)
     typed = {recording.condition for recording in read_session(folders[1]).recordings} - {""}
     assert typed
-    assert not [one for one in typed if one in said[0]]
-    assert all(one in said[1] for one in typed)
-    assert "Nothing was written." in said[0]
+    assert not [one for one in typed if one in stated[0]]
+    assert all(one in stated[1] for one in typed)
+    assert "Nothing was written." in stated[0]
     assert list(tmp_path.iterdir()) == listed
     assert main(["export", str(folders[1]), "--as", "xlsx", "--identified", "--preview"]) == 2
     assert "identified data are exported unchanged" in capsys.readouterr().err

@@ -1,7 +1,7 @@
 """Do all outputs doubt the same figures? One simulated session per cause of doubt, every file read by another program.
 
-What has to be said stands in `SAID`, written by hand. Each output has a function that takes the folder of a case and
-gives what it says of the quantities that it tells of; `OUTPUTS` lists them. Report and screen are read by their words.
+What has to be stated is in `STATED`, written by hand. Each output has a function that takes the folder of a case and
+gives what it states of the quantities that it reports; `OUTPUTS` lists them. Report and screen are read by their words.
 """
 
 import csv
@@ -31,10 +31,10 @@ from core.results import Analysis
 from core.samples import Recording, Session
 from devices.simulation.walker import Standing, Walk, WalkerSettings, simulate
 from devices.simulation.walker_body import GaitChange
-from tests.app.doubt_readers import Said, said_in_report, said_on_screen
+from tests.app.doubt_readers import Stated, stated_in_report, stated_on_screen
 
 NUMBER = (int, float)
-READ, CARE, SHAPE, WITHHELD = "read", "care", "shape", "withheld"
+READ, CARE, SHAPE, NOT_REPORTED = "read", "care", "shape", "withheld"
 WALK = "walk 1"
 SIDES = ("left", "right")
 FIGURES = {  # what a person calls it, its column
@@ -55,17 +55,17 @@ QUANTITIES = (*OF_SIDES, *BOTH, *CURVES)
 
 @dataclass(frozen=True)
 class Case:
-    """`said`: what differs from "read", by the quantities' names (* is any); `reason`: words that say why."""
+    """`stated`: what differs from "read", by the quantities' names (* is any); `reason`: words that say why."""
 
     settings: WalkerSettings
-    said: Mapping[str, str]
+    stated: Mapping[str, str]
     reason: str
     change: Callable[[Session], Session] = lambda session: session
 
     @property
     def expected(self) -> dict[str, str]:
         found = dict.fromkeys(QUANTITIES, READ)
-        for pattern, verdict in self.said.items():
+        for pattern, verdict in self.stated.items():
             hit = [name for name in QUANTITIES if fnmatch(name, pattern)]
             assert hit, pattern
             found |= dict.fromkeys(hit, verdict)
@@ -88,29 +88,35 @@ LATE = {site: 0.1 for site in LEG_SITES if site.side is Side.RIGHT}
 CASES = {
     "no standing reference": Case(
         WalkerSettings(seed=4, recordings=(WALKED,)),
-        {"* swing peak": WITHHELD, "* dorsiflexion": WITHHELD, "* curve": SHAPE},
+        {"* swing peak": NOT_REPORTED, "* dorsiflexion": NOT_REPORTED, "* curve": SHAPE},
         "There is no standing reference, so absolute angles are not reported",
     ),
     "sign unknown": Case(
         WalkerSettings(seed=4, recordings=(STOOD, STIFF), stiff_knee_side=Side.LEFT),
-        {"left knee swing peak": WITHHELD, "left knee peak time": WITHHELD, "left knee curve": WITHHELD},
+        {"left knee swing peak": NOT_REPORTED, "left knee peak time": NOT_REPORTED, "left knee curve": NOT_REPORTED},
         "Flexion and extension could not be distinguished",
     ),
     "not neighbours": Case(
         WalkerSettings(seed=4, recordings=(STOOD, WALKED)),
-        {"* knee *": WITHHELD, "* ankle *": WITHHELD, "* stance": CARE, "* length": CARE, "* step time": CARE}
-        | {"cadence": CARE, "speed": CARE, "double support": WITHHELD},
+        {"* knee *": NOT_REPORTED, "* ankle *": NOT_REPORTED, "* stance": CARE, "* length": CARE, "* step time": CARE}
+        | {"cadence": CARE, "speed": CARE, "double support": NOT_REPORTED},
         "Sensor positions could not be confirmed",
         with_swapped_shanks,
     ),
     "two clocks": Case(
         WalkerSettings(seed=4, recordings=(STOOD, WALKED), clock_late_s=LATE),
-        {"* step time": WITHHELD},
+        {"* step time": NOT_REPORTED},
         "Left and right sensors are not synchronised: the left step takes",
     ),
     "two strides": Case(  # of the right leg; the left made three
         WalkerSettings(seed=4, recordings=(STOOD, replace(WALKED, strides=4))),
-        {"left *": CARE, "right *": WITHHELD, "cadence": WITHHELD, "double support": WITHHELD, "speed": WITHHELD},
+        {
+            "left *": CARE,
+            "right *": NOT_REPORTED,
+            "cadence": NOT_REPORTED,
+            "double support": NOT_REPORTED,
+            "speed": NOT_REPORTED,
+        },
         "Few strides (",
     ),
 }
@@ -127,7 +133,7 @@ def analysed(case: Case) -> tuple[Session, Analysis]:
     return session, analyse(session)
 
 
-NOT_WRITTEN = "not_written"  # what the export said of files that it left out
+NOT_WRITTEN = "not_written"  # what the export stated of files that it left out
 
 
 @pytest.fixture(scope="module")
@@ -141,10 +147,10 @@ def out(analysed: tuple[Session, Analysis], tmp_path_factory: pytest.TempPathFac
     return folder
 
 
-def said_of_value(status: str, has_value: bool) -> str:
-    """What is said of a figure by its status and by whether there is a number; both have to say the same."""
-    is_told = status in (READ, CARE)
-    return status if is_told == has_value else f"contradicts itself: {status}, {'a' if has_value else 'no'} number"
+def stated_of_value(status: str, has_value: bool) -> str:
+    """What is stated about a figure by its status and by whether there is a number; both have to say the same."""
+    is_reported = status in (READ, CARE)
+    return status if is_reported == has_value else f"contradicts itself: {status}, {'a' if has_value else 'no'} number"
 
 
 def rows_of(path: Path) -> list[dict[str, str]]:
@@ -152,7 +158,7 @@ def rows_of(path: Path) -> list[dict[str, str]]:
         return list(csv.DictReader(file))
 
 
-CSV_STATUS = {  # which column of status a figure stands under
+CSV_STATUS = {  # which column of status a figure is under
     "knee range": "knee_shape_status",
     "knee swing peak": "knee_height_status",
     "ankle range": "ankle_shape_status",
@@ -165,49 +171,49 @@ CSV_STATUS = {  # which column of status a figure stands under
 
 def in_csv(out: Path) -> dict[str, str]:
     """strides.csv and peaks.csv of figures, angles.csv and cycles.csv of curves."""
-    strides, peaks, said = rows_of(out / "walk_1" / "strides.csv"), rows_of(out / "peaks.csv"), {}
+    strides, peaks, stated = rows_of(out / "walk_1" / "strides.csv"), rows_of(out / "peaks.csv"), {}
     for side in SIDES:
         used = [row for row in strides if row["side"] == side and row["used"] == "true"]
         assert used
         for name, status in CSV_STATUS.items():
             (word,) = {row[status] for row in used}
-            said[f"{side} {name}"] = said_of_value(word, any(row[FIGURES[name]] for row in used))
+            stated[f"{side} {name}"] = stated_of_value(word, any(row[FIGURES[name]] for row in used))
         mine = [row for row in peaks if row["side"] == side]
         (word,) = {row["knee_status"] for row in mine}
-        said[f"{side} knee peak time"] = said_of_value(word, any(row["knee_swing_peak_percent"] for row in mine))
-        told = any(row["knee_swing_peak_percent"] for row in used)
-        assert told == (said[f"{side} knee peak time"] in (READ, CARE))
+        stated[f"{side} knee peak time"] = stated_of_value(word, any(row["knee_swing_peak_percent"] for row in mine))
+        reported = any(row["knee_swing_peak_percent"] for row in used)
+        assert reported == (stated[f"{side} knee peak time"] in (READ, CARE))
     angles, cycles = rows_of(out / "walk_1" / "angles.csv"), rows_of(out / "walk_1" / "cycles.csv")
     for name, joint in CURVES.items():
         (status,) = {row[f"{joint}_status"] for row in angles}
         assert status == {row[f"{joint}_status"] for row in cycles}.pop()
         assert any(row[f"{joint}_deg"] for row in angles)  # the samples stay, as evidence
-        said[name] = {"no_zero": SHAPE, "range_only": WITHHELD}.get(status, status)
+        stated[name] = {"no_zero": SHAPE, "range_only": NOT_REPORTED}.get(status, status)
         has_height, has_shape = (any(row[f"{joint}_{what}"] for row in cycles) for what in ("mean_deg", "shape_deg"))
-        assert has_height == (said[name] in (READ, CARE))
-        assert has_shape == (said[name] != WITHHELD)
-    return said
+        assert has_height == (stated[name] in (READ, CARE))
+        assert has_shape == (stated[name] != NOT_REPORTED)
+    return stated
 
 
 def in_json(out: Path) -> dict[str, str]:
     """summary.json: means with their status, curves by the verdicts of their joint."""
     walk = json.loads((out / "summary.json").read_text(encoding="utf-8"))["walks"][WALK]
-    said = {
-        name: said_of_value(walk[side][f"{column}_status"], walk[side][f"{column}_mean"] is not None)
+    stated = {
+        name: stated_of_value(walk[side][f"{column}_status"], walk[side][f"{column}_mean"] is not None)
         for name, (side, column) in OF_SIDES.items()
     }
     for name, column in BOTH.items():
-        said[name] = said_of_value(walk["both"][f"{column}_status"], walk["both"][column] is not None)
+        stated[name] = stated_of_value(walk["both"][f"{column}_status"], walk["both"][column] is not None)
     for name, joint in CURVES.items():
-        verdicts = {part: told["verdict"] for part, told in walk["verdicts"][joint].items()}
-        said[name] = curve_by_verdicts(verdicts)
-    return said
+        verdicts = {part: reported["verdict"] for part, reported in walk["verdicts"][joint].items()}
+        stated[name] = curve_by_verdicts(verdicts)
+    return stated
 
 
 def curve_by_verdicts(verdicts: Mapping[str, str]) -> str:
-    if WITHHELD in (verdicts["shape"], verdicts["sign"]):
-        return WITHHELD
-    if verdicts["height"] == WITHHELD:
+    if NOT_REPORTED in (verdicts["shape"], verdicts["sign"]):
+        return NOT_REPORTED
+    if verdicts["height"] == NOT_REPORTED:
         return SHAPE
     return CARE if CARE in (verdicts["shape"], verdicts["height"]) else READ
 
@@ -216,7 +222,7 @@ def in_fhir(out: Path) -> dict[str, str]:
     """Final and preliminary Observations, and those with a reason in place of a value."""
     bundle = Bundle.model_validate_json((out / "fhir_bundle.json").read_bytes())
     entries: list[Any] = list(bundle.entry or ())
-    said = {}
+    stated = {}
     names = {pair: name for name, pair in OF_SIDES.items()} | {("", column): name for name, column in BOTH.items()}
     for one in (entry.resource for entry in entries if entry.resource.get_resource_type() == "Observation"):
         side = one.bodySite.text.removesuffix(" leg") if one.bodySite is not None else ""
@@ -230,48 +236,50 @@ def in_fhir(out: Path) -> dict[str, str]:
             assert one.status != "final"
             assert len(one.dataAbsentReason.text) > 20
             code = one.dataAbsentReason.coding[0].code
-            said[name] = {"error": WITHHELD, "not-performed": "not measured"}[code]
+            stated[name] = {"error": NOT_REPORTED, "not-performed": "not measured"}[code]
         else:
             assert one.valueQuantity.value is not None
-            said[name] = {"final": READ, "preliminary": CARE}[one.status]
-    return said
+            stated[name] = {"final": READ, "preliminary": CARE}[one.status]
+    return stated
 
 
 def in_xlsx(out: Path) -> dict[str, str]:
     """The Summary sheet's numbers, words and status, and the mean cycles."""
     book = openpyxl.load_workbook(out / "gaitwright.xlsx")
     summary = {(row["side"], row["parameter"]): row for row in sheet(book, "Summary")}
-    wanted = OF_SIDES | {name: ("both", column) for name, column in BOTH.items()}
-    said = {}
-    for name, key in wanted.items():
+    required = OF_SIDES | {name: ("both", column) for name, column in BOTH.items()}
+    stated = {}
+    for name, key in required.items():
         mean, status = summary[key]["mean"], summary[key]["status"]
-        assert isinstance(mean, NUMBER) or mean == WITHHELD
-        said[name] = said_of_value(status, isinstance(mean, NUMBER))
+        assert isinstance(mean, NUMBER) or mean == NOT_REPORTED
+        stated[name] = stated_of_value(status, isinstance(mean, NUMBER))
     for side, column in OF_SIDES.values():
         cells = [row[column] for row in sheet(book, "Strides") if row["side"] == side and row["used"] == "true"]
-        is_withheld = summary[side, column]["status"] == WITHHELD
+        is_not_reported = summary[side, column]["status"] == NOT_REPORTED
         assert (
-            all(cell == WITHHELD for cell in cells) if is_withheld else any(isinstance(cell, NUMBER) for cell in cells)
+            all(cell == NOT_REPORTED for cell in cells)
+            if is_not_reported
+            else any(isinstance(cell, NUMBER) for cell in cells)
         )
     cycles = sheet(book, "Cycles")
     for name, joint in CURVES.items():
         (status,) = {row[f"{joint}_status"] for row in cycles}
         height, shape = (
             {
-                WITHHELD if row[f"{joint}_{what}"] == WITHHELD else isinstance(row[f"{joint}_{what}"], NUMBER)
+                NOT_REPORTED if row[f"{joint}_{what}"] == NOT_REPORTED else isinstance(row[f"{joint}_{what}"], NUMBER)
                 for row in cycles
             }
             for what in ("mean_deg", "shape_deg")
         )
         by_cells: dict[tuple[object, ...], str] = {
             (True, True): READ,
-            (WITHHELD, True): SHAPE,
-            (WITHHELD, WITHHELD): WITHHELD,
+            (NOT_REPORTED, True): SHAPE,
+            (NOT_REPORTED, NOT_REPORTED): NOT_REPORTED,
         }
-        said[name] = by_cells[*height, *shape]
-        if said[name] == READ:
-            said[name] = status if status in (READ, CARE) else "contradicts itself"
-    return said
+        stated[name] = by_cells[*height, *shape]
+        if stated[name] == READ:
+            stated[name] = status if status in (READ, CARE) else "contradicts itself"
+    return stated
 
 
 def sheet(book: Any, title: str) -> list[dict[str, Any]]:
@@ -286,21 +294,21 @@ C3D = {"LKneeAngles": "left_knee", "RKneeAngles": "right_knee"} | {
 
 
 def in_c3d(out: Path) -> dict[str, str]:
-    """The labels of its points, and what PROCESSING:STATUS says of each joint."""
+    """The labels of its points, and what PROCESSING:STATUS states of each joint."""
     parameters = ezc3d.c3d(str(out / "walk_1" / "angles.c3d"))["parameters"]
     labels = parameters["POINT"]["LABELS"]["value"]
     status = dict(text.split(": ", 1) for text in parameters["PROCESSING"]["STATUS"]["value"])
-    said = {}
+    stated = {}
     for name, joint in CURVES.items():
         label = next(label for label, of in C3D.items() if of == joint)
         if f"{label}_SHAPE" in labels:
-            said[name] = SHAPE
+            stated[name] = SHAPE
         else:
-            said[name] = status[joint].split(":")[0] if label in labels else WITHHELD
+            stated[name] = status[joint].split(":")[0] if label in labels else NOT_REPORTED
     for label, words in zip(labels, parameters["POINT"]["DESCRIPTIONS"]["value"], strict=True):
         assert ("less its mean" in words) == label.endswith("_SHAPE")
         assert "positive" not in words
-    return said
+    return stated
 
 
 MOT = {"knee_angle_l": "left_knee", "knee_angle_r": "right_knee"} | {
@@ -312,26 +320,26 @@ MOT = {"knee_angle_l": "left_knee", "knee_angle_r": "right_knee"} | {
 def in_mot(out: Path) -> dict[str, str]:
     """The coordinates that are there, and the comments on them. A shape is no pose, so it is left out.
 
-    Where none is left there is no file, and the export says why.
+    Where none is left there is no file, and the export states why.
     """
     if not (out / "walk_1" / "angles.mot").exists():
         return dict.fromkeys(
             CURVES,
             SHAPE
             if "There is no standing reference, so absolute angles are not reported" in words_of_mot(out)
-            else WITHHELD,
+            else NOT_REPORTED,
         )
     head, body = (out / "walk_1" / "angles.mot").read_text(encoding="ascii").split("endheader\n")
     names = body.splitlines()[0].split("\t")
     comments = dict(line.split(" is ", 1) for line in head.splitlines() if line.split(" is ")[0] in MOT)
-    said = {}
+    stated = {}
     for name, joint in CURVES.items():
         coordinate = next(coordinate for coordinate, of in MOT.items() if of == joint)
         where, status = comments[coordinate].split(":")[0].split(", ")
         assert (where == "here") == (coordinate in names)
         assert where in ("here", "left out")
-        said[name] = status if coordinate in names else SHAPE if status == "no_zero" else WITHHELD
-    return said
+        stated[name] = status if coordinate in names else SHAPE if status == "no_zero" else NOT_REPORTED
+    return stated
 
 
 def in_rerun(out: Path) -> dict[str, str]:
@@ -345,27 +353,27 @@ def in_rerun(out: Path) -> dict[str, str]:
         if line.startswith("| ")
     ]
     verdicts = {(row[0], row[1]): row[2] for row in table}
-    said = {}
+    stated = {}
     for name, joint in CURVES.items():
         by_place = {
             f"/angles/{joint}/result": READ,
             f"/angles/{joint}/result_shape": SHAPE,
-            f"/withheld/{joint}/result": WITHHELD,
+            f"/withheld/{joint}/result": NOT_REPORTED,
         }
         (place,) = moving & by_place.keys()
         words = joint.replace("_", " ")
         by_table = curve_by_verdicts({part: verdicts[words, part] for part in ("shape", "height", "sign")})
-        said[name] = by_table if by_place[place] == (READ if by_table == CARE else by_table) else "contradicts itself"
+        stated[name] = by_table if by_place[place] == (READ if by_table == CARE else by_table) else "contradicts itself"
     for side in SIDES:
-        said[f"{side} stance"] = verdicts[f"{side} leg", "timing"]
-        said[f"{side} stride length"] = verdicts[f"{side} leg", "distance"]
-        said[f"{side} knee range"] = verdicts[f"{side} knee", "shape"]
-        said[f"{side} ankle range"] = verdicts[f"{side} ankle", "shape"]
-    return said
+        stated[f"{side} stance"] = verdicts[f"{side} leg", "timing"]
+        stated[f"{side} stride length"] = verdicts[f"{side} leg", "distance"]
+        stated[f"{side} knee range"] = verdicts[f"{side} knee", "shape"]
+        stated[f"{side} ankle range"] = verdicts[f"{side} ankle", "shape"]
+    return stated
 
 
 RERUN = tuple(name for name in QUANTITIES if name.endswith(("curve", "stance", "length", "range")))
-# what each output tells of
+# what each output reports
 OUTPUTS: dict[str, tuple[Callable[[Path], dict[str, str]], tuple[str, ...]]] = {
     "csv": (in_csv, (*OF_SIDES, *CURVES)),
     "json": (in_json, QUANTITIES),
@@ -378,12 +386,12 @@ OUTPUTS: dict[str, tuple[Callable[[Path], dict[str, str]], tuple[str, ...]]] = {
 
 
 @pytest.mark.parametrize("output", OUTPUTS)
-def test_every_output_says_the_same(case: Case, out: Path, output: str) -> None:
-    read, tells_of = OUTPUTS[output]
-    assert read(out) == {name: case.expected[name] for name in tells_of}
+def test_every_output_states_the_same(case: Case, out: Path, output: str) -> None:
+    read, shows_of = OUTPUTS[output]
+    assert read(out) == {name: case.expected[name] for name in shows_of}
 
 
-SPOKEN = {READ: Said.TOLD, CARE: Said.CARE, WITHHELD: Said.WITHHELD}
+SPOKEN = {READ: Stated.REPORTED, CARE: Stated.CARE, NOT_REPORTED: Stated.NOT_REPORTED}
 
 
 def test_report_and_screen_say_the_same(
@@ -391,15 +399,15 @@ def test_report_and_screen_say_the_same(
 ) -> None:
     session, analysis = analysed
     made_at = datetime(2026, 11, 22, 12, tzinfo=UTC)
-    report = said_in_report(make_report(ReportRequest(AnalysedVisit(session, analysis), (WALK,), made_at, "1.2.3")))
+    report = stated_in_report(make_report(ReportRequest(AnalysedVisit(session, analysis), (WALK,), made_at, "1.2.3")))
     result_page.show_visit(AnalysedVisit(session, analysis))
-    screen = said_on_screen(result_page)
+    screen = stated_on_screen(result_page)
     places = {name: (Side(side), column) for name, (side, column) in OF_SIDES.items()}
     places |= {name: (Side.LEFT, column) for name, column in BOTH.items()}
     for found in (report, screen):
-        told = {name: found[place] for name, place in places.items() if place in found}
-        assert len(told) > 10
-        assert told == {name: SPOKEN[case.expected[name]] for name in told}
+        reported = {name: found[place] for name, place in places.items() if place in found}
+        assert len(reported) > 10
+        assert reported == {name: SPOKEN[case.expected[name]] for name in reported}
 
 
 def words_of_about(out: Path) -> str:
@@ -437,7 +445,7 @@ REASONS: dict[str, Callable[[Path], str]] = {
     "c3d": words_of_c3d,
     "mot": words_of_mot,
 }
-ANGLES_ONLY = ("c3d", "mot")  # which tell of no time
+ANGLES_ONLY = ("c3d", "mot")  # which report of no time
 
 
 @pytest.mark.parametrize("output", REASONS)

@@ -1,4 +1,4 @@
-"""Frozen into a program of its own, does Gaitwright begin its child processes anew as itself?"""
+"""Frozen into a program of its own, does Gaitwright begin its child processes again as itself?"""
 
 import os
 import sys
@@ -22,7 +22,7 @@ sys.exit(begin())
 
 @pytest.fixture
 def program(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
-    """A stand-in for the frozen program, which takes no `-m`; this process is told that it is one."""
+    """A stand-in for the frozen program, which takes no `-m`; this process is given that it is one."""
     file = tmp_path / "gaitwright"
     file.write_text(PROGRAM)
     file.chmod(0o755)
@@ -70,7 +70,7 @@ def test_any_other_word_is_a_command(is_frozen: bool, monkeypatch: pytest.Monkey
 
 
 @pytest.mark.parametrize("before", [None, "/opt/theirs"])
-def test_other_programs_get_the_systems_libraries_and_ours_begin_anew(
+def test_other_programs_get_the_systems_libraries_and_ours_begin_again(
     before: str | None, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.setattr(sys, "frozen", True, raising=False)

@@ -74,7 +74,7 @@ ALIKE = {
 UNITS = {"mm", "cm", "kg", "Hz", "SD", "min"}
 ENGLISH = re.compile(r"\b(the|of|is|are|and|not|with|from|that|it|to|by|for|has|which|this|your|left|right)\b")
 NAMED_ALIKE = {"rate of turn", "Timed-up-and-go"}  # a setting of other programs; a test, in German clinics too
-# no word of this kind is said of a person or a change; of two answers to the same data it may be
+# no word of this kind is stated about a person or a change; of two answers to the same data it may be
 JUDGES = re.compile(r"\b(ab)?normal|\bsignificant|\bimprov|\bdeteriorat|\bpatholog|\bmostly\b", re.IGNORECASE)
 URTEILT = re.compile(r"\b(ab)?normal|\bsignifikant|verbesser|verschlechter|patholog|\bauffällig", re.IGNORECASE)
 COMPARES = re.compile(r"\b(better|worse)\b|\b(besser|schlechter)", re.IGNORECASE)
@@ -83,7 +83,7 @@ SHORTENED = {"Jan", "Feb", "Apr", "Aug", "Sep", "Oct", "Nov", "Dec"}  # with a p
 
 
 @dataclass(frozen=True, slots=True)
-class Told:
+class Reported:
     english: str
     german: str
 
@@ -100,9 +100,9 @@ def as_forms(text: str | tuple[str, ...] | list[str] | None) -> tuple[str, ...]:
     return (text,) if isinstance(text, str) else tuple(text or ())
 
 
-def pairs() -> Iterator[Told]:
+def pairs() -> Iterator[Reported]:
     for english, german in read(GERMAN).items():
-        yield from (Told(one, other) for one, other in zip(english, german, strict=True))
+        yield from (Reported(one, other) for one, other in zip(english, german, strict=True))
 
 
 def fields(message: str) -> list[tuple[str, str | None]]:
@@ -153,9 +153,9 @@ def test_no_sentence_of_the_catalogue_judges() -> None:
 
 
 def test_its_outer_spaces_and_last_marks_are_kept() -> None:
-    told = [pair for pair in pairs() if pair.english not in SHORTENED]
-    assert [pair for pair in told if outer_spaces(pair.english) != outer_spaces(pair.german)] == []
-    assert [pair for pair in told if last_mark(pair.english) != last_mark(pair.german)] == []
+    reported = [pair for pair in pairs() if pair.english not in SHORTENED]
+    assert [pair for pair in reported if outer_spaces(pair.english) != outer_spaces(pair.german)] == []
+    assert [pair for pair in reported if last_mark(pair.english) != last_mark(pair.german)] == []
 
 
 def test_what_must_not_be_broken_is_not_in_either() -> None:
@@ -172,8 +172,8 @@ def test_quotation_marks_are_german_and_closed() -> None:
 
 def test_nothing_is_left_in_english() -> None:
     assert [p.german for p in pairs() if p.english == p.german and words_of(p.english) and p.english not in ALIKE] == []
-    told = [re.sub("|".join(NAMED_ALIKE), "", re.sub(r"\{[^}]*\}", "", pair.german)) for pair in pairs()]
-    assert [german for german in told if ENGLISH.search(german)] == []
+    reported = [re.sub("|".join(NAMED_ALIKE), "", re.sub(r"\{[^}]*\}", "", pair.german)) for pair in pairs()]
+    assert [german for german in reported if ENGLISH.search(german)] == []
 
 
 def test_figures_written_in_a_sentence_have_a_comma() -> None:
@@ -183,11 +183,11 @@ def test_figures_written_in_a_sentence_have_a_comma() -> None:
 
 def test_a_key_that_is_shown_is_the_one_that_is_pressed() -> None:
     """Letters that also are shortcuts stay; names of keys are those on a German keyboard."""
-    said = {pair.english: pair.german for pair in pairs()}
-    assert {key: said[key] for key in ("Q", "F", "G", "E", "F1", "Esc")} == {
+    stated = {pair.english: pair.german for pair in pairs()}
+    assert {key: stated[key] for key in ("Q", "F", "G", "E", "F1", "Esc")} == {
         key: key for key in ("Q", "F", "G", "E", "F1", "Esc")
     }
-    keys = {english: german for english, german in said.items() if re.fullmatch(r"Ctrl [A-Z]", english)}
+    keys = {english: german for english, german in stated.items() if re.fullmatch(r"Ctrl [A-Z]", english)}
     assert keys
     assert {english.replace("Ctrl", "Strg") for english in keys} == set(keys.values())
 
@@ -211,11 +211,11 @@ def test_a_noun_keeps_its_capital_inside_a_sentence() -> None:
 
 
 def test_every_finding_has_its_german_sentence() -> None:
-    said = {pair.english: pair.german for pair in pairs()}
-    assert [key for key, english in SENTENCES.items() if said.get(english, english) == english] == []
+    stated = {pair.english: pair.german for pair in pairs()}
+    assert [key for key, english in SENTENCES.items() if stated.get(english, english) == english] == []
 
 
-def test_the_catalogue_is_compiled_anew(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_the_catalogue_is_compiled_again(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.syspath_prepend(ROOT / "packaging")
     catalogue = importlib.import_module("catalogue")
     assert GERMAN.with_suffix(".mo").read_bytes() == catalogue.compiled(GERMAN), "run packaging/catalogue.py"
@@ -223,9 +223,9 @@ def test_the_catalogue_is_compiled_anew(monkeypatch: pytest.MonkeyPatch) -> None
 
 @pytest.mark.usefixtures("german")
 def test_a_fraction_has_a_comma_and_what_only_looks_like_one_its_point() -> None:
-    said = tr("Walking speed {first} and {second} m/s.")
-    assert said.format(first=1.05, second="1.2.3") == "Gehgeschwindigkeit 1,05 und 1.2.3 m/s."
-    assert said.format_map({"first": np.float64(0.5), "second": 2}) == "Gehgeschwindigkeit 0,5 und 2 m/s."
+    stated = tr("Walking speed {first} and {second} m/s.")
+    assert stated.format(first=1.05, second="1.2.3") == "Gehgeschwindigkeit 1,05 und 1.2.3 m/s."
+    assert stated.format_map({"first": np.float64(0.5), "second": 2}) == "Gehgeschwindigkeit 0,5 und 2 m/s."
     assert (figure_text(-1.25, "+.1f"), figure_text(1.25, ".2f", "en")) == ("-1,2", "1.25")
     assert (fixed(-0.04, 1), signed(0.0, 1), signed(2.5, 1)) == ("0,0", "0,0", "+2,5")
     use_language("en")
@@ -253,8 +253,8 @@ def fractions_in(source: str) -> Iterator[int]:
     """Find the lines on which a text takes a fraction in without `figure_text`; an SVG's attributes need the point."""
     parts = [node for node in ast.walk(ast.parse(source)) if isinstance(node, ast.JoinedStr)]
     for text in parts:
-        said = "".join(str(part.value) for part in text.values if isinstance(part, ast.Constant))
-        is_svg = '="' in said or said.startswith("M")
+        stated = "".join(str(part.value) for part in text.values if isinstance(part, ast.Constant))
+        is_svg = '="' in stated or stated.startswith("M")
         for part in text.values:
             spec = ast.unparse(part.format_spec) if isinstance(part, ast.FormattedValue) and part.format_spec else ""
             if re.search(r"\.([1-9]|\{.*\})[fg]|^f?['\"]g", spec) and not is_svg:

@@ -219,7 +219,7 @@ def test_who_asks_for_the_demonstration_while_a_library_opens_gets_it_and_no_que
     assert shown == [window.entry.waiting]
 
 
-def test_a_recovery_key_that_is_lost_is_made_anew(qtbot: QtBot, open_window: Open, folder: Path) -> None:
+def test_a_recovery_key_that_is_lost_is_made_again(qtbot: QtBot, open_window: Open, folder: Path) -> None:
     slots = KeySlots(folder / KEYS, Cost(passes=1, memory_kib=64))
     slots.renew_recovery_key(slots.open("hk", PASSPHRASE))
     window = open_window(folder)
@@ -365,10 +365,10 @@ def test_escape_in_the_wizard_reaches_the_step_that_is_in_sight(
     QTest.keyClick(window.home.page.search, Qt.Key.Key_Return)
     wizard = window.wizard
     assert wizard is not None
-    heard: list[Intent] = []
-    monkeypatch.setattr(wizard, "act_on", heard.append)
+    received: list[Intent] = []
+    monkeypatch.setattr(wizard, "act_on", received.append)
     QTest.keyClick(window, Qt.Key.Key_Escape)
-    assert heard == [Intent(KeyAction.LEAVE)]
+    assert received == [Intent(KeyAction.LEAVE)]
 
 
 def test_settings_are_looked_at_amid_a_visit_and_lead_back_to_it(qtbot: QtBot, open_window: Open, folder: Path) -> None:
@@ -379,7 +379,7 @@ def test_settings_are_looked_at_amid_a_visit_and_lead_back_to_it(qtbot: QtBot, o
     wizard = window.wizard
     assert wizard is not None
     visit = wizard.visit
-    wizard.settings_wanted.emit()
+    wizard.settings_required.emit()
     assert window.screens.currentWidget() is window.home
     QTest.keyClick(window, Qt.Key.Key_Escape)
     assert window.screens.currentWidget() is wizard
@@ -387,7 +387,7 @@ def test_settings_are_looked_at_amid_a_visit_and_lead_back_to_it(qtbot: QtBot, o
 
 
 @pytest.mark.endurance
-def test_after_three_wrong_passphrases_the_next_try_waits_and_says_so(
+def test_after_three_wrong_passphrases_the_next_try_waits_and_states_so(
     qtbot: QtBot, open_window: Open, folder: Path
 ) -> None:
     window = open_window(folder)
@@ -469,7 +469,7 @@ def test_the_lock_leaves_no_question_about_a_patient_in_sight(qtbot: QtBot, open
     assert SECRET_CODE not in words_in_sight(window)
 
 
-def test_the_cover_says_that_a_recording_goes_on(qtbot: QtBot, open_window: Open, folder: Path) -> None:
+def test_the_cover_states_that_a_recording_goes_on(qtbot: QtBot, open_window: Open, folder: Path) -> None:
     window = open_window(folder)
     logged_in(qtbot, window)
     assert window.entry is not None
@@ -582,7 +582,7 @@ def test_light_and_dark_follow_what_is_set(window: MainWindow, look: ThemeNotifi
 
 
 def is_cut(widget: QWidget) -> bool:
-    """Tell whether a widget has less room than its words need."""
+    """Return whether a widget has less room than its words need."""
     if isinstance(widget, QLabel):
         room = widget.size().shrunkBy(widget.contentsMargins())
         flags = Qt.TextFlag.TextWordWrap if widget.wordWrap() else 0
@@ -594,11 +594,11 @@ def is_cut(widget: QWidget) -> bool:
     return False
 
 
-def test_the_window_says_what_it_is_for(open_window: Open) -> None:
+def test_the_window_states_what_it_is_for(open_window: Open) -> None:
     assert open_window(None).windowTitle() == "Gaitwright – Research use. Not a medical device."
 
 
-def test_the_language_is_kept_and_only_another_one_is_told(qtbot: QtBot, settings: Settings) -> None:
+def test_the_language_is_kept_and_only_another_one_is_reported(qtbot: QtBot, settings: Settings) -> None:
     assert settings.language == "en"
     with qtbot.assertNotEmitted(settings.language_changed):
         settings.language = "en"
@@ -678,12 +678,12 @@ def test_what_the_window_may_not_import_is_the_same_there() -> None:
 def test_the_window_waits_for_no_slow_import() -> None:
     slow = ("numpy", "scipy", "pyqtgraph", "rerun", "sqlalchemy", "cryptography", "keyring", "PySide6.QtPrintSupport")
     check = f"import sys, app.main_window; print([m for m in {slow} if m in sys.modules])"
-    said = subprocess.run([sys.executable, "-c", check], capture_output=True, text=True, check=True)
-    assert said.stdout.strip() == "[]"
+    stated = subprocess.run([sys.executable, "-c", check], capture_output=True, text=True, check=True)
+    assert stated.stdout.strip() == "[]"
 
 
 @pytest.mark.endurance
-def test_a_library_that_was_here_and_is_missing_is_not_made_anew(
+def test_a_library_that_was_here_and_is_missing_is_not_made_again(
     qtbot: QtBot, open_window: Open, settings: Settings, folder: Path
 ) -> None:
     """It opens by itself when it is back; a new one is made only by whoever asks for that."""
@@ -695,8 +695,8 @@ def test_a_library_that_was_here_and_is_missing_is_not_made_anew(
     assert entry is not None
     page = entry.first_start
     assert window.screens.currentWidget() is page
-    told = "Connect its disk, or restore its folder. It then opens automatically."
-    assert page.missing_lead.text() == f"It was in {folder} and is no longer there. {told}"
+    reported = "Connect its disk, or restore its folder. It then opens automatically."
+    assert page.missing_lead.text() == f"It was in {folder} and is no longer there. {reported}"
     page.show_missing(str(folder), 2)
     assert "2 recordings stay on this computer until their library is back." in page.missing_lead.text()
     assert page.look_again.isVisible()
@@ -721,7 +721,7 @@ def test_where_no_library_was_the_first_start_offers_one(open_window: Open, fold
 
 
 @pytest.mark.endurance
-def test_a_library_that_goes_is_said_at_home_and_so_is_its_return(
+def test_a_library_that_goes_is_stated_at_home_and_so_is_its_return(
     qtbot: QtBot, open_window: Open, settings: Settings, folder: Path
 ) -> None:
     window = open_window(folder)
@@ -757,11 +757,11 @@ def test_what_a_visit_that_was_left_recorded_while_it_was_gone_is_in_its_session
     elsewhere = folder.with_name("renamed")
     with qtbot.waitSignal(window.controller.gone, timeout=WAIT_MS):
         folder.rename(elsewhere)
-    told = Recording("walk 1", RecordingKind.WALKING, "walk_1", {})
+    reported = Recording("walk 1", RecordingKind.WALKING, "walk_1", {})
     writer = JournalWriter.create(
         state.library.recordings, uuid7(), state.library.data_key, room=ANY_ROOM, shelter=state.library.shelter
     )
-    writer.mark(Belonging(session_id, told).text())
+    writer.mark(Belonging(session_id, reported).text())
     writer.stop()
     with qtbot.waitSignal(home.recovering.recovered, timeout=WAIT_MS):
         elsewhere.rename(folder)
@@ -791,11 +791,11 @@ def test_what_comes_home_under_the_cover_is_in_its_session_after_the_passphrase(
     for name in ("walk 1", "walk 2"):  # a disk that comes and goes
         with qtbot.waitSignal(window.controller.gone, timeout=WAIT_MS):
             folder.rename(elsewhere)
-        told = Recording(name, RecordingKind.WALKING, name.replace(" ", "_"), {})
+        reported = Recording(name, RecordingKind.WALKING, name.replace(" ", "_"), {})
         with JournalWriter.create(
             state.library.recordings, uuid7(), data_key, room=ANY_ROOM, shelter=state.library.shelter
         ) as writer:
-            writer.mark(Belonging(session_id, told).text())
+            writer.mark(Belonging(session_id, reported).text())
         with qtbot.waitSignal(window.controller.back, timeout=WAIT_MS):
             elsewhere.rename(folder)
         assert page.banner.text == "The library is available again. 1 recording made meanwhile was added."
@@ -809,7 +809,7 @@ def test_what_comes_home_under_the_cover_is_in_its_session_after_the_passphrase(
     assert sorted(one.details.name for one in library.sessions.get(session_id).recordings) == ["walk 1", "walk 2"]
 
 
-def test_where_the_environment_names_no_server_that_answers_it_is_said_and_tried_again(
+def test_where_the_environment_names_no_server_that_answers_it_is_stated_and_tried_again(
     qtbot: QtBot, open_window: Open, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.setenv(DATABASE_VARIABLE, "nowhere")

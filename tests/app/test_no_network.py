@@ -23,7 +23,7 @@ def _network() -> None:
         pytest.skip(reason)
 
 
-def test_a_call_to_elsewhere_is_told_from_one_to_this_computer() -> None:
+def test_a_call_to_elsewhere_is_reported_from_one_to_this_computer() -> None:
     calls = calls_in(LINES)
     assert calls.outside == tuple(LINES.splitlines()[5:7])
     assert calls.addresses == {"192.0.2.7", "2001:db8::1"}
@@ -43,8 +43,8 @@ def test_a_whole_session_calls_nobody_else() -> None:
 @pytest.mark.parametrize("streams_in", ["", "127.0.0.1"])
 def test_the_search_for_sensors_calls_nobody_else(streams_in: str) -> None:
     calls = search_sensors(streams_in)
-    assert "x-IMU3" in calls.told.partition("How the drivers")[0]  # that at the port was heard
-    assert ("a stream" in calls.told) == bool(streams_in)
+    assert "x-IMU3" in calls.reported.partition("How the drivers")[0]  # that at the port was received
+    assert ("a stream" in calls.reported) == bool(streams_in)
     assert calls.outside == ()
 
 
@@ -53,6 +53,6 @@ def test_the_search_for_sensors_calls_nobody_else(streams_in: str) -> None:
 def test_streams_that_are_asked_for_in_a_network_are_asked_there_and_nowhere_else() -> None:
     pytest.importorskip("pylsl", reason="Lab Streaming Layer is an extra")
     calls = search_sensors(OWN_ADDRESS)
-    assert "a stream" in calls.told
+    assert "a stream" in calls.reported
     assert calls.addresses == {GROUP, OWN_ADDRESS}  # the question, and who answered it
     assert all(f"htons({PORT})" in line for line in calls.outside if GROUP in line)

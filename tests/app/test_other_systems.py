@@ -1,6 +1,6 @@
-"""Does what differs between systems differ as it should? On this one, which is told to be another.
+"""Does what differs between systems differ as it should? On this one, which is given to be another.
 
-What each test stands for is in the list of `packaging/installers/README.md`. Nothing was tried on Windows or macOS.
+What each test represents is in the list of `packaging/installers/README.md`. Nothing was tried on Windows or macOS.
 """
 
 import builtins
@@ -171,7 +171,7 @@ def test_workers_are_started_afresh_where_there_is_no_server_that_makes_them(
     assert asked == [used]
 
 
-def test_processors_are_counted_where_nobody_tells_which_may_be_used(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_processors_are_counted_where_nobody_shows_which_may_be_used(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.delattr(os, "sched_getaffinity", raising=False)
     monkeypatch.setattr(os, "cpu_count", lambda: 6)
     assert executors.processors() == 6
@@ -295,11 +295,11 @@ def test_windows_plays_sounds_itself(monkeypatch: pytest.MonkeyPatch) -> None:
     assert flags == 3
 
 
-@pytest.mark.parametrize(("wanted", "took_ms"), [(1, 200), (0, 0)])
+@pytest.mark.parametrize(("required", "took_ms"), [(1, 200), (0, 0)])
 @pytest.mark.usefixtures("windows")
-def test_windows_is_asked_whether_things_may_move(wanted: int, took_ms: int, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_windows_is_asked_whether_things_may_move(required: int, took_ms: int, monkeypatch: pytest.MonkeyPatch) -> None:
     def asked(_what: int, _zero: int, answer: Any, _flags: int) -> None:
-        ctypes.cast(answer, ctypes.POINTER(ctypes.c_int))[0] = wanted
+        ctypes.cast(answer, ctypes.POINTER(ctypes.c_int))[0] = required
 
     user32 = SimpleNamespace(SystemParametersInfoW=asked)
     monkeypatch.setattr(ctypes, "windll", SimpleNamespace(user32=user32), raising=False)
@@ -311,8 +311,8 @@ def test_windows_is_asked_whether_things_may_move(wanted: int, took_ms: int, mon
 
 @pytest.mark.usefixtures("windows")
 def test_own_addresses_are_asked_by_name_on_windows(monkeypatch: pytest.MonkeyPatch) -> None:
-    told: tuple[str, list[str], list[str]] = ("here", [], ["192.0.2.9", "127.0.0.1", "192.0.2.9"])
-    monkeypatch.setattr(socket, "gethostbyname_ex", lambda _name: told)
+    reported: tuple[str, list[str], list[str]] = ("here", [], ["192.0.2.9", "127.0.0.1", "192.0.2.9"])
+    monkeypatch.setattr(socket, "gethostbyname_ex", lambda _name: reported)
     assert networks.own_addresses() == ("192.0.2.9",)
 
 
@@ -344,7 +344,7 @@ def test_a_port_is_exclusive_where_it_would_not_be_so_by_itself(
 
 
 @pytest.mark.parametrize(
-    ("platform", "device", "problem", "said"),
+    ("platform", "device", "problem", "stated"),
     [
         ("win32", "COM7", "could not open port 'COM7': PermissionError(13, 'Access is denied.')", "in use by another"),
         ("win32", "COM7", "could not open port 'COM7': FileNotFoundError(2, 'not found')", "was not found"),
@@ -352,8 +352,8 @@ def test_a_port_is_exclusive_where_it_would_not_be_so_by_itself(
         ("darwin", "/dev/cu.usbserial-7", OSError(errno.ENOENT, "No such file"), "was not found"),
     ],
 )
-def test_a_port_that_does_not_open_says_why_on_each_system(
-    platform: str, device: str, problem: str | OSError, said: str, monkeypatch: pytest.MonkeyPatch
+def test_a_port_that_does_not_open_states_why_on_each_system(
+    platform: str, device: str, problem: str | OSError, stated: str, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.setattr(sys, "platform", platform)
 
@@ -361,7 +361,7 @@ def test_a_port_that_does_not_open_says_why_on_each_system(
         raise problem if isinstance(problem, OSError) else OSError(problem)
 
     monkeypatch.setattr(ports, "Serial", fail)
-    with pytest.raises(SourceRefusedError, match=said) as refused:
+    with pytest.raises(SourceRefusedError, match=stated) as refused:
         ports.SerialPort(ports.PortInfo(device), 115200).open()
     assert device in str(refused.value)
 

@@ -45,8 +45,8 @@ def is_words(text: str) -> bool:
 
 
 def is_sentence_with_fields(node: ast.JoinedStr) -> bool:
-    said = [part.value for part in node.values if isinstance(part, ast.Constant) and isinstance(part.value, str)]
-    words = [word for piece in said if " " in piece for word in WORD_BESIDE_FIELD.findall(piece)]
+    stated = [part.value for part in node.values if isinstance(part, ast.Constant) and isinstance(part.value, str)]
+    words = [word for piece in stated if " " in piece for word in WORD_BESIDE_FIELD.findall(piece)]
     return any(word not in NO_WORDS for word in words)
 
 
@@ -145,14 +145,14 @@ def test_no_refusal_of_the_library_is_put_together_past_the_catalogue() -> None:
     for file in sorted((ROOT / "app" / "storage").rglob("*.py")):
         for node in ast.walk(parsed(file)):
             if isinstance(node, ast.Call) and REFUSALS.search(ast.unparse(node.func)):
-                said = node.args
+                stated = node.args
             elif isinstance(node, ast.Assign) and ast.unparse(node.targets[0]) in ("what", "remedy", "problem"):
-                said = [node.value]
+                stated = [node.value]
             else:
                 continue
             found += [
                 f"{file.relative_to(ROOT).as_posix()}:{one.lineno}"
-                for one in said
+                for one in stated
                 if isinstance(one, ast.JoinedStr) and is_sentence_with_fields(one)
             ]
     assert found == [], "write tr(...).format(...)"
@@ -165,12 +165,12 @@ def test_every_refusal_of_the_devices_is_a_sentence_of_the_catalogue(monkeypatch
     gathered = {message.id for message in catalogue.gathered()}
     count, found = 0, []
     for file in sorted((ROOT / "devices").rglob("*.py")):
-        for call, said in catalogue.refused(file):
-            fields = {field for text in said for _, field, *_ in Formatter().parse(text) if field}
+        for call, stated in catalogue.refused(file):
+            fields = {field for text in stated for _, field, *_ in Formatter().parse(text) if field}
             count += 1
             if (
-                len(said) != (1 if ast.unparse(call.func) == "ExpectedError" else 2)
-                or not gathered.issuperset(said)
+                len(stated) != (1 if ast.unparse(call.func) == "ExpectedError" else 2)
+                or not gathered.issuperset(stated)
                 or fields != {one.arg for one in call.keywords}
             ):
                 found.append(f"{file.relative_to(ROOT).as_posix()}:{call.lineno}")
@@ -204,9 +204,9 @@ def test_the_template_of_the_catalogues_holds_the_sentences_of_the_code(monkeypa
 
 
 def test_the_pseudo_language_is_as_much_longer_as_german() -> None:
-    said = {message: lengthened(message) for message in ("Stop", "Open a session folder", *SENTENCES.values())}
-    assert [message for message, longer in said.items() if len(longer) < 1.3 * len(message)] == []
-    assert [longer for longer in said.values() if not re.fullmatch(r"\[.*\]", longer)] == []
+    stated = {message: lengthened(message) for message in ("Stop", "Open a session folder", *SENTENCES.values())}
+    assert [message for message, longer in stated.items() if len(longer) < 1.3 * len(message)] == []
+    assert [longer for longer in stated.values() if not re.fullmatch(r"\[.*\]", longer)] == []
 
 
 def test_the_pseudo_language_leaves_the_figures_alone() -> None:

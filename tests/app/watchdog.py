@@ -2,7 +2,7 @@
 
 What counts is what the screen's thread itself did between two beats: processor time it used, and time it waited for
 something, as for a lock, a file or `sleep`. Time in which it was ready and another process had the processor is left
-out, so that a busy machine fails no test; systems that do not tell that time are asked for processor time only. What
+out, so that a busy machine fails no test; systems that do not report that time are asked for processor time only. What
 the test process holds beside the application is kept from the garbage collector meanwhile: clinics do not run pytest.
 """
 
@@ -30,7 +30,7 @@ class Spent:
 
     wall_s: float
     busy_s: float
-    kept_s: float | None  # None where the system does not tell
+    kept_s: float | None  # None where the system does not report
 
     def since(self, before: "Spent") -> tuple[float, float]:
         """Give the time at work and the time waiting, between `before` and this."""
@@ -125,7 +125,7 @@ class Watchdog:
         wall_s = time.monotonic()
         if self._clock is not None:
             busy_s = time.clock_gettime(self._clock)
-        else:  # Windows tells a thread's time only to itself: then late beats are seen, but not where
+        else:  # Windows reports a thread's time only to itself: then late beats are seen, but not where
             busy_s = time.thread_time() if threading.get_ident() == self._thread_id else self._beat.busy_s
         kept_s = int(self._kept_file.read_text().split()[1]) / 1e9 if self._has_kept else None
         return Spent(wall_s, busy_s, kept_s)

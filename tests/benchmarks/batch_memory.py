@@ -3,7 +3,7 @@
     python -m tests.benchmarks.batch_memory --sessions 1000
 
 Prints the resident memory of each, and of the processes that read the files, as the batch goes on. Workers are renewed
-now and then, so their memory rises and falls: told is the most of the first quarter, and of the last.
+now and then, so their memory rises and falls: reported is the most of the first quarter, and of the last.
 """
 
 import argparse
@@ -25,7 +25,8 @@ WORKERS, LINES = 2, 100
 
 
 class Watch:
-    """Notes the memory of this process, of its workers and of their children, whenever the batch says how far it is."""
+    """Notes the memory of this process, of its workers and of their children, whenever the batch states how far it
+    is."""
 
     def __init__(self, executor: ProcessExecutor, sessions: int) -> None:
         self._executor, self._sessions, self._next = executor, sessions, 0
@@ -75,20 +76,20 @@ def main() -> None:
     parser.add_argument("--sessions", type=int, default=1000)
     parser.add_argument("--strides", type=int, default=12)
     parser.add_argument("--bare", action="store_true", help="without report.pdf and session.rrd")
-    wanted = parser.parse_args()
-    choices = AnalysisChoices(Method.ROBUST, 2.0, not wanted.bare, not wanted.bare)
+    required = parser.parse_args()
+    choices = AnalysisChoices(Method.ROBUST, 2.0, not required.bare, not required.bare)
     executor = ProcessExecutor(WORKERS, PRELOADED)
     with tempfile.TemporaryDirectory() as place:
         folder, out = Path(place) / "in", Path(place) / "out"
-        write_walks(folder, wanted.sessions, min(wanted.sessions, 20), wanted.strides, 1)
-        watch = Watch(executor, wanted.sessions)
+        write_walks(folder, required.sessions, min(required.sessions, 20), required.strides, 1)
+        watch = Watch(executor, required.sessions)
         with batch_at(out) as batch:
             work = Batch(SessionFolders(folder, out), batch, choices)
             work.run(Workers(executor, lambda: WORKERS, MOST_TRIES), watch)
         executor.shutdown()
     print(f"{work.result.analysed} analysed, {len(work.result.failures)} failed")
-    quarter = wanted.sessions / 4
-    for name, first, last in (("first", 0.0, quarter), ("last", wanted.sessions - quarter, wanted.sessions)):
+    quarter = required.sessions / 4
+    for name, first, last in (("first", 0.0, quarter), ("last", required.sessions - quarter, required.sessions)):
         noted = [one[1:] for one in watch.noted if first <= one[0] <= last]
         most = map(max, zip(*noted, strict=True))
         print("most in the {} quarter, MiB: leads {:.1f}, works {:.1f}, reads {:.1f}".format(name, *most))

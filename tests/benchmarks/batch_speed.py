@@ -3,7 +3,7 @@
     python -m tests.benchmarks.batch_speed --sessions 72 --pairs 5
 
 One worker and two take turns on the same sessions, simulated walks with free motion; the ratio of each pair is taken,
-then the median. 1.6 is wanted on two cores.
+then the median. 1.6 is required on two cores.
 """
 
 import argparse
@@ -33,23 +33,23 @@ def main() -> None:
     parser.add_argument("--pairs", type=int, default=5)
     parser.add_argument("--workers", type=int, default=2)
     parser.add_argument("--bare", action="store_true", help="without report.pdf and session.rrd")
-    wanted = parser.parse_args()
-    more, ratios = ["--no-report", "--no-rrd"] if wanted.bare else [], []
+    required = parser.parse_args()
+    more, ratios = ["--no-report", "--no-rrd"] if required.bare else [], []
     with tempfile.TemporaryDirectory() as place:
         folder = Path(place) / "in"
-        write_walks(folder, wanted.sessions, min(wanted.sessions, 8), wanted.strides, wanted.walks)
-        for pair in range(wanted.pairs):
+        write_walks(folder, required.sessions, min(required.sessions, 8), required.strides, required.walks)
+        for pair in range(required.pairs):
             one_s, many_s = (
-                took_s(folder, Path(place) / f"{pair} {workers}", workers, more) for workers in (1, wanted.workers)
+                took_s(folder, Path(place) / f"{pair} {workers}", workers, more) for workers in (1, required.workers)
             )
             ratios.append(one_s / many_s)
-            each_s = one_s / wanted.sessions
+            each_s = one_s / required.sessions
             print(
-                f"one worker {one_s:.1f} s ({each_s:.2f} s a session), {wanted.workers} workers {many_s:.1f} s: ",
+                f"one worker {one_s:.1f} s ({each_s:.2f} s a session), {required.workers} workers {many_s:.1f} s: ",
                 end="",
             )
             print(f"{ratios[-1]:.2f} times; load {os.getloadavg()[0]:.1f}", flush=True)
-    print(f"{wanted.workers} workers are {statistics.median(ratios):.2f} times as fast (median of {wanted.pairs})")
+    print(f"{required.workers} workers are {statistics.median(ratios):.2f} times as fast (median of {required.pairs})")
 
 
 if __name__ == "__main__":

@@ -145,7 +145,7 @@ def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("--walks", type=int, default=6)
     parser.add_argument("--speed", type=float, default=4.0)
-    wanted = parser.parse_args()
+    required = parser.parse_args()
     application = QApplication([])
     load_fonts()
     with tempfile.TemporaryDirectory() as folder:
@@ -157,8 +157,8 @@ def main() -> None:
         controller = LibraryController()
         controller.open(Path(folder), PASSPHRASE)
         wait(lambda: controller.state is not None)
-        visit = dressed(controller, patient(wanted.walks, wanted.speed))
-        calibrate(visit, wanted.speed)
+        visit = dressed(controller, patient(required.walks, required.speed))
+        calibrate(visit, required.speed)
         step = WalkingStep(ThemeNotifier(), visit)
         step.page.resize(1064, 672)
         step.page.show()
@@ -166,8 +166,8 @@ def main() -> None:
         painted = Painted()
         application.installEventFilter(painted)
         print("walk | read back s | analysed s | painted s | processor s")
-        for number in range(1, wanted.walks + 1):
-            found = walked(step, visit, painted, wanted.speed)
+        for number in range(1, required.walks + 1):
+            found = walked(step, visit, painted, required.speed)
             print(" | ".join([str(number), *(f"{value:.2f}" for value in found)]), flush=True)
             step.on_intent(KEEP)
             rest(0.3)

@@ -5,7 +5,7 @@
 FOLDER is what `packaging/build.py` froze (build/folder/gaitwright), or where it is installed. From just before the
 program is started until its window is on a display of its own (Xvfb), with all files in the disk's cache: a new user's
 first page. Memory is what is resident then, and the most that the demonstration takes from its start to its report.
-With each the processor time, for the times grow with what else the machine does; its load is told.
+With each the processor time, for the times grow with what else the machine does; its load is reported.
 """
 
 import argparse
@@ -74,16 +74,16 @@ def main() -> None:
     parser = argparse.ArgumentParser(description=(__doc__ or "").split("\n")[0])
     parser.add_argument("folder", type=Path, nargs="?", default=ROOT / "build" / "folder" / "gaitwright")
     parser.add_argument("--times", type=int, default=5)
-    wanted = parser.parse_args()
-    program = wanted.folder / "gaitwright"
+    required = parser.parse_args()
+    program = required.folder / "gaitwright"
     took_s, work_s, most_mb = demonstration(program)
-    print(f"folder: {size_mb(wanted.folder):.0f} MB")
+    print(f"folder: {size_mb(required.folder):.0f} MB")
     for file in sorted((ROOT / "dist").glob("gaitwright[_-]*")):
         if file.suffix in (".deb", ".zst"):
             print(f"{file.name}: {file.stat().st_size / 1e6:.0f} MB")
     print(f"demo, from its start to its report: {took_s:.1f} s, {work_s:.1f} s of work, {most_mb:.0f} MB at most")
     with own_display() as display, own_environment(display) as environment:
-        starts = [window_start(program, environment) for _ in range(wanted.times + 1)][1:]
+        starts = [window_start(program, environment) for _ in range(required.times + 1)][1:]
     there, work, resident = zip(*starts, strict=True)
     print(f"window: there after {statistics.median(there):.2f} s (median of {len(there)}), longest {max(there):.2f} s;")
     print(f"settled with {statistics.median(work):.1f} s of work and {statistics.median(resident):.0f} MB resident")

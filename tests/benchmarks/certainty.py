@@ -1,9 +1,9 @@
-"""Does what is said of an angle's certainty hold on the project's own patient?
+"""Does what is stated about an angle's certainty hold on the project's own patient?
 
     python -m tests.benchmarks.certainty --seeds 12 [--first 0]
 
 One line per tissue, wearer, kind of joint and kind of recording: share of samples within two standard deviations after
-removing the mean, pooled (90 to 100 % wanted) and in the worst session, and the standard deviation over the error.
+removing the mean, pooled (90 to 100 % required) and in the worst session, and the standard deviation over the error.
 """
 
 import argparse

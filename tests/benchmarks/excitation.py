@@ -6,7 +6,7 @@ Each session is one leg of the project's patient: rigid or with soft tissue, mov
 sensors, on one clock or up to 30 ms apart, stopped after 3 to 25 s. The live excitation sees the samples as they come;
 the true error is that of the calibration which the offline analysis makes of the same samples. Printed: how often the
 error lies within twice the predicted standard deviation, floors included, how often a gauge closed, and whether the
-calibration then told what the gauge had promised.
+calibration then reported what the gauge had promised.
 """
 
 import argparse
@@ -54,7 +54,7 @@ QUANTITIES = ("knee axis, deg", "knee centre, mm", "ankle centre, mm")
 class Stopped:
     """One quantity of one calibration: its true error, twice the predicted sd, the gauge, all deg or mm.
 
-    `is_told`: the calibration calls it known.
+    `is_reported`: the calibration calls it known.
     """
 
     quantity: str
@@ -65,7 +65,7 @@ class Stopped:
     predicted: float
     gauge: float
     is_closed: bool
-    is_told: bool
+    is_reported: bool
 
     @property
     def is_covered(self) -> bool:
@@ -109,10 +109,10 @@ def stopped_calibrations(seed: int) -> Iterator[Stopped]:
         centre = found.robust.centre
         error_m = _centre_error_m(centre.proximal_m, centre.distal_m, truth, joint.is_knee)
         axes = found.geometry.axis_1, found.geometry.axis_2
-        yield from _told(seed, stop_s, conditions, joint, state, axes, truth, error_m, found.is_centre_known)
+        yield from _reported(seed, stop_s, conditions, joint, state, axes, truth, error_m, found.is_centre_known)
 
 
-def _told(
+def _reported(
     seed: int,
     stop_s: float,
     conditions: tuple[str, ...],
@@ -121,21 +121,27 @@ def _told(
     axes: tuple[FloatArray, FloatArray],
     truth: JointTruth,
     error_m: float,
-    is_centre_told: bool,
+    is_centre_reported: bool,
 ) -> Iterator[Stopped]:
-    said = seed, stop_s, conditions
+    stated = seed, stop_s, conditions
     if joint.is_knee:
         true = truth.functional_proximal, truth.functional_distal
         error_deg = max(line_error_deg(own, other) for own, other in zip(axes, true, strict=True))
         predicted, gauge = 2 * state.axis_sd_with_floor_rad, state.axis_sd_rad
         is_closed = gauge <= HUMAN.axis_rad
         yield Stopped(
-            "knee axis, deg", *said, error_deg, float(np.rad2deg(predicted)), float(np.rad2deg(gauge)), is_closed, True
+            "knee axis, deg",
+            *stated,
+            error_deg,
+            float(np.rad2deg(predicted)),
+            float(np.rad2deg(gauge)),
+            is_closed,
+            True,
         )
     quantity = "knee centre, mm" if joint.is_knee else "ankle centre, mm"
     predicted, gauge = 2 * state.centre_sd_with_floor_m, state.centre_sd_m
     is_closed = gauge <= HUMAN.centre_m
-    yield Stopped(quantity, *said, 1000 * error_m, 1000 * predicted, 1000 * gauge, is_closed, is_centre_told)
+    yield Stopped(quantity, *stated, 1000 * error_m, 1000 * predicted, 1000 * gauge, is_closed, is_centre_reported)
 
 
 def _centre_error_m(o1: FloatArray, o2: FloatArray, truth: JointTruth, is_knee: bool) -> float:
@@ -169,11 +175,11 @@ def _as_they_come(session: Session, site: Site) -> OrientedSamples:
     return LiveOrientation(rest.gyr_rad_s, RateKind.INSTANTANEOUS, stream.step_s).update(stream.take())
 
 
-def table(told: list[Stopped]) -> str:
+def table(reported: list[Stopped]) -> str:
     """Coverage per quantity and condition."""
     lines = []
     for quantity in QUANTITIES:
-        mine = [one for one in told if one.quantity == quantity]
+        mine = [one for one in reported if one.quantity == quantity]
         lines.append(f"\n{quantity}: {_line(mine)}")
         groups: dict[str, list[Stopped]] = defaultdict(list)
         for one in mine:
@@ -181,23 +187,23 @@ def table(told: list[Stopped]) -> str:
                 groups[condition].append(one)
         lines += [f"  {condition:16s} {_line(groups[condition])}" for condition in sorted(groups)]
         closed = [one for one in mine if one.is_closed]
-        lines.append(f"  {'gauge closed':16s} {_line(closed)}   told {sum(one.is_told for one in closed)}")
+        lines.append(f"  {'gauge closed':16s} {_line(closed)}   told {sum(one.is_reported for one in closed)}")
     return "\n".join(lines)
 
 
-def _line(told: list[Stopped]) -> str:
-    if not told:
+def _line(reported: list[Stopped]) -> str:
+    if not reported:
         return "none"
-    error, predicted = np.array([one.error for one in told]), np.array([one.predicted for one in told])
-    covered = np.mean([one.is_covered for one in told])
+    error, predicted = np.array([one.error for one in reported]), np.array([one.predicted for one in reported])
+    covered = np.mean([one.is_covered for one in reported])
     return (
-        f"{100 * covered:5.1f} % of {len(told):4d} within 2 sd   error p50 {np.median(error):6.1f} "
+        f"{100 * covered:5.1f} % of {len(reported):4d} within 2 sd   error p50 {np.median(error):6.1f} "
         f"p90 {np.quantile(error, 0.9):6.1f}   2 sd p50 {np.median(predicted):6.1f}   "
-        f"gauge p50 {np.median([one.gauge for one in told]):6.1f}"
+        f"gauge p50 {np.median([one.gauge for one in reported]):6.1f}"
     )
 
 
-def draw(told: list[Stopped], path: Path) -> None:
+def draw(reported: list[Stopped], path: Path) -> None:
     """Predicted against true on logarithmic scales, one panel per quantity; below the line is covered."""
     os.environ.setdefault("QT_QPA_PLATFORM", "offscreen")
     from PySide6.QtCore import QPointF, QRectF, Qt
@@ -230,7 +236,7 @@ def draw(told: list[Stopped], path: Path) -> None:
             painter.drawText(QPointF(frame.left() - 34, at.y() + 4), f"{10.0**decade:g}")
         painter.drawText(QPointF(left, top - 12), f"{quantity}: true error (up) against twice the predicted sd (right)")
         painter.setPen(Qt.PenStyle.NoPen)
-        for one in told:
+        for one in reported:
             if one.quantity == quantity:
                 colour = QColor("#D55E00" if Tissue.SOFT.value in one.conditions else "#0072B2")
                 colour.setAlpha(150)
@@ -253,18 +259,18 @@ def main() -> None:
     parser.add_argument("--picture", type=Path)
     parser.add_argument("--misses", action="store_true", help="print every calibration that is not covered")
     arguments = parser.parse_args()
-    told = [
+    reported = [
         one
         for seed in range(arguments.first, arguments.first + arguments.sessions)
         for one in stopped_calibrations(seed)
     ]
-    print(table(told))
-    for one in told if arguments.misses else ():
+    print(table(reported))
+    for one in reported if arguments.misses else ():
         if not one.is_covered:
             figures = f"{one.stop_s:5.1f} s  error {one.error:6.1f}  2 sd {one.predicted:6.1f}"
             print(f"{one.quantity:17s} seed {one.seed:4d} {figures}  {', '.join(one.conditions)}")
     if arguments.picture:
-        draw(told, arguments.picture)
+        draw(reported, arguments.picture)
 
 
 if __name__ == "__main__":

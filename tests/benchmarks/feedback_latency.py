@@ -8,8 +8,9 @@ times a second meanwhile. One measure after the other, on the leg without a pros
 stride reaches.
 
 "From the event": from the instant of the knee's peak, of the contact or of the toe-off to when the bar has been
-painted, and to when the tone is handed to the player. "From its end": from the sample that tells it, with which a knee
-has fallen from its peak and a contact is found. How long the player takes from there to the loudspeaker is not in it.
+painted, and to when the tone is handed to the player. "From its end": from the sample that reports it, with which a
+knee has fallen from its peak and a contact is found. How long the player takes from there to the loudspeaker is not in
+it.
 
 On a machine that others keep busy these are mostly the machine's. `--computed` plays the same in a time of its own:
 when the reader polls and the estimator wakes is computed as the application does both, and only the processor time of
@@ -93,7 +94,7 @@ class _Watch(QObject):
         super().__init__()
         self._acquisition, self._estimator, self._feedback = acquisition, estimator, feedback
         self.target: Target | None = None
-        self.heard: list[tuple[StrideValue, float]] = []
+        self.received: list[tuple[StrideValue, float]] = []
         self.painted: list[tuple[StrideValue, float]] = []
         self.known: list[tuple[StrideValue, float]] = []
         self.on_value, estimator.on_value = estimator.on_value, self.on_known
@@ -123,7 +124,7 @@ class _Watch(QObject):
         value, now_s = self._newest(), self._acquisition.now_s
         if sound is not Sound.REACHED or value is None:
             return
-        self.heard.append((value, now_s))
+        self.received.append((value, now_s))
         window = self._feedback.window
         if window is not None and self._feedback.view != window.view:  # after ten equal ones they are
             self._pending.append(value)
@@ -146,8 +147,8 @@ def run(seconds: float) -> None:
     load_fonts()
     look = ThemeNotifier()
     strides = round(seconds / STRIDE_S)
-    wanted = (Standing(duration_s=10.0), FreeMotion(duration_s=25.0), Walk(strides=strides, standing_before_s=2.0))
-    session = simulate(replace(DEMONSTRATION, rate_hz=RATE_HZ, recordings=wanted)).session
+    required = (Standing(duration_s=10.0), FreeMotion(duration_s=25.0), Walk(strides=strides, standing_before_s=2.0))
+    session = simulate(replace(DEMONSTRATION, rate_hz=RATE_HZ, recordings=required)).session
     calibration = analyse(session).calibrations[-1].joints
     site_of = {session.recordings[0].imu[site].sensor: site for site in LEG_SITES}
     acquisition = Acquisition([ReplaySource(session)])
@@ -189,7 +190,7 @@ def run(seconds: float) -> None:
                 page.patient_controls.target_set.emit(watch.target)
                 acquisition.ask(RecordingKind.WALKING)
                 _wait(seconds)
-                noted = watch.known, watch.painted, watch.heard
+                noted = watch.known, watch.painted, watch.received
                 print(_row(str(measure), *noted), flush=True)
                 for whole, part in zip(every, noted, strict=True):
                     whole.extend(part)
@@ -217,12 +218,12 @@ def compute(seconds: float) -> None:
     collector = GarbageCollector(app, lambda: False)
     load_fonts()
     look = ThemeNotifier()
-    wanted = (
+    required = (
         Standing(duration_s=10.0),
         FreeMotion(duration_s=25.0),
         Walk(strides=round(seconds / STRIDE_S), standing_before_s=2.0),
     )
-    session = simulate(replace(DEMONSTRATION, rate_hz=RATE_HZ, recordings=wanted)).session
+    session = simulate(replace(DEMONSTRATION, rate_hz=RATE_HZ, recordings=required)).session
     standing, _, walk = session.recordings
     site_of = {block.sensor: site for site, block in walk.imu.items()}
     rests = {block.sensor: rest for block in standing.imu.values() if (rest := rest_of(block)) is not None}
@@ -243,7 +244,7 @@ def compute(seconds: float) -> None:
         feedback.watch(estimator)
         app.processEvents()
         first_s = min(float(block.time_s[0]) for block in walk.imu.values())
-        wakes_s, read_s, told = first_s, first_s, 0
+        wakes_s, read_s, reported = first_s, first_s, 0
         while read_s < float(walk.imu[Site.LEFT_THIGH].time_s[-1]):
             before_s, read_s = read_s, first_s + POLL_S * math.floor((wakes_s - first_s) / POLL_S)
             blocks = {block.sensor: _between(block, before_s, read_s) for block in walk.imu.values()}
@@ -258,7 +259,7 @@ def compute(seconds: float) -> None:
                 page.show_view(estimator.state)
             app.processEvents()
             shown_s += time.thread_time() - begin_s
-            new, told = estimator.state.values_told - told, estimator.state.values_told
+            new, reported = estimator.state.values_reported - reported, estimator.state.values_reported
             for one in estimator.state.stride_values[-new:] if new else ():
                 if one.measure is measure and side in (None, one.side):
                     noted[measure][0].append((one, known_s))
@@ -269,7 +270,7 @@ def compute(seconds: float) -> None:
     every = [one for known, _ in noted.values() for one in known], [one for _, shown in noted.values() for one in shown]
     for name, (known, shown) in (*noted.items(), ("all", every)):
         cells = [_quantiles([at_s - one.event_s for one, at_s in part]) for part in (known, shown)]
-        cells.append(_quantiles([at_s - one.told_s for one, at_s in shown]))
+        cells.append(_quantiles([at_s - one.reported_s for one, at_s in shown]))
         print(f"| {name} | {len(shown)} | " + " | ".join(cells) + " |")
     sounds.play = played
     feedback.watch(None)
@@ -302,10 +303,10 @@ def _visit(site_of: dict[str, Site], calibration: Any) -> Any:
     )
 
 
-def _row(name: str, known: Noted, painted: Noted, heard: Noted) -> str:
-    cells = [_quantiles([at_s - one.event_s for one, at_s in noted]) for noted in (known, painted, heard)]
-    cells += [_quantiles([at_s - one.told_s for one, at_s in noted]) for noted in (painted, heard)]
-    return f"| {name} | {len(heard)} | " + " | ".join(cells) + " |"
+def _row(name: str, known: Noted, painted: Noted, received: Noted) -> str:
+    cells = [_quantiles([at_s - one.event_s for one, at_s in noted]) for noted in (known, painted, received)]
+    cells += [_quantiles([at_s - one.reported_s for one, at_s in noted]) for noted in (painted, received)]
+    return f"| {name} | {len(received)} | " + " | ".join(cells) + " |"
 
 
 def _quantiles(values_s: list[float]) -> str:
@@ -318,8 +319,8 @@ def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("--seconds", type=float, default=25.0, help="of each measure")
     parser.add_argument("--computed", action="store_true", help="in a time of its own, for a machine that is busy")
-    wanted = parser.parse_args()
-    (compute if wanted.computed else run)(wanted.seconds)
+    required = parser.parse_args()
+    (compute if required.computed else run)(required.seconds)
 
 
 if __name__ == "__main__":

@@ -26,7 +26,7 @@ class Stretch:
 
 @dataclass(frozen=True, slots=True)
 class OpticalStride:
-    """One stride of the optical recording, seconds and metres; the foot stands at `start_s` and `end_s`."""
+    """One stride of the optical recording, seconds and metres; the foot is at `start_s` and `end_s`."""
 
     start_s: float
     end_s: float

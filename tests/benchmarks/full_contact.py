@@ -74,8 +74,8 @@ def main() -> None:
         for side in Side:
             found, _ = events_of(Path(data or "") / "stroke_treadmill" / name, side)
             loading, lifting = found.full_contact_s - found.initial_contact_s, found.toe_off_s - found.heel_rise_s
-            told = (f"{1000.0 * np.nanstd(values[1:-1]):.0f}" for values in (loading, lifting))
-            print(name, side, "contact to full contact {} ms, heel rise to toe-off {} ms".format(*told), flush=True)
+            reported = (f"{1000.0 * np.nanstd(values[1:-1]):.0f}" for values in (loading, lifting))
+            print(name, side, "contact to full contact {} ms, heel rise to toe-off {} ms".format(*reported), flush=True)
 
 
 if __name__ == "__main__":

@@ -121,15 +121,15 @@ def _by_stride(path: Path, side: Side) -> dict[int, FloatArray]:
     return {number: np.array(values) for number, values in found.items()}
 
 
-def told_to_gaitmap(data: Path) -> dict[str, FloatArray]:
+def reported_to_gaitmap(data: Path) -> dict[str, FloatArray]:
     """The borders labelled by hand, and the optical strides, as GaitmapFeet takes them."""
-    told = {}
+    reported = {}
     for side in Side:
         for name, file in (("borders", "stride_borders_sample.csv"), ("stances", "stride_events_sample.csv")):
             columns = ["s_id", "start", "end"] + (["ic", "tc", "min_vel", "pre_ic"] if name == "stances" else [])
             rows = [row for row in _rows(data / "feet_mocap_events" / file) if row["foot"] == side]
-            told[f"{side}_{name}"] = np.array([[float(row[column]) for column in columns] for row in rows])
-    return told
+            reported[f"{side}_{name}"] = np.array([[float(row[column]) for column in columns] for row in rows])
+    return reported
 
 
 def optics(data: Path, gaitmap: GaitmapFeet | None) -> Iterator[str]:
@@ -149,7 +149,7 @@ def optics(data: Path, gaitmap: GaitmapFeet | None) -> Iterator[str]:
             side: replace(b, acc_m_s2=b.acc_m_s2 @ axes.T, gyr_rad_s=b.gyr_rad_s @ axes.T)
             for side, b, axes in ((side, blocks[side], TOES_LEFT_UP[side]) for side in Side)
         }
-        theirs = gaitmap.find(mounted, ("gravity", "heading"), told_to_gaitmap(data))
+        theirs = gaitmap.find(mounted, ("gravity", "heading"), reported_to_gaitmap(data))
         events |= theirs.events
         strides |= {name: found for name, found in theirs.strides.items() if name.startswith(STRIDES_SHOWN)}
     event_scores = {k: EventScore.joined([score_events(f[s], truth[s]) for s in Side]) for k, f in events.items()}
@@ -226,7 +226,7 @@ def speed(gaitmap: GaitmapFeet | None, repeats: int) -> Iterator[str]:
     feet = {side: without_bias(walk.imu[site], standing.imu[site]) for side, site in FEET.items()}
     minutes = float(np.ptp(feet[Side.LEFT].time_s)) / 60.0
     if gaitmap is not None:
-        swings = sum(len(told.events.toe_off_s) for told in made.truth.recordings["walk 1"].feet.values())
+        swings = sum(len(reported.events.toe_off_s) for reported in made.truth.recordings["walk 1"].feet.values())
         warm = gaitmap.find(feet, ("heading",))
         ours = sum(len(gait_of(foot_of(foot, NO_BIAS))) for foot in feet.values())
         theirs = sum(len(events.toe_off_s) for events in warm.events["heading|BarthDtw|Rampp"].values())
@@ -286,12 +286,12 @@ def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("--repeats", type=int, default=7, help="turns of the speed comparison")
     repeats = parser.parse_args().repeats
-    told = os.environ.get("GAITWRIGHT_TEST_DATA")
+    reported = os.environ.get("GAITWRIGHT_TEST_DATA")
     with ExitStack() as stack:
         gaitmap = peers_gaitmap(stack)
         print(f"On {machine()}", end="\n\n")
-        if told:
-            print("\n".join(optics(Path(told), gaitmap)), end="\n\n", flush=True)
+        if reported:
+            print("\n".join(optics(Path(reported), gaitmap)), end="\n\n", flush=True)
         else:
             print("GAITWRIGHT_TEST_DATA is not set: the optical recordings are left out.", file=sys.stderr)
         print("\n".join(speed(gaitmap, repeats)))

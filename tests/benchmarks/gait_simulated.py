@@ -99,14 +99,14 @@ def walks_of(settings: WalkerSettings) -> dict[Side, tuple[OrientedTrack, FootTr
 
 
 def true_events(truth: FootTruth) -> FootEvents:
-    told = truth.events
-    nothing = np.full(len(told.toe_off_s), np.nan)
-    certain = np.ones(len(told.toe_off_s), dtype=bool)
+    reported = truth.events
+    nothing = np.full(len(reported.toe_off_s), np.nan)
+    certain = np.ones(len(reported.toe_off_s), dtype=bool)
     return FootEvents(
-        heel_rise_s=told.heel_rise_s,
-        toe_off_s=told.toe_off_s,
-        initial_contact_s=told.initial_contact_s,
-        full_contact_s=told.full_contact_s,
+        heel_rise_s=reported.heel_rise_s,
+        toe_off_s=reported.toe_off_s,
+        initial_contact_s=reported.initial_contact_s,
+        full_contact_s=reported.full_contact_s,
         length_m=truth.stride_lengths_m,
         height_m=nothing,
         climb_m=np.zeros_like(nothing),
@@ -165,7 +165,7 @@ def _means(strides: Mapping[Side, Strides]) -> dict[str, float]:
     left, right = strides[Side.LEFT], strides[Side.RIGHT]
     both = [(parameters_of(a, b), a.is_used) for a, b in ((left, right), (right, left))]
     means = {
-        name: float(np.nanmean(np.concatenate([told[name][is_used] for told, is_used in both])))
+        name: float(np.nanmean(np.concatenate([reported[name][is_used] for reported, is_used in both])))
         for name in (*TIMES, LENGTH)
         if name != "double_support_percent"
     }
@@ -182,15 +182,15 @@ def score_walks(settings: WalkerSettings, walk: Walk, seeds: Iterable[int]) -> S
 def line(score: Score) -> str:
     short = score.missed()
 
-    def told(name: str, text: str) -> str:
+    def reported(name: str, text: str) -> str:
         return text + ("*" if name in short else " ")
 
-    figures = [told("found", f"{score.found}/{score.expected}") + told("invented", f"+{score.invented}")]
+    figures = [reported("found", f"{score.found}/{score.expected}") + reported("invented", f"+{score.invented}")]
     for name in (*EVENTS, *PHASES):
         mean_s, sd_s = score.mean_and_sd_s(name)
-        figures.append(told(name, f"{1000.0 * mean_s:4.0f} {1000.0 * sd_s:3.0f}"))
+        figures.append(reported(name, f"{1000.0 * mean_s:4.0f} {1000.0 * sd_s:3.0f}"))
     figures.append(f"{1000.0 * score.ends_s:4.0f}")
-    figures += [told(name, f"{score.mean_percent(name):5.2f}") for name in (*TIMES, LENGTH)]
+    figures += [reported(name, f"{score.mean_percent(name):5.2f}") for name in (*TIMES, LENGTH)]
     return " | ".join(figures)
 
 

@@ -104,8 +104,8 @@ def cut_open(recording: Recording, from_s: float) -> Recording:
 
 def walks(condition: Condition, sessions: range) -> Iterator[Walked]:
     for seed in sessions:
-        wanted = Standing(), FreeMotion(), Walk(strides=27, standing_before_s=condition.standing_s)
-        made = simulate(WalkerSettings(seed=seed, tissue=condition.tissue, recordings=wanted))
+        required = Standing(), FreeMotion(), Walk(strides=27, standing_before_s=condition.standing_s)
+        made = simulate(WalkerSettings(seed=seed, tissue=condition.tissue, recordings=required))
         found, recording = analyse(made.session), made.session.recordings[-1]
         offline = found.recordings[-1]
         for joint, calibration in found.calibrations[-1].joints.items():
@@ -183,8 +183,8 @@ def _by_half_seconds(errors: list[FloatArray], rate_hz: float) -> Iterator[str]:
     width = round(BINS_S * rate_hz)
     for k in range(SETTLING_BINS):
         part = np.concatenate([e[k * width : (k + 1) * width] for e in errors])
-        told = np.isfinite(part)
-        yield f"{np.sqrt(np.mean(part[told] ** 2)):5.2f}" if np.mean(told) > 0.5 else "    -"
+        reported = np.isfinite(part)
+        yield f"{np.sqrt(np.mean(part[reported] ** 2)):5.2f}" if np.mean(reported) > 0.5 else "    -"
 
 
 def run_mechanical(folder: Path) -> None:
@@ -213,12 +213,12 @@ def main() -> None:
     parser.add_argument("--sessions", type=int, default=25)
     parser.add_argument("--first", type=int, default=0)
     parser.add_argument("--only", nargs="*", default=list(CONDITIONS))
-    wanted = parser.parse_args()
-    told = os.environ.get("GAITWRIGHT_TEST_DATA")
-    if told:
-        run_mechanical(Path(told))
-    for name in wanted.only:
-        run(name, range(wanted.first, wanted.first + wanted.sessions))
+    required = parser.parse_args()
+    reported = os.environ.get("GAITWRIGHT_TEST_DATA")
+    if reported:
+        run_mechanical(Path(reported))
+    for name in required.only:
+        run(name, range(required.first, required.first + required.sessions))
 
 
 if __name__ == "__main__":

@@ -4,11 +4,11 @@
     python -m tests.benchmarks.live_gait --turns 10
 
 Optical recordings (where GAITWRIGHT_TEST_DATA names the shared folder) and the project's own patient. For every kind of
-recording and every event: how many the whole walk has, how many were told live, how many more were told (invented), how
-far the live times are from the others, how long after it happened an event was told, and how many were late. With
-`--axis` the pitch axis is given, as a calibration would. `--turns SEEDS` makes the table of contacts instead: legs
-that hang from a pelvis, half turns on arcs and on the balls of the feet, at random speeds, rates and tissues, beside
-the truth and beside the whole walk; and people after a stroke.
+recording and every event: how many the whole walk has, how many were reported live, how many more were reported
+(invented), how far the live times are from the others, how long after it happened an event was reported, and how many
+were late. With `--axis` the pitch axis is given, as a calibration would. `--turns SEEDS` makes the table of contacts
+instead: legs that hang from a pelvis, half turns on arcs and on the balls of the feet, at random speeds, rates and
+tissues, beside the truth and beside the whole walk; and people after a stroke.
 """
 
 import argparse
@@ -61,17 +61,17 @@ class Score:
 def add(scores: dict[FootEvent, Score], foot: OrientedTrack, is_axis_given: bool) -> None:
     track, offline = foot.track, gait_of(foot)
     live = LiveEvents(follow(foot).pitch_axis if is_axis_given else None)
-    told = live.update(track.time_s, track.gyr_rad_s, track.acc_m_s2)
+    reported = live.update(track.time_s, track.gyr_rad_s, track.acc_m_s2)
     for event in FootEvent:
         score = scores[event]
-        mine = [e for e in told if e.event is event]
-        score.delays += [e.told_s - e.time_s for e in mine]
+        mine = [e for e in reported if e.event is event]
+        score.delays += [e.reported_s - e.time_s for e in mine]
         score.late += sum(e.is_late for e in mine)
         match(score, np.array([e.time_s for e in mine]), getattr(offline, f"{event}_s"))
 
 
 def match(score: Score, at_s: FloatArray, expected_s: FloatArray) -> None:
-    """Count which of the expected instants were told, and what was told besides."""
+    """Count which of the expected instants were reported, and what was reported besides."""
     free = np.ones(len(at_s), dtype=bool)
     score.offline += len(expected_s)
     for expected in expected_s:
@@ -82,7 +82,7 @@ def match(score: Score, at_s: FloatArray, expected_s: FloatArray) -> None:
     score.invented += int(free.sum())
 
 
-def tell(kind: str, scores: dict[FootEvent, Score]) -> None:
+def show_message(kind: str, scores: dict[FootEvent, Score]) -> None:
     for event, score in scores.items():
         away, delay = 1000.0 * np.array(score.differences), 1000.0 * np.array(score.delays)
         if not len(away):
@@ -170,36 +170,36 @@ def kinds_of_turns(seeds: int) -> dict[str, list[WalkerSettings]]:
     return kinds
 
 
-def tell_turns(seeds: int) -> None:
+def show_turns(seeds: int) -> None:
     print("| walks | of the truth | invented | of the whole walk | more than it |\n|---|---|---|---|---|")
-    for name, wanted in kinds_of_turns(seeds).items():
+    for name, required in kinds_of_turns(seeds).items():
         true, whole = Score(), Score()
-        for settings in wanted:
+        for settings in required:
             made = simulate(settings)
             standing, walk = made.session.recordings
             feet = feet_of({site: standing.imu[site] for site in SITES}, {site: walk.imu[site] for site in SITES})
             for side, foot in zip(Side, feet, strict=True):
-                told_s = contacts_of(foot)
-                match(true, told_s, made.truth.recordings[walk.name].feet[side].events.initial_contact_s)
-                match(whole, told_s, gait_of(foot).initial_contact_s)
-        tell_row(name, true, whole)
-    told = os.environ.get("GAITWRIGHT_TEST_DATA")
-    for folder in sorted((Path(told) / "stroke_treadmill").glob("stroke*")) if told else []:
+                reported_s = contacts_of(foot)
+                match(true, reported_s, made.truth.recordings[walk.name].feet[side].events.initial_contact_s)
+                match(whole, reported_s, gait_of(foot).initial_contact_s)
+        show_row(name, true, whole)
+    reported = os.environ.get("GAITWRIGHT_TEST_DATA")
+    for folder in sorted((Path(reported) / "stroke_treadmill").glob("stroke*")) if reported else []:
         whole = Score()
         (walk,) = read_session(folder).recordings
         for site in SITES:
             rest, (track,) = rest_of(walk.imu[site]), even_tracks(walk.imu[site])
             foot = oriented(track, RateKind.INSTANTANEOUS, np.zeros(3) if rest is None else rest.gyr_rad_s)
             match(whole, contacts_of(foot), gait_of(foot).initial_contact_s)
-        tell_row(folder.name, None, whole)
+        show_row(folder.name, None, whole)
 
 
 def contacts_of(foot: OrientedTrack) -> FloatArray:
-    told = LiveEvents().update(foot.track.time_s, foot.track.gyr_rad_s, foot.track.acc_m_s2)
-    return np.array([e.time_s for e in told if e.event is FootEvent.INITIAL_CONTACT])
+    reported = LiveEvents().update(foot.track.time_s, foot.track.gyr_rad_s, foot.track.acc_m_s2)
+    return np.array([e.time_s for e in reported if e.event is FootEvent.INITIAL_CONTACT])
 
 
-def tell_row(name: str, true: Score | None, whole: Score) -> None:
+def show_row(name: str, true: Score | None, whole: Score) -> None:
     of_truth = "- | -" if true is None else f"{len(true.differences)} of {true.offline} | {true.invented}"
     print(f"| {name} | {of_truth} | {len(whole.differences)} of {whole.offline} | {whole.invented} |", flush=True)
 
@@ -211,16 +211,16 @@ def main() -> None:
     parser.add_argument("--turns", type=int, metavar="SEEDS", help="the table of contacts in turns instead")
     args = parser.parse_args()
     if args.turns:
-        tell_turns(args.turns)
+        show_turns(args.turns)
         return
     for block in (1, 4, 40):
         cost(block)
-    told = os.environ.get("GAITWRIGHT_TEST_DATA")
-    if told:
+    reported = os.environ.get("GAITWRIGHT_TEST_DATA")
+    if reported:
         scores: dict[FootEvent, Score] = defaultdict(Score)
-        for foot in optical_feet(Path(told)):
+        for foot in optical_feet(Path(reported)):
             add(scores, foot, args.axis)
-        tell("optics, both feet", scores)
+        show_message("optics, both feet", scores)
     else:
         print("GAITWRIGHT_TEST_DATA is not set: the optical recordings are left out.")
     kinds: dict[str, list[WalkerSettings]] = defaultdict(list)
@@ -234,12 +234,12 @@ def main() -> None:
             kinds["prosthesis, 100 Hz"].append(replace(ordinary, prosthetic_side=Side.LEFT))
             kinds["stiff knee, 100 Hz"].append(replace(ordinary, stiff_knee_side=Side.LEFT))
             kinds["turning round, 100 Hz"].append(walking(speed_m_s, 100.0, Tissue.SOFT, seed, np.pi))
-    for name, wanted in kinds.items():
+    for name, required in kinds.items():
         scores = defaultdict(Score)
-        for settings in wanted:
+        for settings in required:
             for foot in walker_feet(settings):
                 add(scores, foot, args.axis)
-        tell(name, scores)
+        show_message(name, scores)
 
 
 if __name__ == "__main__":

@@ -142,8 +142,8 @@ def stood(acquisition: Acquisition) -> StandingEstimator:
 
 
 def run(seconds: float) -> None:
-    wanted = (Standing(duration_s=10.0), FreeMotion(duration_s=seconds), Walk(strides=round(seconds / STRIDE_S)))
-    session = simulate(replace(DEMONSTRATION, rate_hz=RATE_HZ, recordings=wanted)).session
+    required = (Standing(duration_s=10.0), FreeMotion(duration_s=seconds), Walk(strides=round(seconds / STRIDE_S)))
+    session = simulate(replace(DEMONSTRATION, rate_hz=RATE_HZ, recordings=required)).session
     calibration = analyse(session).calibrations[-1].joints
     site_of = {session.recordings[0].imu[site].sensor: site for site in LEG_SITES}
     acquisition = Acquisition([ReplaySource(session)])

@@ -140,8 +140,8 @@ def compare_seven(minutes: int) -> None:
         spent = spent[WARM_MINUTES:]
         shares = [100 * sum(one) / (minutes * length_s) for one in zip(*spent, strict=True)]
         ratios = [of_seven / of_six for of_six, of_seven in spent]
-        told = f"{np.median(ratios):.2f}, {min(ratios):.2f}, {max(ratios):.2f}"
-        print(f"| {name} | {shares[0]:.1f}, {shares[1]:.1f} | {told} |")
+        reported = f"{np.median(ratios):.2f}, {min(ratios):.2f}, {max(ratios):.2f}"
+        print(f"| {name} | {shares[0]:.1f}, {shares[1]:.1f} | {reported} |")
 
 
 def memory_kib() -> int:

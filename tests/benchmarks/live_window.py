@@ -4,11 +4,11 @@
 
 The application itself on a display of its own (Xvfb) leads a whole session with the simulated patient, from home to
 the results, and records a walk of so many seconds; readers, journal, estimator and frames are all in its process.
-Told are: CPU of the walk as a share of one core, by thread; frames a second and how far apart; age: from an angle's
+Reported are: CPU of the walk as a share of one core, by thread; frames a second and how far apart; age: from an angle's
 stamp until the frame that shows it was sent to the display, the estimator's wait for the samples around it included;
 what held the screen's thread up for more than 100 ms in the whole session, and where. Of the longest time between two
 frames: how long each of our threads was at work in it, and how long it was ready and other processes were on the
-processor; and how long a process beside that does nothing but beat was silent. A machine that stands still is no
+processor; and how long a process beside that does nothing but beat was silent. A machine that is still is no
 fault of the window. With `--curves 18` frames are those of a page that draws the rates of six sensors about three
 axes, instead of the walking page, for as long. One analysis runs beside the walk, as ever, to find the ankles' axes;
 with `--analyses` one after the other all the time.
@@ -47,7 +47,7 @@ BEAT_S = 0.02
 KEPT = "at_work_and_kept_ms"
 
 
-def lead(wanted: argparse.Namespace) -> dict[str, Any]:
+def lead(required: argparse.Namespace) -> dict[str, Any]:
     """Open the window, lead the session, and give what was measured. Runs in a process of its own."""
     from PySide6.QtCore import QTimer
 
@@ -55,7 +55,7 @@ def lead(wanted: argparse.Namespace) -> dict[str, Any]:
     from app.wizard.sensors import sources
     from tests.app.watchdog import Watchdog
 
-    sources.choices = lambda: (_source(wanted.rate, wanted.seconds),)  # before the wizard takes it from there
+    sources.choices = lambda: (_source(required.rate, required.seconds),)  # before the wizard takes it from there
     measured: dict[str, Any] = {}
     init = main_window.MainWindow.__init__
     timer = QTimer()
@@ -63,14 +63,14 @@ def lead(wanted: argparse.Namespace) -> dict[str, Any]:
     def begun(window: "MainWindow", *arguments: Any, **named: Any) -> None:
         init(window, *arguments, **named)
         dog = Watchdog()
-        script = _session(window, wanted, measured)
+        script = _session(window, required, measured)
         state: dict[str, Any] = {"until": lambda: True, "since_s": time.monotonic()}
 
         def poll() -> None:
             try:
                 if state["until"]():
                     state["until"], state["since_s"] = next(script), time.monotonic()
-                elif time.monotonic() - state["since_s"] > PATIENCE_S + wanted.seconds:
+                elif time.monotonic() - state["since_s"] > PATIENCE_S + required.seconds:
                     raise TimeoutError("the session does not go on")
             except StopIteration:
                 dog.stop()
@@ -108,10 +108,10 @@ def _source(rate_hz: float, seconds: float) -> "SourceChoice":
 
 
 def _session(
-    window: "MainWindow", wanted: argparse.Namespace, measured: dict[str, Any]
+    window: "MainWindow", required: argparse.Namespace, measured: dict[str, Any]
 ) -> Iterator[Callable[[], bool]]:
     """The session: each stop is reached when what it yields is true."""
-    window.resize(*wanted.size)
+    window.resize(*required.size)
     window.move(20, 20)
     yield _after(PAUSE_S)
     window.open_demonstration()
@@ -125,7 +125,7 @@ def _session(
     from app.wizard.step import StepId
 
     assert window.home is not None
-    window.home.session_wished.emit(window.home.patients.patient)
+    window.home.session_requested.emit(window.home.patients.patient)
     wizard = window.wizard
     assert wizard is not None
     yield _after(PAUSE_S)
@@ -156,12 +156,12 @@ def _session(
     wizard.press_primary()
     yield lambda: wizard.is_recording
     yield _after(8.0)  # until every joint has its angle
-    bench = _bench_page(window, wizard) if wanted.curves else None
+    bench = _bench_page(window, wizard) if required.curves else None
     done: list[int] = []
     visit.evaluation.done.connect(lambda: done.append(1))
     watch = _Watch(wizard)
-    wait = _after(wanted.seconds)
-    yield _asking_again(wizard.steps[StepId.WALKING], wait) if wanted.analyses else wait
+    wait = _after(required.seconds)
+    yield _asking_again(wizard.steps[StepId.WALKING], wait) if required.analyses else wait
     measured |= watch.end() | {"analyses": len(done)}
     if bench is not None:
         window.screens.setCurrentWidget(wizard)
@@ -210,12 +210,12 @@ class _Watch:
 
         paint = _History.paintEvent
 
-        def heard(item: Any, *arguments: Any) -> None:
+        def received(item: Any, *arguments: Any) -> None:
             paint(item, *arguments)
             if cls.current is not None:
                 QTimer.singleShot(0, partial(cls.current.on_sent, item))  # once the frame is on the display
 
-        _History.paintEvent = heard  # type: ignore[assignment,method-assign]  # only to measure
+        _History.paintEvent = received  # type: ignore[assignment,method-assign]  # only to measure
 
     def __init__(self, wizard: "Wizard") -> None:
         visit = wizard.visit
@@ -321,12 +321,12 @@ def longest_gap(painted_s: Sequence[float], spent: Sequence[Mapping[str, Spent]]
 
 def _spent() -> dict[str, Spent]:
     """What each of our threads has spent."""
-    told = {}
+    reported = {}
     for thread in threading.enumerate():
         with suppress(OSError):  # it has just ended
             busy_ns, kept_ns, _ = Path(f"/proc/self/task/{thread.native_id}/schedstat").read_text().split()
-            told[thread.name] = int(busy_ns) / 1e9, int(kept_ns) / 1e9
-    return told
+            reported[thread.name] = int(busy_ns) / 1e9, int(kept_ns) / 1e9
+    return reported
 
 
 class _Beside(threading.Thread):
@@ -344,7 +344,11 @@ class _Beside(threading.Thread):
     def end(self) -> dict[str, float]:
         self._is_over.set()
         self.join()
-        return {key: told for key, told in longest_gap(self.beats_s, [{}] * len(self.beats_s)).items() if key != KEPT}
+        return {
+            key: reported
+            for key, reported in longest_gap(self.beats_s, [{}] * len(self.beats_s)).items()
+            if key != KEPT
+        }
 
 
 def _by_thread() -> dict[str, float]:
@@ -362,8 +366,8 @@ def _collections() -> list[float]:
     took_ms: list[float] = []
     begun: list[float] = []
 
-    def note(phase: str, told: dict[str, int]) -> None:
-        if told["generation"] == 2:
+    def note(phase: str, reported: dict[str, int]) -> None:
+        if reported["generation"] == 2:
             if phase == "start":
                 begun.append(time.perf_counter())
             elif begun:
@@ -385,16 +389,16 @@ def main() -> None:
     parser.add_argument("--curves", type=int, choices=[0, 18], default=0)
     parser.add_argument("--analyses", action="store_true")
     parser.add_argument("--inside", action="store_true", help=argparse.SUPPRESS)
-    wanted = parser.parse_args()
-    if wanted.inside:
-        print(json.dumps(lead(wanted)))
+    required = parser.parse_args()
+    if required.inside:
+        print(json.dumps(lead(required)))
         return
     with own_display() as display, own_environment(display) as environment:
         command = [sys.executable, "-m", "tests.benchmarks.live_window", "--inside", *sys.argv[1:]]
         beside = _Beside()
         beside.start()
-        told = subprocess.run(command, env=environment, stdout=subprocess.PIPE, text=True, check=True).stdout
-    measured = json.loads(told.splitlines()[-1]) | {"beside": beside.end()}
+        reported = subprocess.run(command, env=environment, stdout=subprocess.PIPE, text=True, check=True).stdout
+    measured = json.loads(reported.splitlines()[-1]) | {"beside": beside.end()}
     for late in measured.pop("late", []):
         print(late)
     print(json.dumps(measured, indent=1))

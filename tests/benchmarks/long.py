@@ -2,7 +2,7 @@
 
     python -m tests.benchmarks.long [--hours 0.25 1]
 
-Writes a session of six sensors at 100 Hz, one simulated minute of walking said over and over, and runs
+Writes a session of six sensors at 100 Hz, one simulated minute of walking stated over and over, and runs
 `gaitwright analyse` on it in a process of its own. Ten hours need 8 GB of disk for a while.
 """
 
@@ -29,7 +29,7 @@ ANALYSE = "analyse", "--no-rrd", "--no-report"
 
 
 def make_session(folder: Path, hours: float) -> None:
-    """Standing, circling and `hours` of walking; the walk stands at both ends, so that its repetitions fit."""
+    """Standing, circling and `hours` of walking; the walk is at both ends, so that its repetitions fit."""
     made = simulate(WalkerSettings(recordings=(Standing(), FreeMotion(), Walk(strides=STRIDES)))).session
     *calibrating, walk = made.recordings
     long = replace(walk, imu={site: repeated(block, 3600 * hours) for site, block in walk.imu.items()})
@@ -54,13 +54,13 @@ def analyse_apart(session: Path, out: Path) -> tuple[float, float]:
         It failed.
     """
     command = [sys.executable, "-m", "app", *ANALYSE, str(session), "--out", str(out)]
-    with tempfile.TemporaryFile(mode="w+") as said:
-        process = subprocess.Popen(command, cwd=ROOT, stdout=said, stderr=said)
+    with tempfile.TemporaryFile(mode="w+") as stated:
+        process = subprocess.Popen(command, cwd=ROOT, stdout=stated, stderr=stated)
         _, status, used = os.wait4(process.pid, 0)
         process.returncode = os.waitstatus_to_exitcode(status)
         if process.returncode:
-            said.seek(0)
-            raise RuntimeError(f"{' '.join(command)} ended with {process.returncode}: {said.read()}")
+            stated.seek(0)
+            raise RuntimeError(f"{' '.join(command)} ended with {process.returncode}: {stated.read()}")
     kib = used.ru_maxrss if sys.platform != "darwin" else used.ru_maxrss / 1024
     return used.ru_utime + used.ru_stime, kib / 1024**2
 
@@ -82,8 +82,8 @@ def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("--hours", type=float, nargs="+", default=[0.25, 1.0])
     parser.add_argument("--place", type=Path, help="where the sessions are written (the system's temporary folder)")
-    wanted = parser.parse_args()
-    run(wanted.hours, wanted.place)
+    required = parser.parse_args()
+    run(required.hours, required.place)
 
 
 if __name__ == "__main__":

@@ -3,8 +3,8 @@
     GAITWRIGHT_TEST_DATA=... python -m tests.benchmarks.null_differences [--walks 200] [--parts 2 3]
 
 Every walk is cut into halves and thirds, which are analysed as conditions of one session: walks of people after a
-stroke, both feet beside optics, and simulated walks with tissue as loose as real one. Wanted: at most 5 % of the judged
-rows called larger, and at most 5 % of the sessions with any sentence.
+stroke, both feet beside optics, and simulated walks with tissue as loose as real one. Required: at most 5 % of the
+judged rows called larger, and at most 5 % of the sessions with any sentence.
 """
 
 import argparse
@@ -51,7 +51,7 @@ def tally(session: Session) -> Tally:
     return Tally(
         len(judged),
         len(larger),
-        any(row.is_told and row.difference.is_worth_a_sentence for one in found for row in one.rows),
+        any(row.is_reported and row.difference.is_worth_a_sentence for one in found for row in one.rows),
         tuple(f"{row.side} {row.parameter}" for row in larger),
     )
 
@@ -96,17 +96,17 @@ def main() -> None:
     parser.add_argument("--walks", type=int, default=200)
     parser.add_argument("--parts", type=int, nargs="+", default=[2, 3])
     parser.add_argument("--workers", type=int, default=1)
-    wanted = parser.parse_args()
-    told = os.environ.get("GAITWRIGHT_TEST_DATA")
+    required = parser.parse_args()
+    reported = os.environ.get("GAITWRIGHT_TEST_DATA")
     print(f"{'walks':34} {'judged':>6} {'larger':>6}")
-    for parts in wanted.parts:
-        if told:
-            real = {name: tally(cut(session, parts)) for name, session in real_walks(Path(told))}
+    for parts in required.parts:
+        if reported:
+            real = {name: tally(cut(session, parts)) for name, session in real_walks(Path(reported))}
             for name, one in real.items():
                 print(report(f"{name}, in {parts}", [one]), *one.columns)
             print(report(f"strangers, in {parts}", list(real.values())))
-        with ProcessPoolExecutor(wanted.workers) as pool:
-            found = list(pool.map(partial(tally_simulated, parts=parts), range(wanted.walks)))
+        with ProcessPoolExecutor(required.workers) as pool:
+            found = list(pool.map(partial(tally_simulated, parts=parts), range(required.walks)))
         print(report(f"simulated, real tissue, in {parts}", found))
         print("  called larger:", dict(Counter(name for one in found for name in one.columns)))
 

@@ -189,9 +189,9 @@ def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("--seeds", type=int, default=200, help="patients per condition")
     parser.add_argument("--only", nargs="*", default=list(CONDITIONS), choices=list(CONDITIONS), metavar="CONDITION")
-    wanted = parser.parse_args()
-    for condition in wanted.only:
-        for line in report(condition, range(wanted.seeds)):
+    required = parser.parse_args()
+    for condition in required.only:
+        for line in report(condition, range(required.seeds)):
             print(line, flush=True)
 
 

@@ -28,7 +28,7 @@ from devices.simulation.walker_body import GaitChange
 
 STRIDES = 20
 CORRELATION = 0.3
-WANTED = 0.9
+REQUIRED = 0.9
 
 
 @dataclass(frozen=True, slots=True)
@@ -80,7 +80,7 @@ def smallest_found(name: str, kind: ComparisonKind, draws: int) -> float:
     least, most = 0.0, 40.0 * FIGURES[name].sd
     while most - least > 0.01 * FIGURES[name].sd:
         middle = 0.5 * (least + most)
-        least, most = (least, middle) if found_share(name, kind, middle, draws) >= WANTED else (middle, most)
+        least, most = (least, middle) if found_share(name, kind, middle, draws) >= REQUIRED else (middle, most)
     return most
 
 
@@ -137,9 +137,9 @@ def whole_session(seed: int, change: str, tissue: Tissue) -> Outcome:
     found = comparisons_of([(session, analyse(session))])
     for row in (row for comparison in found for row in rows_of(comparison)):
         if row.side is Side.LEFT and row.parameter == column:
-            told = row.difference
-            is_judged = told.judgement in (Judgement.EXCEEDS_ERROR, Judgement.INSIDE_ERROR)
-            return Outcome(is_judged, told.exceeds, told.difference, told.error)
+            reported = row.difference
+            is_judged = reported.judgement in (Judgement.EXCEEDS_ERROR, Judgement.INSIDE_ERROR)
+            return Outcome(is_judged, reported.exceeds, reported.difference, reported.error)
     return Outcome(False, False, math.nan, math.nan)
 
 
@@ -149,12 +149,14 @@ def main() -> None:
     parser.add_argument("--sessions", type=int, default=40)
     parser.add_argument("--tissue", type=Tissue, default=Tissue.SOFT)
     parser.add_argument("--workers", type=int, default=1)
-    wanted = parser.parse_args()
-    if wanted.draws:
-        print(*table(wanted.draws), sep="\n")
-    with ProcessPoolExecutor(wanted.workers) as pool:
-        for change in CHANGES if wanted.sessions else ():
-            found = list(pool.map(partial(whole_session, change=change, tissue=wanted.tissue), range(wanted.sessions)))
+    required = parser.parse_args()
+    if required.draws:
+        print(*table(required.draws), sep="\n")
+    with ProcessPoolExecutor(required.workers) as pool:
+        for change in CHANGES if required.sessions else ():
+            found = list(
+                pool.map(partial(whole_session, change=change, tissue=required.tissue), range(required.sessions))
+            )
             judged = [one for one in found if one.is_judged]
             share = 100.0 * sum(one.is_found for one in judged) / max(len(judged), 1)
             middle = [float(np.median([getattr(one, name) for one in judged])) for name in ("difference", "error")]

@@ -26,7 +26,7 @@ from app.cohort.study.parameter_table import ParameterTable
 from core.verdicts.quantities import PARAMETERS
 
 MEASURE = "knee_range_deg"
-WANTED_S, CLOSE = 1.0, 1e-9
+REQUIRED_S, CLOSE = 1.0, 1e-9
 SIDES = ("left", "right", "both")
 SQL = {
     "mean by condition": f"SELECT condition, count(*), avg({MEASURE}) FROM parameters GROUP BY condition",
@@ -79,7 +79,7 @@ def by_page(path: Path, grouping: Grouping) -> dict[str, tuple[float, ...]]:
     """The page's question: sessions, mean, sd of each group."""
     with ParameterTable.opened(path) as table:
         found = answer(table, GroupQuestion(MEASURE, grouping))
-    return {row.group: (row.sessions, row.mean, row.sd, row.withheld) for row in found.rows}
+    return {row.group: (row.sessions, row.mean, row.sd, row.not_reported) for row in found.rows}
 
 
 def by_pandas(path: Path, grouping: Grouping) -> dict[str, tuple[float, ...]]:
@@ -111,15 +111,15 @@ def main() -> int:
     parser.add_argument("--sessions", type=int, default=100_000)
     parser.add_argument("--repeats", type=int, default=5)
     parser.add_argument("--table", type=Path, help="a folder to keep the table in")
-    wanted = parser.parse_args()
+    required = parser.parse_args()
     with tempfile.TemporaryDirectory() as temporary:
-        path = (wanted.table or Path(temporary)) / f"questions-{wanted.sessions}.parquet"
+        path = (required.table or Path(temporary)) / f"questions-{required.sessions}.parquet"
         if not path.exists():
-            write_table(path, wanted.sessions)
+            write_table(path, required.sessions)
         size = path.stat().st_size / 1e6
         rows = pq.read_metadata(path).num_rows
-        print(f"{wanted.sessions} sessions, {rows} rows, {size:.0f} MB; load {os.getloadavg()[0]:.1f}")
-        return ask_all(path, wanted.repeats)
+        print(f"{required.sessions} sessions, {rows} rows, {size:.0f} MB; load {os.getloadavg()[0]:.1f}")
+        return ask_all(path, required.repeats)
 
 
 def ask_all(path: Path, repeats: int) -> int:
@@ -128,15 +128,15 @@ def ask_all(path: Path, repeats: int) -> int:
     for grouping in Grouping:
         ours = by_page(path, grouping)
         taken = seconds(partial(by_page, path, grouping), repeats)
-        worst, said = max(worst, taken), "-"
+        worst, stated = max(worst, taken), "-"
         if grouping in (Grouping.CONDITION, Grouping.DEVICE, Grouping.SIDE, Grouping.ALL):
             theirs = by_pandas(path, grouping)
             assert set(ours) == set(theirs)
             off = max(abs(a - b) / max(abs(b), 1) for g in ours for a, b in zip(ours[g], theirs[g], strict=True))
             furthest = max(furthest, off)
             taken_there = seconds(partial(by_pandas, path, grouping), repeats)
-            said = f"{taken_there:.2f} s, apart by {off:.1e}"
-        print(f"page, by {grouping.value:<12} {taken:6.2f} s   pandas {said}", flush=True)
+            stated = f"{taken_there:.2f} s, apart by {off:.1e}"
+        print(f"page, by {grouping.value:<12} {taken:6.2f} s   pandas {stated}", flush=True)
     for name, sql in SQL.items():
 
         def asked(sql: str = sql) -> list[tuple[object, ...]]:
@@ -147,9 +147,9 @@ def ask_all(path: Path, repeats: int) -> int:
         worst = max(worst, taken)
         print(f"SQL, {name:<22} {taken:6.2f} s", flush=True)
     print(
-        f"slowest {worst:.2f} s ({WANTED_S:.0f} wanted), figures apart by {furthest:.1e} at most ({CLOSE:.0e} wanted)"
+        f"slowest {worst:.2f} s ({REQUIRED_S:.0f} wanted), figures apart by {furthest:.1e} at most ({CLOSE:.0e} wanted)"
     )
-    return int(worst >= WANTED_S or furthest > CLOSE)
+    return int(worst >= REQUIRED_S or furthest > CLOSE)
 
 
 if __name__ == "__main__":

@@ -1,4 +1,4 @@
-"""How often is the kind of the rates mistaken on the project's own patient, when no sensor tells it?
+"""How often is the kind of the rates mistaken on the project's own patient, when no sensor reports it?
 
     python -m tests.benchmarks.rate_kind --seeds 12
 
@@ -15,7 +15,7 @@ from devices.simulation.walker import Tissue, WalkerSettings, simulate
 RATES_HZ = (60.0, 100.0, 200.0)
 
 
-def untold_session(settings: WalkerSettings) -> Session:
+def not_reported_session(settings: WalkerSettings) -> Session:
     """A session whose sensors do not say what their rates stand for."""
     session = simulate(settings).session
     sensors = {site: replace(info, rate_kind=None) for site, info in session.sensors.items()}
@@ -23,7 +23,7 @@ def untold_session(settings: WalkerSettings) -> Session:
 
 
 def is_mistaken(settings: WalkerSettings) -> bool:
-    session = untold_session(settings)
+    session = not_reported_session(settings)
     tracks, _ = tracks_of_kind(session, session.recordings, frozenset())
     return tracks.rate_kind is not settings.rate_kind
 

@@ -49,11 +49,11 @@ def main() -> None:
             QImage.fromData(pages[0])  # the page that is looked at
             looks.append(time.perf_counter() - wall)
             looks_cpus.append(time.process_time() - cpu)
-        said = f"{walks} walk(s): first {walls[0]:.2f} s, then {median(walls[1:]):.2f} s"
-        print(f"{said} (processor {cpus[0]:.2f} s, {median(cpus[1:]):.2f} s)")
+        stated = f"{walks} walk(s): first {walls[0]:.2f} s, then {median(walls[1:]):.2f} s"
+        print(f"{stated} (processor {cpus[0]:.2f} s, {median(cpus[1:]):.2f} s)")
         again = f"with other words {median(looks[1:]):.2f} s, at most {max(looks[1:]):.2f} s"
-        said = f"   a look: first {looks[0]:.2f} s, {again}"
-        print(f"{said} (processor {median(looks_cpus[1:]):.2f} s)")
+        stated = f"   a look: first {looks[0]:.2f} s, {again}"
+        print(f"{stated} (processor {median(looks_cpus[1:]):.2f} s)")
 
 
 if __name__ == "__main__":

@@ -2,7 +2,7 @@
 
     python -m tests.benchmarks.rerun_log [--minutes 10] [--repeats 3]
 
-Six sensors at 100 Hz, one simulated minute of walking said over and over. The file is checked by `rerun rrd verify`,
+Six sensors at 100 Hz, one simulated minute of walking stated over and over. The file is checked by `rerun rrd verify`,
 then every sample and every angle is read back from it and compared.
 """
 
@@ -77,20 +77,20 @@ def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("--minutes", type=float, default=10.0)
     parser.add_argument("--repeats", type=int, default=3)
-    wanted = parser.parse_args()
-    session = session_of(wanted.minutes)
+    required = parser.parse_args()
+    session = session_of(required.minutes)
     analysis = analyse(session)
     with tempfile.TemporaryDirectory() as folder:
         path, walls, cpus = Path(folder) / "session.rrd", [], []
-        for _ in range(wanted.repeats):
+        for _ in range(required.repeats):
             wall, cpu = time.perf_counter(), time.process_time()
             write_log(session, analysis, path)
             walls.append(time.perf_counter() - wall)
             cpus.append(time.process_time() - cpu)
         wrong = differing(session, analysis, path)
-        said = f"{median(walls):.2f} s (first {walls[0]:.2f} s; processor {median(cpus):.2f} s)"
+        stated = f"{median(walls):.2f} s (first {walls[0]:.2f} s; processor {median(cpus):.2f} s)"
         size = f"{path.stat().st_size / 1e6:.1f} MB"
-        print(f"{wanted.minutes:g} min: {said}, {size}; {len(wrong)} entities differ {wrong}", flush=True)
+        print(f"{required.minutes:g} min: {stated}, {size}; {len(wrong)} entities differ {wrong}", flush=True)
         print(f"rerun rrd verify {'passes' if verified(path) else 'FAILS'}")
 
 

@@ -96,7 +96,7 @@ def qmt_and_vqf(qmt: QmtAxes, trial: Trial) -> Estimate:
 
 
 def vqf_known(run: vqf_angle.Filter, trial: Trial) -> Estimate:
-    """The axes are told, so only the angle is scored."""
+    """The axes are reported, so only the angle is scored."""
     return _vqf(run, trial, trial.truth.axis_1, trial.truth.axis_2)
 
 
@@ -229,18 +229,18 @@ def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("--seeds", type=int, default=3, help="simulated sessions per condition")
     parser.add_argument("--repeats", type=int, default=5, help="turns of every method on every recording")
-    wanted = parser.parse_args()
-    trials = [*simulated_trials(range(wanted.seeds)), *hinge_trials()]
+    required = parser.parse_args()
+    trials = [*simulated_trials(range(required.seeds)), *hinge_trials()]
     if all(trial.truth.is_clock_shared for trial in trials):
         print("GAITWRIGHT_TEST_DATA is not set: the mechanical hinge is excluded.", file=sys.stderr)
     base, long = (list(simulated_trials(range(1), minutes, KNEE_ONLY)) for minutes in (1.0, LONG_MINUTES))
     with QmtAxes() as qmt:
         methods = contenders(qmt)
         compete(base[:1], methods, 1)  # imports and first calls
-        outcomes, base_outcomes, long_outcomes = (compete(t, methods, wanted.repeats) for t in (trials, base, long))
+        outcomes, base_outcomes, long_outcomes = (compete(t, methods, required.repeats) for t in (trials, base, long))
     simulated = [k for k, trial in enumerate(trials) if trial.truth.is_clock_shared]
     minutes = {name: [found[k] for k in simulated] for name, found in outcomes.items()}
-    command = f"python -m tests.benchmarks.speed --seeds {wanted.seeds} --repeats {wanted.repeats}"
+    command = f"python -m tests.benchmarks.speed --seeds {required.seeds} --repeats {required.repeats}"
     lines = [
         f"Made by `{command}` on {machine()}.",
         "",

@@ -1,4 +1,4 @@
-"""Does the comparison score what it says it scores?"""
+"""Does the comparison score what it states it scores?"""
 
 from dataclasses import replace
 

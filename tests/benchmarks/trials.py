@@ -81,9 +81,9 @@ def simulated_trials(seeds: range, minutes: float = 1.0, joints: Sequence[Joint]
 
 def hinge_trials() -> Iterator[Trial]:
     """Two sensors on a mechanical hinge against optics, where GAITWRIGHT_TEST_DATA names the shared recordings."""
-    told = os.environ.get("GAITWRIGHT_TEST_DATA")
-    for name in HINGES if told else ():
-        with np.load(Path(str(told)) / "hinge_mechanical" / f"{name}.npz") as archive:
+    reported = os.environ.get("GAITWRIGHT_TEST_DATA")
+    for name in HINGES if reported else ():
+        with np.load(Path(str(reported)) / "hinge_mechanical" / f"{name}.npz") as archive:
             data = {key: np.asarray(archive[key], dtype=float) for key in archive.files}
         time_s = np.arange(len(data["acc1"])) / float(data["fs"])
         sites = (Site.LEFT_THIGH, Site.LEFT_SHANK)
@@ -104,8 +104,8 @@ def _of_two_sensors(session: Session, joint: Joint) -> Session:
 def _trial(group: str, joint: Joint, session: Session, truth: Truth) -> Trial:
     (recording,) = (r for r in session.recordings if r.kind is not RecordingKind.STANDING)
     tracks, _ = tracks_of_kind(session, session.recordings, frozenset())
-    told_kind = {info.rate_kind for info in session.sensors.values()} - {None}
-    rate_kind = told_kind.pop() if told_kind else tracks.rate_kind
+    reported_kind = {info.rate_kind for info in session.sensors.values()} - {None}
+    rate_kind = reported_kind.pop() if reported_kind else tracks.rate_kind
     assert rate_kind is not None
     one, two = (recording.imu[site] for site in (joint.proximal, joint.distal))
     down: list[FloatArray | None] = [None, None]

@@ -36,7 +36,7 @@ Change = Callable[[ImuBlock], ImuBlock]
 
 @dataclass(frozen=True, slots=True)
 class Case:
-    """How to make the session, and what tells the finding: the look at the samples alone, or a whole analysis."""
+    """How to make the session, and what reports the finding: the look at the samples alone, or a whole analysis."""
 
     build: Callable[[], Session]
     is_of_samples: bool = False
@@ -162,7 +162,7 @@ def slipped() -> Session:
     return changed(made, turned, (Site.RIGHT_SHANK,), ("walk 1",))
 
 
-def one_side_stands() -> Session:
+def one_side_shown() -> Session:
     """Only the left foot walks."""
     walk = walked(recordings=(Standing(), Walk(strides=8)))
     stood = walked(recordings=(Standing("walk 1", duration_s=12.0),))
@@ -220,9 +220,9 @@ def shaken(b: ImuBlock) -> ImuBlock:
 def lying_called_standing() -> Session:
     """At rest the person lies on the side, so that the knee's axis is upright where it should be level."""
     made = simulate(WalkerSettings(3, (Standing(), Walk(strides=5)), (THIGH, SHANK), tissue=Tissue.SOFT))
-    told = made.truth.recordings["standing"].joints[KNEE]
+    reported = made.truth.recordings["standing"].joints[KNEE]
     lying = made.session
-    for site, axis in ((THIGH, told.axis_proximal), (SHANK, told.axis_distal)):
+    for site, axis in ((THIGH, reported.axis_proximal), (SHANK, reported.axis_distal)):
         lying = changed(lying, partial(_upright, axis), (site,), ("standing",))
     return lying
 
@@ -328,7 +328,7 @@ CASES: dict[str, Case] = {
     "turns_contradict": Case(turned_unseen_by_the_pelvis),
     # of the strides
     "no_strides": Case(standing_called_walk),
-    "side_without_strides": Case(one_side_stands),
+    "side_without_strides": Case(one_side_shown),
     "events_from_shank": Case(lambda: walked(sites=(THIGH, SHANK))),
     "prosthetic_toe_off": Case(lambda: walked(prosthetic_side=Side.LEFT)),
     "no_mean": Case(lambda: walked(recordings=(Standing(), Walk(strides=3)))),

@@ -47,7 +47,7 @@ KINDS: tuple[str, ...] = ("seed", "must", "real")  # what a row of the results i
 MANNERS = (*(Manner.ORDINARY,) * 6, Manner.SHUFFLING, Manner.FLAT, Manner.STIFF, Manner.DRAGGING, Manner.TOE_FIRST)
 LEFT = tuple(site for site in LEG_SITES if site.side is Side.LEFT)
 WORN = (*(LEG_SITES,) * 5, LEFT, tuple(s for s in LEG_SITES if s.segment is not Segment.THIGH))
-# true of any session here: what kind of joint was found, and whether a method's angle or a centre can be told
+# true of any session here: what kind of joint was found, and whether a method's angle or a centre can be reported
 ALWAYS = {"simulated", "is_a_hinge", "not_a_hinge", "centre_unknown", "published_differs"}
 
 
@@ -112,7 +112,7 @@ def _true_of(settings: WalkerSettings, walk: Walk, manner: Manner) -> Iterator[s
     yield from ALWAYS
     kinds = {type(recording) for recording in settings.recordings}
     if Standing not in kinds:
-        # the walks' own second of standing may tell the bias or not
+        # the walks' own second of standing may report the bias or not
         yield from ("no_standing", "gyro_bias_unknown")
     if FreeMotion not in kinds:
         yield "axis_from_walking"
@@ -138,14 +138,14 @@ def _true_of(settings: WalkerSettings, walk: Walk, manner: Manner) -> Iterator[s
         yield from ("clinical_sign_uncertain", "axis_uncertain", "flexion_did_not_dominate")
 
 
-def told_by(session: Session) -> list[tuple[str, str]]:
+def reported_by(session: Session) -> list[tuple[str, str]]:
     return [(found.key, found.where) for found in analyse(session).findings]
 
 
 def simulated_row(seed: int) -> dict[str, object]:
     drawn = draw(seed)
-    told = told_by(simulate(drawn.settings).session)
-    return {"seed": seed, "true": sorted(drawn.true), "told": told}
+    reported = reported_by(simulate(drawn.settings).session)
+    return {"seed": seed, "true": sorted(drawn.true), "told": reported}
 
 
 def must_row(key: str) -> dict[str, object]:
@@ -174,7 +174,7 @@ def real_sessions(data: Path) -> Iterator[tuple[str, Session]]:
 
 def real_row(named: tuple[str, Session]) -> dict[str, object]:
     name, session = named
-    return {"real": name, "told": told_by(session)}
+    return {"real": name, "told": reported_by(session)}
 
 
 def table(rows: Sequence[Mapping[str, object]]) -> str:
@@ -184,14 +184,14 @@ def table(rows: Sequence[Mapping[str, object]]) -> str:
     real = [row for row in rows if "real" in row]
     wrong, right, asked, lately = Counter[str](), Counter[str](), Counter[str](), defaultdict[str, list[int]](list)
     for row in simulated:
-        true, told = set(_texts(row["true"])), _keys(row)
-        for key in {*CASES, *told}:
+        true, reported = set(_texts(row["true"])), _keys(row)
+        for key in {*CASES, *reported}:
             if key in true:
-                right[key] += key in told
+                right[key] += key in reported
             else:
                 asked[key] += 1
-                wrong[key] += key in told
-                if key in told:
+                wrong[key] += key in reported
+                if key in reported:
                     lately[key].append(int(str(row["seed"])))
     on_people = Counter(key for row in real for key in _keys(row))
     lines = [
@@ -214,8 +214,8 @@ def _texts(value: object) -> list[str]:
 
 
 def _keys(row: Mapping[str, object]) -> set[str]:
-    told = row["told"]
-    return {str(one[0]) for one in told} if isinstance(told, list) else set()
+    reported = row["told"]
+    return {str(one[0]) for one in reported} if isinstance(reported, list) else set()
 
 
 def main() -> None:
@@ -225,18 +225,18 @@ def main() -> None:
     parser.add_argument("--workers", type=int, default=2)
     parser.add_argument("--results", type=Path)
     parser.add_argument("--table-only", action="store_true", help="print what the results hold")
-    told = parser.parse_args()
+    reported = parser.parse_args()
     rows: list[dict[str, object]] = []
-    if told.results and told.results.exists():
-        rows = [json.loads(line) for line in told.results.read_text(encoding="utf-8").splitlines()]
+    if reported.results and reported.results.exists():
+        rows = [json.loads(line) for line in reported.results.read_text(encoding="utf-8").splitlines()]
     done: set[tuple[str, str]] = {
         (kind, str(row[kind])) for row in rows for kind in ("seed", "must", "real") if kind in row
     }
-    if not told.table_only:
-        for row in _missing_rows(told.first, told.sessions, told.workers, done):
+    if not reported.table_only:
+        for row in _missing_rows(reported.first, reported.sessions, reported.workers, done):
             rows.append(row)
-            if told.results:
-                with told.results.open("a", encoding="utf-8") as out:
+            if reported.results:
+                with reported.results.open("a", encoding="utf-8") as out:
                     out.write(json.dumps(row) + "\n")
     print(table(rows))
 

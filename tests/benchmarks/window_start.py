@@ -32,10 +32,10 @@ def start() -> None:
         def eventFilter(self, watched: QObject, event: QEvent) -> bool:
             if event.type() is QEvent.Type.Paint:
                 watched.removeEventFilter(self)
-                QTimer.singleShot(0, self, lambda: self.tell(watched))
+                QTimer.singleShot(0, self, lambda: self.show_message(watched))
             return False
 
-        def tell(self, window: QObject) -> None:
+        def show_message(self, window: QObject) -> None:
             print(monotonic(), process_time(), flush=True)
             assert isinstance(window, QWidget)
             window.close()
@@ -55,10 +55,10 @@ def start() -> None:
 def started(environment: Mapping[str, str]) -> tuple[float, float]:
     """Start once: seconds until the window is there, and how many of them the process was at work."""
     begin_s = monotonic()
-    told = subprocess.run(
+    reported = subprocess.run(
         [sys.executable, "-c", INSIDE], env=environment, capture_output=True, text=True, check=True
     ).stdout.split()
-    return float(told[-2]) - begin_s, float(told[-1])
+    return float(reported[-2]) - begin_s, float(reported[-1])
 
 
 def make_library(environment: Mapping[str, str]) -> None:

@@ -1,8 +1,8 @@
-"""How much is withheld, and why? Of healthy simulated walks, and of the walks of strangers.
+"""How much is not reported, and why? Of healthy simulated walks, and of the walks of strangers.
 
-    GAITWRIGHT_TEST_DATA=... python -m tests.benchmarks.withheld [--seeds 20]
+    GAITWRIGHT_TEST_DATA=... python -m tests.benchmarks.not reported [--seeds 20]
 
-Wanted: at most 5 % of the joints of healthy simulated walks, walks without free motion included.
+Required: at most 5 % of the joints of healthy simulated walks, walks without free motion included.
 """
 
 import argparse
@@ -27,42 +27,42 @@ MOTIONS = {
 }
 PARTS = ("shape", "height", "timing", "distance", "between")
 
-Said = tuple[str, str, tuple[str, ...]]
+Stated = tuple[str, str, tuple[str, ...]]
 """Part, verdict, and the gates that decided it."""
 
 
-def said_of(session: Session) -> list[Said]:
+def stated_of(session: Session) -> list[Stated]:
     """Every verdict of every walk of a session."""
-    found: list[Said] = []
+    found: list[Stated] = []
     for recording in analyse(session).recordings:
         if recording.kind is not RecordingKind.WALKING:
             continue
         verdicts = recording.verdicts
         for joint in verdicts.joints.values():
-            found += [_said("shape", joint.shape), _said("height", joint.height)]
+            found += [_stated("shape", joint.shape), _stated("height", joint.height)]
         for leg in verdicts.legs.values():
-            found += [_said("timing", leg.timing), _said("distance", leg.distance)]
-        found.append(_said("between", verdicts.between))
+            found += [_stated("timing", leg.timing), _stated("distance", leg.distance)]
+        found.append(_stated("between", verdicts.between))
     return found
 
 
-def _said(part: str, found: Assessment) -> Said:
+def _stated(part: str, found: Assessment) -> Stated:
     gates = {reason.gate for reason in found.reasons if reason.verdict is found.verdict}
     return part, str(found.verdict), tuple(sorted(gates))
 
 
-def of_seed(seed: int, tissue: Tissue, motions: str, rate_hz: float) -> list[Said]:
+def of_seed(seed: int, tissue: Tissue, motions: str, rate_hz: float) -> list[Stated]:
     settings = WalkerSettings(seed=seed, tissue=tissue, rate_hz=rate_hz, variation=PEOPLE, recordings=MOTIONS[motions])
     session = simulate(settings).session
     # as a recording of strangers comes: nothing is known of its clocks
     sensors = {site: replace(info, clock="") for site, info in session.sensors.items()}
-    return said_of(replace(session, sensors=sensors))
+    return stated_of(replace(session, sensors=sensors))
 
 
-def lines(name: str, found: Iterable[Said]) -> Iterator[str]:
+def lines(name: str, found: Iterable[Stated]) -> Iterator[str]:
     everything = list(found)
     for part in PARTS:
-        mine = [said for said in everything if said[0] == part]
+        mine = [stated for stated in everything if stated[0] == part]
         if not mine:
             continue
         counts = Counter(verdict for _, verdict, _ in mine)
@@ -77,17 +77,17 @@ def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("--seeds", type=int, default=20)
     parser.add_argument("--workers", type=int, default=1)
-    wanted = parser.parse_args()
+    required = parser.parse_args()
     print("| walks | part | n | read | care | withheld | gates |")
-    told = os.environ.get("GAITWRIGHT_TEST_DATA")
-    if told:
-        for name, session in real_walks(Path(told)):
-            print(*lines(name, said_of(session)), sep="\n")
-    with ProcessPoolExecutor(wanted.workers) as pool:
+    reported = os.environ.get("GAITWRIGHT_TEST_DATA")
+    if reported:
+        for name, session in real_walks(Path(reported)):
+            print(*lines(name, stated_of(session)), sep="\n")
+    with ProcessPoolExecutor(required.workers) as pool:
         for motions in MOTIONS:
             for tissue in Tissue:
                 one = partial(of_seed, tissue=tissue, motions=motions, rate_hz=100.0)
-                found = [said for of_one in pool.map(one, range(wanted.seeds)) for said in of_one]
+                found = [stated for of_one in pool.map(one, range(required.seeds)) for stated in of_one]
                 print(*lines(f"{tissue}, {motions}", found), sep="\n", flush=True)
 
 

@@ -1,4 +1,4 @@
-"""Every shared recording of two neighbouring sensors and more, as sessions."""
+"""Every shared recording of two adjacent sensors and more, as sessions."""
 
 import xml.etree.ElementTree as ET
 from collections.abc import Callable, Iterator

@@ -50,9 +50,9 @@ def test_what_undoes_changes_leaves_nothing_of_them(first: list[PartChange], sec
 
 @given(CHANGES, st.text(max_size=20))
 def test_a_change_comes_back_from_a_file_and_from_a_row(parts: list[PartChange], since: str) -> None:
-    told = AlignmentChange(since, tuple(parts))
-    assert alignment_of_table(alignment_table(told)) == told
-    assert alignment_of_text(alignment_text(told)) == told
+    reported = AlignmentChange(since, tuple(parts))
+    assert alignment_of_table(alignment_table(reported)) == reported
+    assert alignment_of_text(alignment_text(reported)) == reported
 
 
 def test_the_way_back_undoes_the_last_first_and_sums_what_one_screw_was_turned() -> None:
@@ -97,7 +97,7 @@ def test_what_no_chain_ties_is_not_known_and_a_ring_ends() -> None:
         {},
     ],
 )
-def test_what_is_off_its_step_beyond_its_limit_or_says_nothing_is_no_change(wrong: dict[str, float | str]) -> None:
+def test_what_is_off_its_step_beyond_its_limit_or_states_nothing_is_no_change(wrong: dict[str, float | str]) -> None:
     with pytest.raises(ValueError, match=r"expected|nothing is said"):
         PartChange(PYLON, **wrong)  # type: ignore[arg-type]  # as the cases have them
 

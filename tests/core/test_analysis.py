@@ -40,7 +40,7 @@ def of(found: Analysis, joint: Joint = KNEE) -> JointCalibration:
     return found.calibrations[-1].joints[joint]
 
 
-def told(found: Analysis) -> set[tuple[str, str]]:
+def reported(found: Analysis) -> set[tuple[str, str]]:
     return {(f.key, f.where) for f in found.findings}
 
 
@@ -96,7 +96,7 @@ def test_standing_reads_the_goniometer_s_value(knee_visit: Session, value_deg: f
     assert (of(plain).zero, of(typed).zero) == (ZeroKind.STANDING, ZeroKind.GONIOMETER)
     difference = np.rad2deg(angle(typed, "walk") - angle(plain, "walk"))
     np.testing.assert_allclose(difference, value_deg, atol=1e-9)
-    assert ("zero_from_goniometer", "left_knee") in told(typed)
+    assert ("zero_from_goniometer", "left_knee") in reported(typed)
 
 
 @pytest.mark.parametrize("method", list(Method))
@@ -105,7 +105,7 @@ def test_a_turned_sign_mirrors_the_angle_about_standing(knee_visit: Session, met
     turned = analyse(replace(knee_visit, turned_sign={KNEE: -1}), method)
     np.testing.assert_allclose(angle(turned, "walk"), -angle(plain, "walk"), atol=1e-12)
     assert of(turned).clinical_sign == -of(plain).clinical_sign
-    assert ("sign_turned", "left_knee") in told(turned)
+    assert ("sign_turned", "left_knee") in reported(turned)
 
 
 def test_a_turned_sign_keeps_the_goniometer_s_value_in_standing(knee_visit: Session) -> None:
@@ -119,8 +119,8 @@ def test_a_confirmed_sign_changes_nothing_but_its_certainty(person: "Person") ->
     plain, confirmed = analyse(visit), analyse(replace(visit, turned_sign={KNEE: 1}))
     np.testing.assert_array_equal(angle(plain, "free motion"), angle(confirmed, "free motion"))
     assert (of(plain).is_sign_certain, of(confirmed).is_sign_certain) == (False, True)
-    assert ("clinical_sign_uncertain", "left_knee") in told(plain) - told(confirmed)
-    assert ("sign_confirmed", "left_knee") in told(confirmed)
+    assert ("clinical_sign_uncertain", "left_knee") in reported(plain) - reported(confirmed)
+    assert ("sign_confirmed", "left_knee") in reported(confirmed)
 
 
 @pytest.mark.parametrize(
@@ -152,7 +152,7 @@ def test_without_standing_range_and_shape_hold(person: "Person") -> None:
     found = analyse(person.visit(kinds=(F, W)))
     assert of(found).zero is ZeroKind.NONE
     assert np.std(error_deg(person, found, "walk", KNEE)) < 0.6
-    assert ("no_standing", "session") in told(found)
+    assert ("no_standing", "session") in reported(found)
 
 
 @settings(max_examples=6)
@@ -177,7 +177,7 @@ def test_turning_the_sensors_turns_what_lies_in_them_and_nothing_else(
     assert other.sign_margin is not None
     # margins of many thousands differ by what rounding does to a cost near zero
     assert np.log(one.sign_margin) == pytest.approx(np.log(other.sign_margin), abs=0.5)
-    assert told(plain) == told(turned)
+    assert reported(plain) == reported(turned)
 
 
 @settings(max_examples=4)
@@ -188,11 +188,11 @@ def test_shifting_all_clocks_shifts_the_stamps_and_nothing_else(person: "Person"
     for one, other in zip(plain.recordings, shifted.recordings, strict=True):
         np.testing.assert_allclose(other.time_s, one.time_s + shift_s, atol=1e-6)
         assert np.rad2deg(np.abs(one.joints[KNEE].angle_rad - other.joints[KNEE].angle_rad).max()) < 0.01
-    assert told(plain) == told(shifted)
+    assert reported(plain) == reported(shifted)
 
 
 def swapped(session: Session) -> Session:
-    """The same samples, said to be of the other leg."""
+    """The same samples, stated to be of the other leg."""
     other = {site: Site(f"{'right' if site.side is Side.LEFT else 'left'}_{site.segment}") for site in LEG_SITES}
     recordings = [replace(r, imu={other[s]: b for s, b in r.imu.items()}) for r in session.recordings]
     return replace(session, recordings=tuple(recordings))
@@ -267,7 +267,7 @@ def test_a_late_shank_is_negative_at_the_knee_and_positive_at_the_ankle(
     assert of(found, ANKLE).lag_s == pytest.approx(lag_s, abs=0.0015)
     for joint in (KNEE, ANKLE):
         assert np.sqrt(np.nanmean(error_deg(person, found, "walk", joint) ** 2)) < 0.8
-    assert {("lag_corrected", "left_knee"), ("lag_corrected", "left_ankle")} <= told(found)
+    assert {("lag_corrected", "left_knee"), ("lag_corrected", "left_ankle")} <= reported(found)
 
 
 def test_the_device_s_own_orientations_give_eq_10_with_the_same_sign_and_zero(person: "Person") -> None:

@@ -26,7 +26,7 @@ def assert_held(found: dict[str, list[Coverage]], share: float = 0.9) -> None:
         assert held >= share, f"{name}: {100 * held:.0f} %"
 
 
-def test_an_ankle_under_tissue_that_turns_in_step_is_as_sure_as_it_says() -> None:
+def test_an_ankle_under_tissue_that_turns_in_step_is_as_sure_as_it_states() -> None:
     """No rate shows such a turn, and the spread that claimed to see that there is none held 0.78."""
     found = covered(WALK, "soft, turning", "person", range(1))
     assert_held({name: many for name, many in found.items() if name.startswith("ankle")})

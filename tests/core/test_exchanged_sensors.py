@@ -37,7 +37,7 @@ def about_labels(analysis: Analysis) -> list[Finding]:
 def test_sensors_where_their_labels_say_are_not_doubted(worn: Session) -> None:
     analysis = analyse(worn)
     assert about_labels(analysis) == []
-    assert analysis.recordings[-1].verdicts.joint(Joint.LEFT_KNEE).shape.is_told
+    assert analysis.recordings[-1].verdicts.joint(Joint.LEFT_KNEE).shape.is_reported
 
 
 @pytest.mark.parametrize(
@@ -47,7 +47,7 @@ def test_sensors_where_their_labels_say_are_not_doubted(worn: Session) -> None:
         ((Site.LEFT_SHANK, Site.LEFT_FOOT), "L shank and L foot"),
     ],
 )
-def test_exchanged_sensors_of_a_leg_are_named_and_what_they_show_is_withheld(
+def test_exchanged_sensors_of_a_leg_are_named_and_what_they_show_is_not_reported(
     worn: Session, exchanged: tuple[Site, Site], named: str
 ) -> None:
     analysis = analyse(swapped(worn, *exchanged))
@@ -55,10 +55,10 @@ def test_exchanged_sensors_of_a_leg_are_named_and_what_they_show_is_withheld(
     assert sentence(finding).startswith(f"{named}, free motion: These sensors look swapped")
     walk = analysis.recordings[-1]
     for joint in walk.joints:
-        assert walk.verdicts.joint(joint).shape.verdict is Verdict.WITHHELD
+        assert walk.verdicts.joint(joint).shape.verdict is Verdict.NOT_REPORTED
         assert "labels" in {reason.gate for reason in walk.verdicts.joint(joint).shape.reasons}
     is_foot_doubted = Site.LEFT_FOOT in exchanged
-    assert (walk.verdicts.legs[Side.LEFT].timing.verdict is Verdict.WITHHELD) is is_foot_doubted
+    assert (walk.verdicts.legs[Side.LEFT].timing.verdict is Verdict.NOT_REPORTED) is is_foot_doubted
 
 
 def test_sensors_of_a_leg_in_a_circle_are_one_finding(worn: Session) -> None:
@@ -74,7 +74,7 @@ def test_a_recording_that_is_called_like_a_site_brings_no_doubt_on_the_sensor_th
     assert analyse(called).recordings[-1].doubted_sites == {Site.LEFT_THIGH, Site.LEFT_SHANK}
 
 
-def test_sensors_that_lie_still_tell_neither_chains_nor_which_end_is_up() -> None:
+def test_sensors_that_lie_still_show_neither_chains_nor_which_end_is_up() -> None:
     """With rates of zero no joint has a place, and no leg a length."""
     rng = np.random.default_rng(3)
     upright = np.tile([1.0, 0.0, 0.0, 0.0], (300, 1))

@@ -98,7 +98,7 @@ def test_every_measure_of_a_goal_is_judged_between_visits_and_none_is_a_height()
             assert (sigma_of(column, ComparisonKind.LEGS) is None) is (column in OF_HIPS)
 
 
-def test_a_goal_of_a_hip_is_told_and_not_judged() -> None:
+def test_a_goal_of_a_hip_is_reported_and_not_judged() -> None:
     found = MeanOfStrides(42.0, 3.0, 20, 0.7, 0.0)
     goal = replace(GOAL, column="hip_range_deg", value=45.0)
     assert standing(goal, 42.0, error_of_visit("hip_range_deg", found)) is GoalStanding.NOT_JUDGED

@@ -122,7 +122,7 @@ def test_two_standard_deviations_hold_nine_samples_of_ten(hinge: Hinge) -> None:
 def test_turning_either_sensor_leaves_the_angle_as_it_was(hinge: Hinge, seed: int) -> None:
     turns = list(Rotation.random(2, rng=np.random.default_rng(seed)))
     turned = analyse(session(hinge.data, turns[0] if seed != 1 else UNTURNED, turns[1] if seed != 2 else UNTURNED))
-    # free motion alone does not tell the clinical sign, which may fall either way
+    # free motion alone does not report the clinical sign, which may fall either way
     back = turns[0] if seed != 1 else UNTURNED
     axes = back.apply(calibration_of(turned).axis_proximal), calibration_of(hinge.found).axis_proximal
     signs = calibration_of(turned).clinical_sign * calibration_of(hinge.found).clinical_sign

@@ -23,7 +23,7 @@ from core.verdicts.quantities import EXCURSIONS_BY_COLUMN, WINDOWS
 
 
 def is_defined(parameter: Parameter) -> bool:
-    """Whether somebody says what it is: the entry, its window or excursion, or the table of fitting."""
+    """Whether somebody states what it is: the entry, its window or excursion, or the table of fitting."""
     return bool(parameter.definition) or parameter.column in {*WINDOWS, *EXCURSIONS_BY_COLUMN, *OF_FITTING}
 
 

@@ -1,4 +1,4 @@
-"""Does the motion tell which sensor is where, with and against labels?"""
+"""Does the motion report which sensor is where, with and against labels?"""
 
 import time
 import xml.etree.ElementTree as ET
@@ -98,7 +98,7 @@ def circling() -> Session:
 
 
 def exchange(tracks: Tracks, *sites: Site) -> Tracks:
-    """The same samples, every site's said to be the next one's."""
+    """The same samples, every site's stated to be the next one's."""
     return {**tracks, **{other: tracks[one] for one, other in zip(sites, [*sites[1:], sites[0]], strict=True)}}
 
 
@@ -131,7 +131,7 @@ def test_of_all_ways_to_arrange_a_jumping_person_s_sensors_the_right_one_is_best
     assert min(leg.stature.height_m for leg in found.legs) > 0.4
 
 
-def test_a_real_walk_tells_the_chains_too(walking: Tracks) -> None:
+def test_a_real_walk_shows_the_chains_too(walking: Tracks) -> None:
     found = find_chains(walking)
     assert found is not None
     assert is_right(found)
@@ -159,7 +159,7 @@ def test_right_labels_of_a_real_person_are_not_doubted_whatever_is_worn(
 
 
 @pytest.mark.parametrize("person", ["jumping", "walking"])
-def test_whole_legs_cannot_be_told_apart(person: str, request: pytest.FixtureRequest) -> None:
+def test_whole_legs_cannot_be_reported_apart(person: str, request: pytest.FixtureRequest) -> None:
     tracks: Tracks = request.getfixturevalue(person)
     assert groups(tracks) == set()
     assert groups(exchange(exchange(exchange(tracks, T, RT), S, RS), F, RF)) == set()
@@ -240,7 +240,7 @@ def test_names_order_and_mounting_of_the_sensors_change_nothing(circling: Sessio
     assert {(leg.thigh, leg.shank, leg.foot) for leg in found.legs} == {
         tuple(names[Site(str(sensor))] for sensor in (leg.thigh, leg.shank, leg.foot)) for leg in plain.legs
     }
-    # a lag is taken off one clock of two, and which one, the order says
+    # a lag is taken off one clock of two, and which one, the order states
     assert found.margin == pytest.approx(plain.margin, rel=0.2)
 
 
@@ -251,13 +251,13 @@ def test_the_leg_that_moved_first_names_both(first: Side, sites: tuple[Site, ...
     found = chains_of(session, sites)
     assert found.is_first_certain
     assert found.lead_s == pytest.approx(5.0, abs=0.5)
-    told = found.sites(first)
+    reported = found.sites(first)
     is_left_first = first is Side.LEFT  # the patient's left leg is the first to move
-    assert all((Site(sensor).side is site.side) == is_left_first for sensor, site in told.items())
-    assert set(told.values()) == set(LEG_SITES)
+    assert all((Site(sensor).side is site.side) == is_left_first for sensor, site in reported.items())
+    assert set(reported.values()) == set(LEG_SITES)
 
 
-def test_legs_that_move_together_do_not_tell_which_was_first(circling: Session) -> None:
+def test_legs_that_move_together_do_not_show_which_was_first(circling: Session) -> None:
     assert not chains_of(circling).is_first_certain
 
 
@@ -286,7 +286,7 @@ def test_shanks_that_only_swing_about_resting_knees_are_not_named_with_certainty
     assert doubted(session) == set()
 
 
-def test_lying_without_standing_does_not_tell_which_end_is_up() -> None:
+def test_lying_without_standing_does_not_show_which_end_is_up() -> None:
     lying = walked(Standing(), FreeMotion(motion=Motion.SIDE_LYING)).session
     assert is_right(chains_of(lying))
     assert chains_of(lying).is_certain
@@ -310,7 +310,7 @@ def test_two_exchanges_are_two_findings_and_three_sensors_in_a_circle_one(circli
 
 
 @pytest.mark.parametrize("sites", [(T, S), (S, F), (T, S, F)])
-def test_with_few_sensors_gravity_tells_a_leg_put_on_upside_down(circling: Session, sites: tuple[Site, ...]) -> None:
+def test_with_few_sensors_gravity_shows_a_leg_put_on_upside_down(circling: Session, sites: tuple[Site, ...]) -> None:
     session = worn_at(circling, *sites)
     assert doubted(session) == set()
     ends = sites[0], sites[-1]
@@ -333,7 +333,7 @@ def test_a_walk_serves_where_there_is_no_free_motion() -> None:
     assert doubted_labels(tracks_of(walk)).groups == ()
 
 
-def test_a_recording_without_two_neighbours_says_nothing_of_labels(circling: Session) -> None:
+def test_a_recording_without_two_adjacent_states_nothing_of_labels(circling: Session) -> None:
     assert doubted_labels(tracks_of(worn_at(circling, T, F))).groups == ()
     assert doubted_labels(tracks_of(replace(circling, recordings=circling.recordings[:1]))).groups == ()
 
@@ -387,7 +387,7 @@ def cut(tracks: Tracks, from_s: float, to_s: float) -> Tracks:
     return shortened
 
 
-def test_sensors_that_were_never_heard_together_give_nothing(circling: Session) -> None:
+def test_sensors_that_were_never_received_together_give_nothing(circling: Session) -> None:
     tracks, _ = unlabelled(tracks_of(worn_at(circling, T, S)))
     early, late = cut(tracks, 0.0, 2.5), cut(tracks, 3.0, 6.0)
     assert find_chains({T: early[T], S: late[S]}) is None
@@ -424,7 +424,7 @@ def test_a_minute_of_six_sensors_is_arranged_within_two_seconds_of_a_core(jumpin
     assert time.process_time() - start_s < 2.0
 
 
-def test_a_long_recording_is_told_by_its_liveliest_minute(circling: Session) -> None:
+def test_a_long_recording_is_reported_by_its_liveliest_minute(circling: Session) -> None:
     """Two minutes of standing before and after change no more than the windows of the headings."""
     standing, free = circling.recordings
     step_s = 0.01

@@ -1,4 +1,4 @@
-"""Samples that no sensor should send, and gaps: what was once believed in silence is now left out, or told."""
+"""Samples that no sensor should send, and gaps: what was once believed in silence is now left out, or reported."""
 
 from collections.abc import Callable
 from dataclasses import replace
@@ -63,7 +63,7 @@ def is_warned(found: Analysis) -> bool:
     return any(f.severity is not Severity.INFO for f in found.findings)
 
 
-def assert_right_or_said(person: "Person", found: Analysis, joint: Joint = KNEE) -> None:
+def assert_right_or_stated(person: "Person", found: Analysis, joint: Joint = KNEE) -> None:
     worst = worst_deg(person, found, joint)
     assert worst < 3.0 or is_warned(found), f"{worst:.0f} deg wrong, told only {[f.key for f in found.findings]}"
 
@@ -78,20 +78,21 @@ def test_a_huge_value_does_not_overflow(knee_visit: Session, signal: str, value:
 @methods
 def test_one_impossible_sample_counts_as_missing(person: "Person", knee_visit: Session, method: Method) -> None:
     """One gyr sample of 1e6 rad/s. Same mend: > 100 rad/s or > 1000 m/s2 is a missing sample, with a finding."""
-    assert_right_or_said(person, analyse(changed(knee_visit, with_value(1e6)), method))
+    assert_right_or_stated(person, analyse(changed(knee_visit, with_value(1e6)), method))
 
 
 @methods
-def test_a_sensor_that_repeats_one_sample_for_seconds_is_told(
+def test_a_sensor_that_repeats_one_sample_for_seconds_is_reported(
     person: "Person", knee_visit: Session, method: Method
 ) -> None:
-    """From mid-walk on the shank repeats its last sample. Mend: runs of equal rows over 0.25 s are missing, told."""
+    """From mid-walk on the shank repeats its last sample. Mend: runs of equal rows over 0.25 s are missing,
+    reported."""
 
     def stuck(b: ImuBlock) -> ImuBlock:
         index = np.minimum(np.arange(len(b)), len(b) // 2)
         return replace(b, gyr_rad_s=b.gyr_rad_s[index], acc_m_s2=b.acc_m_s2[index])
 
-    assert_right_or_said(person, analyse(changed(knee_visit, stuck, (SHANK,), "walk"), method))
+    assert_right_or_stated(person, analyse(changed(knee_visit, stuck, (SHANK,), "walk"), method))
 
 
 @methods
@@ -121,7 +122,7 @@ def test_the_same_data_in_two_sensors_is_seen_though_one_lost_its_last_samples(
 
 
 @methods
-def test_a_joint_without_zero_says_so_though_another_leg_stood(person: "Person", method: Method) -> None:
+def test_a_joint_without_zero_states_so_though_another_leg_stood(person: "Person", method: Method) -> None:
     """`no_standing` looks at the session only. Mend: one finding per joint whose zero is NONE."""
     stood = person.recording("standing", S, 3.0, (Site.RIGHT_THIGH, Site.RIGHT_SHANK))
     found = analyse(Session((stood, *person.visit(kinds=(F, W)).recordings)), method)
@@ -130,8 +131,8 @@ def test_a_joint_without_zero_says_so_though_another_leg_stood(person: "Person",
 
 
 @methods
-def test_a_typed_goniometer_value_that_cannot_be_used_is_told(person: "Person", method: Method) -> None:
-    """Without standing the value cannot be used; `no_standing` does not tell that it was not."""
+def test_a_typed_goniometer_value_that_cannot_be_used_is_reported(person: "Person", method: Method) -> None:
+    """Without standing the value cannot be used; `no_standing` does not report that it was not."""
     found = analyse(replace(person.visit(kinds=(F, W)), zero_rad={KNEE: 0.2}), method)
     assert any("goniometer" in f.key for f in found.findings)
 
@@ -190,9 +191,9 @@ def test_a_repeated_stamp_counts_as_missing(knee_visit: Session, method: Method)
 
 @methods
 @pytest.mark.parametrize("rate_hz", [5.0])
-def test_far_too_slow_a_rate_is_told(person: "Person", rate_hz: float, method: Method) -> None:
+def test_far_too_slow_a_rate_is_reported(person: "Person", rate_hz: float, method: Method) -> None:
     """Mend: a finding under 25 Hz, grave under 10."""
-    assert_right_or_said(person, analyse(person.visit(rate_hz=rate_hz, duration_s=60.0), method))
+    assert_right_or_stated(person, analyse(person.visit(rate_hz=rate_hz, duration_s=60.0), method))
 
 
 def optics(test_data: Callable[[str], Path], name: str) -> dict[str, FloatArray]:
@@ -220,9 +221,9 @@ def test_the_axis_of_a_real_hinge_lies_within_two_deviations(test_data: Callable
 @pytest.mark.parametrize("rows", [9, 14, 23])
 def test_one_gap_does_not_spoil_the_rest_of_a_walk(rows: int) -> None:
     """A gap of 240 ms in one sensor, once: up to 12 deg wrong for the rest of the walk, claimed sd 0.6 deg, nothing
-    said but `gaps`. 50 ms: 0.1 deg; 310 ms, where a new stretch begins: 0.1 deg. Interpolated rates across a step turn
-    the sensor by what they miss, and headings and drift, linear between knots 10 s apart, cannot step. Mend: let them
-    step at every gap over 50 ms (knots of its own for each side), or bridge no more than 50 to 60 ms."""
+    stated but `gaps`. 50 ms: 0.1 deg; 310 ms, where a new stretch begins: 0.1 deg. Interpolated rates across a step
+    turn the sensor by what they miss, and headings and drift, linear between knots 10 s apart, cannot step. Mend: let
+    them step at every gap over 50 ms (knots of its own for each side), or bridge no more than 50 to 60 ms."""
     walked = simulate(
         WalkerSettings(seed=1, recordings=(Standing(), FreeMotion(), Walk(strides=5)), sites=(THIGH, SHANK))
     )

@@ -12,9 +12,9 @@ WALKING_DEG = (0.6, -0.4, 0.9, -0.8, 0.3, -0.6, 0.8, -0.2, 0.5, -0.7)  # what wa
 
 def turns(jump_deg: float) -> Turns:
     """A joint's turn since the calibration, window by window: steady, and by `jump_deg` more from the jump on."""
-    told_deg = np.array(WALKING_DEG)
-    told_deg[JUMP:] += jump_deg
-    return Turns(WINDOW_S * np.arange(WINDOWS), np.deg2rad(told_deg))
+    reported_deg = np.array(WALKING_DEG)
+    reported_deg[JUMP:] += jump_deg
+    return Turns(WINDOW_S * np.arange(WINDOWS), np.deg2rad(reported_deg))
 
 
 def found(side: Side, knee_deg: float, ankle_deg: float) -> list[Slip]:
@@ -45,7 +45,7 @@ def test_one_window_that_leaves_the_others_is_a_turn_and_no_slip() -> None:
     assert slips({Joint.LEFT_KNEE: turning}) == []
 
 
-def test_a_slip_of_one_leg_says_nothing_of_the_other() -> None:
+def test_a_slip_of_one_leg_states_nothing_of_the_other() -> None:
     both = {Joint.LEFT_KNEE: turns(0.0), Joint.RIGHT_KNEE: turns(20.0)}
     assert [slip.site for slip in slips(both)] == [Site.RIGHT_THIGH]
 
@@ -57,5 +57,5 @@ def test_what_was_turned_from_the_beginning_slipped_before_the_walk() -> None:
     assert slips({Joint.RIGHT_KNEE: first}, np.inf) == []  # where the axes are not to be trusted so far
 
 
-def test_too_little_walking_tells_nothing() -> None:
+def test_too_little_walking_shows_nothing() -> None:
     assert slips({Joint.LEFT_KNEE: Turns(np.array([0.0]), np.deg2rad([40.0]))}) == []

@@ -1,4 +1,4 @@
-"""What does a sensor feel where samples are missing? What its neighbours in time say, or nothing."""
+"""What does a sensor feel where samples are missing? What its adjacent ones in time say, or nothing."""
 
 from dataclasses import replace
 from typing import TYPE_CHECKING
@@ -25,7 +25,7 @@ def whole(make_person: "Callable[..., Person]") -> OrientedTrack:
 
 
 def forces_without(whole: OrientedTrack, lost: slice) -> tuple[FloatArray, FloatArray]:
-    """Specific force (n, 3) felt by a sensor with all samples, and by the same one that heard nonsense for some."""
+    """Specific force (n, 3) felt by a sensor with all samples, and by the same one that received nonsense for some."""
     acc, is_measured = whole.track.acc_m_s2.copy(), whole.track.is_measured.copy()
     acc[lost], is_measured[lost] = 1000.0, False
     track = replace(whole.track, acc_m_s2=acc, is_measured=is_measured)
@@ -34,7 +34,7 @@ def forces_without(whole: OrientedTrack, lost: slice) -> tuple[FloatArray, Float
     return together.sensors["whole"].terms[..., 6], together.sensors["lost"].terms[..., 6]
 
 
-def test_a_short_loss_is_bridged_by_what_was_heard_around_it(whole: OrientedTrack) -> None:
+def test_a_short_loss_is_bridged_by_what_was_received_around_it(whole: OrientedTrack) -> None:
     felt, bridged = forces_without(whole, slice(600, 605))
     np.testing.assert_array_equal(np.isnan(bridged), np.isnan(felt))
     assert np.nanmax(np.abs(bridged - felt)) < 0.5

@@ -21,7 +21,7 @@ def test_halves_go_up_on_either_side_of_zero(value: float, shown: int) -> None:
     assert shown_value(value) == shown
 
 
-def test_tallies_come_back_from_a_note_that_says_other_things_too() -> None:
+def test_tallies_come_back_from_a_note_that_states_other_things_too() -> None:
     tallies = (TargetTally(KNEE, 41, 60), TargetTally(BEAT, 0, 7), TargetTally(TOES, 3, 3))
     note = with_tallies("Walked with a stick.", tallies)
     assert note.splitlines()[:2] == ["Walked with a stick.", "target knee_swing_peak left 55 deg: 41 of 60 strides"]
@@ -45,5 +45,5 @@ def test_a_target_without_strides_is_not_noted() -> None:
         "the target knee_swing_peak left 55 deg: 6 of 60 strides",
     ],
 )
-def test_a_line_that_says_something_else_is_no_tally(line: str) -> None:
+def test_a_line_that_states_something_else_is_no_tally(line: str) -> None:
     assert tallies_of(line) == ()

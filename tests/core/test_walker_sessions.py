@@ -27,7 +27,7 @@ def error_rad(walked: SimulatedSession, found: Analysis, joint: Joint) -> FloatA
     walk = found.recordings[-1]
     truth = walked.truth.recordings[walk.name].joints[joint]
     zero_rad = 0.0 if np.isnan(truth.standing_rad) else truth.standing_rad
-    # the truth of an ankle stands at the shank's stamps, its angle at the thigh's
+    # the truth of an ankle is at the shank's stamps, its angle at the thigh's
     late_s = 0.0 if joint is KNEE else walked.truth.recordings[walk.name].joints[KNEE].lag_s
     expected = np.interp(walk.time_s, truth.time_s + late_s, truth.angle_rad - zero_rad)
     return walk.joints[joint].angle_rad - expected
@@ -38,7 +38,7 @@ def rms_deg(error: FloatArray) -> float:
 
 
 def without_word(session: Session) -> Session:
-    """The sensors do not tell what their rates stand for."""
+    """The sensors do not report what their rates stand for."""
     return replace(session, sensors=dict.fromkeys(session.sensors, SensorInfo()))
 
 
@@ -64,7 +64,7 @@ def test_a_rigid_leg_is_measured_whatever_the_sensors_do(settings: WalkerSetting
 
 
 @pytest.mark.endurance
-def test_averaged_rates_are_found_where_no_sensor_tells() -> None:
+def test_averaged_rates_are_found_where_no_sensor_shows() -> None:
     walked = simulate(left_leg(rate_kind=RateKind.AVERAGED))
     found = analyse(without_word(walked.session))
     assert "rate_kind_found" in {f.key for f in found.findings}
@@ -124,14 +124,14 @@ def test_new_straps_are_a_new_calibration() -> None:
     assert rms_deg(error_rad(walked, found, KNEE)) < 1.0
 
 
-def test_a_clock_that_is_late_in_one_walk_only_is_corrected_and_told() -> None:
+def test_a_clock_that_is_late_in_one_walk_only_is_corrected_and_reported() -> None:
     walked = simulate(WalkerSettings(seed=3))
     standing, free, walk = walked.session.recordings
     late = {s: replace(b, time_s=b.time_s + 0.03) if s is Site.LEFT_SHANK else b for s, b in walk.imu.items()}
     found = analyse(replace(walked.session, recordings=(standing, free, replace(walk, imu=late))))
-    told = {f.where: f.numbers["lag_ms"] for f in found.findings if f.key == "clock_moved"}
-    assert set(told) == {"walk 1, left_knee", "walk 1, left_ankle"}
-    assert told["walk 1, left_knee"] == pytest.approx(-30.0, abs=1.5)
+    reported = {f.where: f.numbers["lag_ms"] for f in found.findings if f.key == "clock_moved"}
+    assert set(reported) == {"walk 1, left_knee", "walk 1, left_ankle"}
+    assert reported["walk 1, left_knee"] == pytest.approx(-30.0, abs=1.5)
     for joint in (Joint.LEFT_KNEE, Joint.LEFT_ANKLE):
         assert rms_deg(error_rad(walked, found, joint)) < 0.8
 

@@ -14,25 +14,25 @@ OF_SAMPLES = [key for key, case in CASES.items() if case.is_of_samples]
 LONGER = [key for key, case in CASES.items() if not case.is_of_samples]
 
 
-def keys_told() -> Iterator[str]:
-    """Find every text that stands before a severity, and each that is named `key` before it is told."""
+def keys_reported() -> Iterator[str]:
+    """Find every text that is before a severity, and each that is named `key` before it is reported."""
     for file in CORE.rglob("*.py"):
         for node in ast.walk(ast.parse(file.read_text(encoding="utf-8"))):
-            told: list[ast.expr] = []
+            reported: list[ast.expr] = []
             if isinstance(node, ast.Call | ast.Tuple):
                 parts = node.args if isinstance(node, ast.Call) else node.elts
-                told = parts[:1] if len(parts) > 1 and "severity" in ast.unparse(parts[1]).lower() else []
+                reported = parts[:1] if len(parts) > 1 and "severity" in ast.unparse(parts[1]).lower() else []
             elif isinstance(node, ast.Assign) and ast.unparse(node.targets[0]) == "key":
-                told = [node.value]
-            looked_up = {id(p.slice) for part in told for p in ast.walk(part) if isinstance(p, ast.Subscript)}
-            for part in told:
+                reported = [node.value]
+            looked_up = {id(p.slice) for part in reported for p in ast.walk(part) if isinstance(p, ast.Subscript)}
+            for part in reported:
                 for text in ast.walk(part):
                     if isinstance(text, ast.Constant) and isinstance(text.value, str) and id(text) not in looked_up:
                         yield text.value
 
 
 def test_every_finding_of_the_core_has_a_case_and_every_case_a_finding() -> None:
-    assert set(keys_told()) == set(CASES)
+    assert set(keys_reported()) == set(CASES)
 
 
 @pytest.mark.endurance

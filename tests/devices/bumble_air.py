@@ -2,7 +2,7 @@
 
 Between `bleak` and them stand two whole stacks: the host's central, behind bleak's interface for backends, and one
 peripheral for each sensor, each with a controller of its own on one link. What passes between two controllers is late
-by what the link is said to be, in its order.
+by what the link is stated to be, in its order.
 """
 
 import asyncio
@@ -188,17 +188,17 @@ class BumbleAir:
         """Who advertises within so long."""
         found: dict[str, Announced] = {}
 
-        def heard(one: Advertisement) -> None:
+        def received(one: Advertisement) -> None:
             address = str(one.address).partition("/")[0]
             name = one.data.get(AdvertisingData.Type.COMPLETE_LOCAL_NAME) or ""
             made_by = one.data.get_all(AdvertisingData.Type.MANUFACTURER_SPECIFIC_DATA)
             found[address] = Announced(name, address, tuple({company for company, _ in made_by}), address, (), one.rssi)
 
-        self.central.on("advertisement", heard)
+        self.central.on("advertisement", received)
         await self.central.start_scanning(filter_duplicates=False)
         await asyncio.sleep(seconds)
         await self.central.stop_scanning()
-        self.central.remove_listener("advertisement", heard)
+        self.central.remove_listener("advertisement", received)
         return sorted(found.values(), key=lambda one: one.address)
 
     def drop(self, sensor: EmulatedPeripheral) -> Coroutine[Any, Any, None]:
@@ -296,10 +296,10 @@ class BumbleClient(UnpairedClient):
     async def start_notify(
         self, characteristic: BleakGATTCharacteristic, callback: Callable[[bytearray], None], **kwargs: Any
     ) -> None:
-        def heard(value: bytes) -> None:
+        def received(value: bytes) -> None:
             callback(bytearray(value))
 
-        await self._done(self._proxy(characteristic).subscribe(heard))
+        await self._done(self._proxy(characteristic).subscribe(received))
 
     async def stop_notify(self, characteristic: BleakGATTCharacteristic) -> None:
         await self._done(self._proxy(characteristic).unsubscribe())

@@ -1,4 +1,4 @@
-"""A channel that says what a test has written down, and notes what it is told."""
+"""A channel that states what a test has written down, and notes what it is reported."""
 
 from collections import deque
 from collections.abc import Callable, Sequence
@@ -7,15 +7,15 @@ from devices.live import SourceLostError
 
 
 class ScriptedChannel:
-    """Says `said` piece by piece, then what `answers` gives to what was written; lost where a piece is None."""
+    """States `stated` piece by piece, then what `answers` gives to what was written; lost where a piece is None."""
 
     serial = ""
     place = "script"
 
     def __init__(
-        self, said: Sequence[bytes | None] = (), answers: Callable[[bytes], bytes] = lambda _data: b""
+        self, stated: Sequence[bytes | None] = (), answers: Callable[[bytes], bytes] = lambda _data: b""
     ) -> None:
-        self.said, self._answers = deque(said), answers
+        self.stated, self._answers = deque(stated), answers
         self.written: list[bytes] = []
         self.is_open = False
 
@@ -23,7 +23,7 @@ class ScriptedChannel:
         self.is_open = True
 
     def read(self) -> bytes:
-        piece = self.said.popleft() if self.said else b""
+        piece = self.stated.popleft() if self.stated else b""
         if piece is None:
             raise SourceLostError("the script says so")
         return piece
@@ -31,14 +31,14 @@ class ScriptedChannel:
     def write(self, data: bytes) -> None:
         self.written.append(data)
         if answer := self._answers(data):
-            self.said.append(answer)
+            self.stated.append(answer)
 
     def close(self) -> None:
         self.is_open = False
 
 
 class SilentVoice:
-    """An emulated sensor that says nothing, whatever it hears."""
+    """An emulated sensor that gives nothing, whatever it receives."""
 
     def say(self) -> bytes:
         return b""

@@ -23,7 +23,7 @@ def motion(number: int) -> tuple[float, ...]:
 
 
 class StandingClock:
-    """Stands until it is put forward."""
+    """Is until it is put forward."""
 
     def __init__(self) -> None:
         self.now_s = 0.0
@@ -67,7 +67,7 @@ def test_a_shimmer_streams_from_its_first_sample_at_its_rate() -> None:
     assert voice.say() == b""
 
 
-def test_a_witmotion_says_a_burst_and_answers_of_registers() -> None:
+def test_a_witmotion_states_a_burst_and_answers_of_registers() -> None:
     clock = StandingClock()
     voice = WitVoice("7", motion, rate_hz=100.0, content=0b1111, now_ns=clock)
     clock.now_s = 0.015
@@ -84,13 +84,13 @@ def test_a_witmotion_says_a_burst_and_answers_of_registers() -> None:
     assert voice.rate_hz == 100.0  # it is locked
     voice.hear(bytes.fromhex("FF AA 69 88 B5 FF AA 03 0B 00"))
     assert voice.rate_hz == 200.0
-    told = voice.hear(bytes.fromhex("FF AA 27 03 00"))
-    assert told[:10] == bytes.fromhex("55 5F 0B 00 00 00 00 00 00 00")
+    reported = voice.hear(bytes.fromhex("FF AA 27 03 00"))
+    assert reported[:10] == bytes.fromhex("55 5F 0B 00 00 00 00 00 00 00")
     assert voice.hear(bytes.fromhex("FF AA 27 7F 00"))[2:10] == b"EMULATED"
     assert voice.hear(bytes.fromhex("FF AA 27 83 00"))[2:4] == b"7\0"
 
 
-def test_an_ximu3_says_samples_in_text_and_binary() -> None:
+def test_an_ximu3_states_samples_in_text_and_binary() -> None:
     clock = StandingClock()
     text = Ximu3Voice("1", motion, rate_hz=100, is_binary=False, now_ns=clock)
     binary = Ximu3Voice("1", motion, rate_hz=100, now_ns=clock)
@@ -99,9 +99,9 @@ def test_an_ximu3_says_samples_in_text_and_binary() -> None:
     assert lines[0] == b"I,1000000,125.0000,-250.0000,375.0000,2.0000,-4.0000,6.0000"
     assert lines[1] == b"B,1000000,84.0000,3.9000,0.0000"
     assert lines[2].startswith(b"I,1010000,126.0000,")
-    said = binary.say()
+    stated = binary.say()
     first = b"\xc9" + struct.pack("<Q6f", 1_000_000, 125.0, -250.0, 375.0, 2.0, -4.0, 6.0)
-    assert said.startswith(first.replace(b"\xdb", b"\xdb\xdd").replace(b"\n", b"\xdb\xdc") + b"\n")
+    assert stated.startswith(first.replace(b"\xdb", b"\xdb\xdd").replace(b"\n", b"\xdb\xdc") + b"\n")
 
 
 def test_an_ximu3_answers_what_it_is_set_to() -> None:
@@ -131,11 +131,11 @@ def test_an_mti_answers_and_measures_from_its_first_sample() -> None:
     assert voice.hear(xbus(0xC0, settings)) == xbus(0xC1, settings)
     assert voice.hear(xbus(0x10)) == xbus(0x11)
     clock.now_s = 5.011
-    said = voice.say()
-    # counter 0, fine time 1024 ticks before it begins anew, 9.81 m/s2 upwards, no rate; then 50 ticks later
+    stated = voice.say()
+    # counter 0, fine time 1024 ticks before it begins again, 9.81 m/s2 upwards, no rate; then 50 ticks later
     first = "10 20 02 00 00 10 60 04 FF FF FC 00 40 20 0C 00 00 00 00 00 00 00 00 41 1C F5 C3 80 20 0C" + "00" * 12
-    assert said.startswith(xbus(0x36, first))
-    assert said[len(said) // 2 :][4:16] == bytes.fromhex("10 20 02 00 01 10 60 04 FF FF FC 32")
+    assert stated.startswith(xbus(0x36, first))
+    assert stated[len(stated) // 2 :][4:16] == bytes.fromhex("10 20 02 00 01 10 60 04 FF FF FC 32")
     assert voice.sampled_ns(0) == 5.005e9
 
 
@@ -150,7 +150,7 @@ def test_lines_of_numbers_are_milliseconds_rates_and_forces() -> None:
     assert voice.sampled_ns(1) == 4e7
 
 
-def test_a_sensor_that_is_played_again_is_told_and_shaken() -> None:
+def test_a_sensor_that_is_played_again_is_reported_and_shaken() -> None:
     clock = StandingClock()
 
     def sleep(seconds: float) -> None:
@@ -159,10 +159,10 @@ def test_a_sensor_that_is_played_again_is_told_and_shaken() -> None:
     session = simulate(WalkerSettings(recordings=(Standing(),))).session
     source = ReplaySource(session, now_ns=clock, sleep=sleep)
     source.open()
-    told = source.details()
+    reported = source.details()
     first = source.info.sensors[0]
-    assert len(told) == len(source.info.sensors) == 6
-    assert all(one.rate_hz == 100.0 for one in told.values())
+    assert len(reported) == len(source.info.sensors) == 6
+    assert all(one.rate_hz == 100.0 for one in reported.values())
     fastest_rad_s = []
     for is_shaken in (False, True):
         if is_shaken:

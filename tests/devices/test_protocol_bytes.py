@@ -29,7 +29,7 @@ def row_of(framer: Framer, data: bytes) -> Sequence[float]:
     """The only sample in `data`: time, rate (3), force (3)."""
     framer.feed(data, 0.0)
     framer.flush()
-    (row,) = framer.heard.rows
+    (row,) = framer.received.rows
     return row
 
 
@@ -86,15 +86,15 @@ class ScriptedShimmer:
 @pytest.fixture
 def shimmer(monkeypatch: pytest.MonkeyPatch) -> tuple[ScriptedShimmer, SourceInfo, SensorDetails]:
     monkeypatch.setattr("devices.drivers.shimmer3.QUIET_S", 0.001)
-    said = ScriptedShimmer()
-    return said, *Shimmer3().greet(ScriptedChannel(answers=said))
+    stated = ScriptedShimmer()
+    return stated, *Shimmer3().greet(ScriptedChannel(answers=stated))
 
 
 def test_a_shimmer_is_set_to_the_ranges_that_a_walk_needs(
     shimmer: tuple[ScriptedShimmer, SourceInfo, SensorDetails],
 ) -> None:
-    said, info, told = shimmer
-    wanted = [
+    stated, info, reported = shimmer
+    required = [
         "05 40 01",  # sampling rate: 32768 / 320 = 102.4 Hz
         "49 03",  # gyroscope: 2000 deg/s
         "4C 4D",  # gyroscope: 8000 / 78 = 102.6 Hz, the least that is not slower
@@ -105,11 +105,15 @@ def test_a_shimmer_is_set_to_the_ranges_that_a_walk_needs(
         "08 40 30 00",  # gyroscope; battery and wide-range accelerometer
         "8B 02",  # checksums of two bytes
     ]
-    for command in wanted:
-        assert bytes.fromhex(command) in said.commands, command
-    assert said.commands[-1] == b"\x07"  # start
+    for command in required:
+        assert bytes.fromhex(command) in stated.commands, command
+    assert stated.commands[-1] == b"\x07"  # start
     assert info.sensors == ("S1",)
-    assert (told.rate_hz, told.rate_kind, told.firmware) == (102.4, RateKind.INSTANTANEOUS, "LogAndStream 0.15.0")
+    assert (reported.rate_hz, reported.rate_kind, reported.firmware) == (
+        102.4,
+        RateKind.INSTANTANEOUS,
+        "LogAndStream 0.15.0",
+    )
     assert not info.is_simulated
 
 
@@ -164,7 +168,7 @@ def test_witmotions_orientation_is_scalar_first() -> None:
     framer = WitFramer()
     framer.feed(WIT_TIME + wit(0x59, "00 40 00 C0 00 20 00 60"), 0.0)
     framer.flush()
-    ((_, *q),) = framer.heard.orientations
+    ((_, *q),) = framer.received.orientations
     assert q == pytest.approx((0.5, -0.5, 0.25, 0.75))
 
 
@@ -172,11 +176,11 @@ def test_witmotions_orientation_is_scalar_first() -> None:
     ("rate_hz", "code"),
     [(1, "03"), (2, "04"), (5, "05"), (10, "06"), (20, "07"), (50, "08"), (100, "09"), (200, "0B")],
 )
-def test_a_witmotion_is_told_its_rate_and_what_to_send(
+def test_a_witmotion_is_reported_its_rate_and_what_to_send(
     rate_hz: float, code: str, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.setattr("devices.drivers.witmotion.ANSWERS_S", 0.0)
-    monkeypatch.setattr("devices.drivers.witmotion.SAYS_S", 0.0)
+    monkeypatch.setattr("devices.drivers.witmotion.STATES_S", 0.0)
     channel = ScriptedChannel()
     with pytest.raises(SourceRefusedError):
         WitMotion(rate_hz=rate_hz).greet(channel)
@@ -193,8 +197,8 @@ def test_ximu3s_axes_stand_in_their_order_in_si_units() -> None:
     numbers = (1.5, -2.5, 3.5, 0.25, -0.5, 0.75)
     text = b"I,1500000,1.5,-2.5,3.5,0.25,-0.5,0.75\r\n"
     binary = b"\xc9" + struct.pack("<Q6f", 1_500_000, *numbers) + b"\n"
-    for said in (text, binary):
-        row = row_of(Ximu3Framer(), said)
+    for stated in (text, binary):
+        row = row_of(Ximu3Framer(), stated)
         assert row[0] == 1.5
         assert row[1:4] == pytest.approx((1.5 * DEG, -2.5 * DEG, 3.5 * DEG))
         assert row[4:] == pytest.approx((0.25 * G_M_S2, -0.5 * G_M_S2, 0.75 * G_M_S2))
@@ -203,11 +207,11 @@ def test_ximu3s_axes_stand_in_their_order_in_si_units() -> None:
 def test_ximu3s_orientation_is_scalar_first() -> None:
     framer = Ximu3Framer()
     framer.feed(b"Q,1500000,0.1,0.3,-0.5,0.8062\r\n", 0.0)
-    assert framer.heard.orientations == [(1.5, 0.1, 0.3, -0.5, 0.8062)]
+    assert framer.received.orientations == [(1.5, 0.1, 0.3, -0.5, 0.8062)]
 
 
 @pytest.mark.parametrize("axis", range(6))
-def test_what_an_ximu3_can_measure_is_heard_and_more_is_damage(axis: int) -> None:
+def test_what_an_ximu3_can_measure_is_received_and_more_is_damage(axis: int) -> None:
     """2000 deg/s and 16 g, and a fifth more that its calibration may add."""
     within, beyond = (2390.0, 2410.0) if axis < 3 else (19.9, 20.1)
     for sign in (1, -1):
@@ -216,27 +220,27 @@ def test_what_an_ximu3_can_measure_is_heard_and_more_is_damage(axis: int) -> Non
             numbers[axis] = sign * value
             framer = Ximu3Framer()
             framer.feed(b"\nI,1," + ",".join(map(str, numbers)).encode() + b"\r\n", 0.0)
-            assert (len(framer.heard.rows), framer.heard.damaged) == (count, 1 - count)
+            assert (len(framer.received.rows), framer.received.damaged) == (count, 1 - count)
 
 
 def test_an_ximu3s_battery_is_a_share() -> None:
     for percent, share in ((0.0, 0.0), (84.0, 0.84), (100.0, 1.0), (101.0, 1.0)):
         framer = Ximu3Framer()
         framer.feed(f"B,1,{percent},3.9,0\r\n".encode(), 0.0)
-        assert framer.heard.battery == pytest.approx(share)
+        assert framer.received.battery == pytest.approx(share)
 
 
 @pytest.mark.parametrize(("rate_hz", "divisor"), [(400, 1), (200, 2), (100, 4), (50, 8)])
-def test_an_ximu3_is_told_a_divisor_of_400_hz(rate_hz: float, divisor: int) -> None:
+def test_an_ximu3_is_reported_a_divisor_of_400_hz(rate_hz: float, divisor: int) -> None:
     def answers(data: bytes) -> bytes:
         if b"ping" in data:
             return b'{"ping":{"interface":"USB","name":"x-IMU3","sn":"655782F7"}}\r\n'
         return data[:-1].replace(b"null", f"{divisor}".encode()) + b"\r\n"
 
     channel = ScriptedChannel(answers=answers)
-    info, told = Ximu3(rate_hz=rate_hz).greet(channel)
+    info, reported = Ximu3(rate_hz=rate_hz).greet(channel)
     assert f'{{"inertial_message_rate_divisor":{divisor}}}\n'.encode() in channel.written
-    assert (info.sensors, info.is_simulated, told.rate_hz) == (("655782F7",), False, rate_hz)
+    assert (info.sensors, info.is_simulated, reported.rate_hz) == (("655782F7",), False, rate_hz)
 
 
 # Xsens: MT Low Level Communication Protocol Documentation
@@ -250,13 +254,13 @@ MT_DATA2 = bytes.fromhex(
 )
 
 
-def test_an_xsens_message_says_rate_and_acceleration_in_their_order() -> None:
+def test_an_xsens_message_states_rate_and_acceleration_in_their_order() -> None:
     framer = MtiFramer(MTI)
     row = row_of(framer, MT_DATA2)
     assert row[0] == pytest.approx(2.5)
     assert row[1:4] == (0.25, -0.5, 0.75)
     assert row[4:] == (1.5, -2.5, 9.75)
-    ((time_s, *q),) = framer.heard.orientations
+    ((time_s, *q),) = framer.received.orientations
     assert time_s == pytest.approx(2.5)
     assert q == pytest.approx((0.5, -0.5, 0.1, 0.7))
 
@@ -325,23 +329,28 @@ def test_items_of_whole_numbers_are_understood(identifier: int, data: str, numbe
 
 def test_an_xsens_sensor_is_asked_for_rate_acceleration_and_orientation() -> None:
     """0x8020 and 0x4020 at 100 Hz (0x64) with 0x2010, every message with counter 0x1020 and fine time 0x1060."""
-    wanted = bytes.fromhex("10 20 FF FF 10 60 FF FF 40 20 00 64 80 20 00 64 20 10 00 64")
+    required = bytes.fromhex("10 20 FF FF 10 60 FF FF 40 20 00 64 80 20 00 64 20 10 00 64")
     written: list[bytes] = []
 
     def answers(data: bytes) -> bytes:
         written.append(data)
         mid, payload = data[2], data[4:-1]
-        told = {0x00: bytes.fromhex("02 80 A1 B2"), 0x1C: b"MTi-630", 0x12: bytes.fromhex("01 08 02 00")}.get(
+        reported = {0x00: bytes.fromhex("02 80 A1 B2"), 0x1C: b"MTi-630", 0x12: bytes.fromhex("01 08 02 00")}.get(
             mid, payload
         )
-        body = bytes([0xFF, mid + 1, len(told)]) + told
+        body = bytes([0xFF, mid + 1, len(reported)]) + reported
         return b"\xfa" + body + bytes([-sum(body) % 256])
 
-    info, told = XsensMti(rate_hz=100.0).greet(ScriptedChannel(answers=answers))
+    info, reported = XsensMti(rate_hz=100.0).greet(ScriptedChannel(answers=answers))
     assert [data[2] for data in written] == [0x30, 0x00, 0x1C, 0x12, 0xC0, 0x10]
-    assert written[4][4:-1] == wanted
+    assert written[4][4:-1] == required
     assert (info.serial, info.is_simulated) == ("0280A1B2", False)
-    assert (told.model, told.firmware, told.rate_hz, told.rate_kind) == ("MTi-630", "1.8.2", 100.0, RateKind.AVERAGED)
+    assert (reported.model, reported.firmware, reported.rate_hz, reported.rate_kind) == (
+        "MTi-630",
+        "1.8.2",
+        100.0,
+        RateKind.AVERAGED,
+    )
 
 
 def test_an_xsens_orientation_to_north_east_and_down_is_brought_to_an_earth_with_z_up() -> None:
@@ -352,7 +361,7 @@ def test_an_xsens_orientation_to_north_east_and_down_is_brought_to_an_earth_with
     body = bytes([0xFF, 0x36, len(data)]) + data
     framer = MtiFramer(MTI)
     row_of(framer, b"\xfa" + body + bytes([-sum(body) % 256]))
-    ((_, w, x, y, z),) = framer.heard.orientations
+    ((_, w, x, y, z),) = framer.received.orientations
     turned = np.array(
         [
             [1 - 2 * (y * y + z * z), 2 * (x * y - w * z), 2 * (x * z + w * y)],

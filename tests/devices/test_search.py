@@ -102,7 +102,7 @@ def test_a_sensor_that_was_left_streaming_is_found_again(tmp_path: Path) -> None
     emulation.close()
 
 
-def test_a_port_in_use_says_so(emulated: list[PortInfo]) -> None:
+def test_a_port_in_use_states_so(emulated: list[PortInfo]) -> None:
     holding = SerialPort(emulated[0])
     holding.open()
     with pytest.raises(SourceRefusedError, match="is in use by another program"):
@@ -114,13 +114,13 @@ def test_a_port_in_use_says_so(emulated: list[PortInfo]) -> None:
 def test_what_is_announced_on_the_network_is_found(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr("devices.search._has_network", lambda: True)
     at_port = free_port()
-    told = {"name": "x-IMU3", "sn": "655782F7", "ip": "10.0.0.9", "port": 7000, "send": 8000, "receive": 9000}
+    reported = {"name": "x-IMU3", "sn": "655782F7", "ip": "10.0.0.9", "port": 7000, "send": 8000, "receive": 9000}
     ends = threading.Event()
 
     def announce() -> None:
         with socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as sending:
             while not ends.wait(0.1):
-                sending.sendto(json.dumps(told).encode(), ("127.0.0.1", at_port))
+                sending.sendto(json.dumps(reported).encode(), ("127.0.0.1", at_port))
 
     thread = threading.Thread(target=announce)
     thread.start()
@@ -135,16 +135,16 @@ def test_what_is_announced_on_the_network_is_found(monkeypatch: pytest.MonkeyPat
 def test_streams_of_motion_are_found_and_others_say_why_not(
     monkeypatch: pytest.MonkeyPatch, streams: list[LslStream]
 ) -> None:
-    told = {
+    reported = {
         "Consensys": ["gyr_x", "gyr_y", "gyr_z", "acc_x", "acc_y", "acc_z"],
         "heart": ["ECG"],
         "no units": ["gyr_x", "gyr_y", "gyr_z", "acc_x", "acc_y", "acc_z"],
     }
-    streams += [LslStream(name, "", name, "here", 100.0) for name in told]
+    streams += [LslStream(name, "", name, "here", 100.0) for name in reported]
 
     def sensors(stream: LslStream) -> tuple[LslSensor, ...]:
         units = ["deg/s"] * 3 + ["g"] * 3 if stream.name != "no units" else []
-        return sensors_of(stream.name, told[stream.name], units)
+        return sensors_of(stream.name, reported[stream.name], units)
 
     monkeypatch.setattr("devices.search.announced_sensors", sensors)
     assert search([], free_port()).sensors == ()  # nobody asked
@@ -194,12 +194,12 @@ def test_a_port_is_found_again_by_what_is_plugged_in(emulated: list[PortInfo]) -
     port.close()
 
 
-def test_ports_are_listed_and_more_can_be_told(monkeypatch: pytest.MonkeyPatch, emulated: list[PortInfo]) -> None:
+def test_ports_are_listed_and_more_can_be_reported(monkeypatch: pytest.MonkeyPatch, emulated: list[PortInfo]) -> None:
     monkeypatch.setenv(MORE_PORTS, f"{emulated[0].device}:/nowhere/at-all")
     assert emulated[0].device in [port.device for port in list_ports()]
     assert "/nowhere/at-all" not in [port.device for port in list_ports()]
 
 
-def test_every_driver_says_how_it_was_proved() -> None:
+def test_every_driver_states_how_it_was_proved() -> None:
     assert len({driver.key for driver in DRIVERS}) == len(DRIVERS)
     assert all(len(driver.proof) > 40 for driver in DRIVERS)

@@ -1,4 +1,4 @@
-"""Is each maker's sensor told by what it sends, and by what it answers, without waiting for real ports?"""
+"""Is each maker's sensor reported by what it sends, and by what it answers, without waiting for real ports?"""
 
 import time
 from collections.abc import Callable
@@ -50,8 +50,8 @@ class ScriptedPort:
 
     def read(self) -> bytes:
         assert self._voice is not None
-        said, self._answer = self._answer + self._voice.say(), b""
-        return said
+        stated, self._answer = self._answer + self._voice.say(), b""
+        return stated
 
     def write(self, data: bytes) -> None:
         assert self._voice is not None
@@ -115,7 +115,7 @@ def test_a_sensor_is_known_by_what_it_sends_or_answers(
     assert (found.passed, found.lines) == ((), ())
 
 
-def test_lines_of_numbers_are_lines_until_their_columns_are_told(
+def test_lines_of_numbers_are_lines_until_their_columns_are_reported(
     clock: TickingClock, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     found = found_at(lambda: LineVoice(motion, now_ns=clock), monkeypatch)
@@ -134,6 +134,6 @@ def test_who_is_not_understood_is_no_sensor(
     assert "No signal from a sensor at script" in str(passed.refusal)
 
 
-def test_a_port_that_cannot_be_opened_says_why(clock: TickingClock, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_a_port_that_cannot_be_opened_states_why(clock: TickingClock, monkeypatch: pytest.MonkeyPatch) -> None:
     (passed,) = found_at(lambda: None, monkeypatch).passed
     assert "script was not found" in str(passed.refusal)

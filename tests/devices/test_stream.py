@@ -1,4 +1,4 @@
-"""What does a stream's decoder take from what its source says of itself?"""
+"""What does a stream's decoder take from what its source states of itself?"""
 
 import pytest
 

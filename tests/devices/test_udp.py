@@ -1,4 +1,4 @@
-"""Sensors that send to one port of this computer are told apart, and none takes another's datagrams."""
+"""Sensors that send to one port of this computer are distinguished, and none takes another's datagrams."""
 
 import select
 import socket
@@ -27,7 +27,7 @@ def port() -> int:
 
 @pytest.fixture
 def sources(port: int) -> Iterator[list[ByteSource]]:
-    """Three sensors of one address, each with a rate that says which it is."""
+    """Three sensors of one address, each with a rate that states which it is."""
     emulations, sources = [], []
     for number in range(3):
         voice = Ximu3Voice(f"S{number}", lambda k, n=number: (100.0 * n, float(k), 0, 0, 0, 1), rate_hz=RATE_HZ)  # type: ignore[misc]  # the default binds the loop's value
@@ -39,7 +39,7 @@ def sources(port: int) -> Iterator[list[ByteSource]]:
         emulation.close()
 
 
-def heard(source: ByteSource, reads: int, into: list[np.ndarray]) -> None:
+def received(source: ByteSource, reads: int, into: list[np.ndarray]) -> None:
     for _ in range(reads):
         into += [block.gyr_rad_s for block in source.read(lambda _data: None)]
 
@@ -49,12 +49,12 @@ def numbers(blocks: Sequence[np.ndarray]) -> tuple[np.ndarray, np.ndarray]:
     return rates[:, 0], rates[:, 1]
 
 
-def test_each_hears_its_own_and_loses_nothing(sources: list[ByteSource]) -> None:
+def test_each_receives_its_own_and_loses_nothing(sources: list[ByteSource]) -> None:
     for source in sources:
         source.open()
     got: list[list[np.ndarray]] = [[] for _ in sources]
     threads = [
-        threading.Thread(target=heard, args=(source, LISTENS, blocks))
+        threading.Thread(target=received, args=(source, LISTENS, blocks))
         for source, blocks in zip(sources, got, strict=True)
     ]
     for thread in threads:
@@ -68,7 +68,7 @@ def test_each_hears_its_own_and_loses_nothing(sources: list[ByteSource]) -> None
         assert (np.diff(counted) == 1).all()
     sources[0].close()
     left: list[np.ndarray] = []
-    heard(sources[1], 5, left)
+    received(sources[1], 5, left)
     assert left, "one that is closed takes none of the others along"
     with pytest.raises(SourceLostError):
         sources[0].read(lambda _data: None)

@@ -3,7 +3,7 @@
     python -m tests.examples.live_from_a_port PORT SECONDS
 
 The sensor sends one line per sample: milliseconds, rates in deg/s, forces in g, separated by commas. Printed is one
-line per event when it is known, at most a tenth of a second after it happened unless it says late, and the cadence at
+line per event when it is known, at most a tenth of a second after it happened unless it states late, and the cadence at
 the end. `LiveEvents` wants rates without the gyroscope's bias; where it is not small, take off what `rest_of` finds in
 some seconds of standing.
 """

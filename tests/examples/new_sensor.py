@@ -4,7 +4,7 @@
 
 The sensor sends frames of 16 bytes: 0xA5, a counter of one byte at 100 Hz, three rates and three forces as
 little-endian int16 (0.01 rad/s, 0.01 m/s2), the sum of all before, and 0x5A. A driver is a `Framer`, which finds frames
-in bytes however they are cut, and a `SensorProtocol`, which says who is there. `Decoder` puts samples in order and
+in bytes however they are cut, and a `SensorProtocol`, which states who is there. `Decoder` puts samples in order and
 counts losses; with `ByteSource` the same two serve a port. Printed is what was received, lost and damaged.
 """
 
@@ -12,7 +12,7 @@ import struct
 import sys
 from pathlib import Path
 
-from devices import Channel, Decoder, Framer, Heard, SensorDetails, SourceInfo
+from devices import Channel, Decoder, Framer, Received, SensorDetails, SourceInfo
 
 FRAME = struct.Struct("<BB6hBB")
 RATE_HZ, UNIT = 100.0, 0.01
@@ -22,7 +22,7 @@ class SumFramer:
     """Finds frames; what is no frame is skipped byte by byte and counted once per stretch."""
 
     def __init__(self) -> None:
-        self.heard = Heard()
+        self.received = Received()
         self._held, self._ticks, self._is_in_step = b"", -1, True
 
     def feed(self, data: bytes, host_s: float) -> None:
@@ -30,11 +30,11 @@ class SumFramer:
         while len(held) >= FRAME.size:
             head, counter, *values, total, tail = FRAME.unpack_from(held)
             is_frame = (head, tail, total) == (0xA5, 0x5A, sum(held[: FRAME.size - 2]) % 256)
-            self.heard.damaged += self._is_in_step and not is_frame
+            self.received.damaged += self._is_in_step and not is_frame
             self._is_in_step = is_frame
-            if is_frame:  # the counter starts anew after 255
+            if is_frame:  # the counter starts again after 255
                 self._ticks += (counter - self._ticks) % 256
-                self.heard.rows.append((self._ticks / RATE_HZ, *(UNIT * value for value in values)))
+                self.received.rows.append((self._ticks / RATE_HZ, *(UNIT * value for value in values)))
             held = held[FRAME.size if is_frame else 1 :]
         self._held = held
 

@@ -20,6 +20,6 @@ def test_the_example_of_an_entry_point_runs(entry: object, simulated: SimulatedS
     names |= {"folder": folder, "session": simulated.session, "standing": standing, "walk": walk}
     (found,) = doctest.DocTestFinder(recurse=False).find(entry, globs=names)
     assert found.examples
-    said: list[str] = []
-    failed, _ = doctest.DocTestRunner().run(found, out=said.append)
-    assert failed == 0, "".join(said)
+    stated: list[str] = []
+    failed, _ = doctest.DocTestRunner().run(found, out=stated.append)
+    assert failed == 0, "".join(stated)

@@ -1,4 +1,4 @@
-"""Every example runs as its page says, prints what is true of a simulated patient, and uses public names alone."""
+"""Every example runs as its page states, prints what is true of a simulated patient, and uses public names alone."""
 
 import array
 import ast
@@ -110,7 +110,7 @@ def test_a_new_sensor_is_understood_and_its_losses_are_counted(
     tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
     frames = []
-    for number in range(300):  # its counter starts anew once
+    for number in range(300):  # its counter starts again once
         body = new_sensor.FRAME.pack(0xA5, number % 256, number, -5, 0, 0, 0, 981, 0, 0)[:-2]
         frames.append(body + bytes([sum(body) % 256, 0x5A]))
     frames[20] = frames[20][:4] + b"\x7f" + frames[20][5:]  # damaged, so it is lost as well

@@ -4,7 +4,7 @@ Takes what `packaging/build.py --with-tour` left in dist/ into a bare root (`bar
 archive. There an ordinary user makes the demonstration by the command line, has foreign files read and a batch done by
 child processes, opens the window and ends it; then the tour leads the demonstration to its saved report in the very
 folder that is installed. Removed again, nothing may be left but what the user has. Last a session is led, Rerun's
-viewer included, where there is no network, under strace: it may call this computer only. Times are told.
+viewer included, where there is no network, under strace: it may call this computer only. Times are reported.
 
 Needs root, debootstrap, Xvfb, openbox, xdotool, ImageMagick and strace.
 """
@@ -44,7 +44,7 @@ OF_OTHERS = re.compile(
 
 
 class TrialError(Exception):
-    """Something does not work there; the message says what."""
+    """Something does not work there; the message states what."""
 
 
 def try_package(root: BareRoot) -> None:
@@ -53,7 +53,7 @@ def try_package(root: BareRoot) -> None:
     root.apt("update")
     before, packages = root.files(), installed(root)
     shutil.copy(package, root.folder / "root")
-    with told("apt-get install"):
+    with reported("apt-get install"):
         root.apt("install", f"/root/{package.name}")
     use(root, "gaitwright", INSTALLED)
     root.apt("purge", "--autoremove", "gaitwright")
@@ -73,7 +73,7 @@ def try_archive(root: BareRoot) -> None:
     (archive,) = DIST.glob("gaitwright-*.tar.zst")
     root.apt("update")
     home = root.outside(root.home)
-    with told("unpacking"):
+    with reported("unpacking"):
         subprocess.run(["tar", "--extract", "--zstd", "--file", archive, "--directory", home], check=True)
     (folder,) = home.glob("gaitwright-*")
     readme = (folder / "README.txt").read_text(encoding="utf-8")
@@ -123,24 +123,24 @@ TRIALS: dict[str, Callable[[BareRoot], None]] = {"package": try_package, "archiv
 def use(root: BareRoot, program: str, place: Path) -> None:
     """Do what a user does, by the command line and in the window, with the program that lies in `place`."""
     say(f"{root.run(program, '--version').strip()}")
-    with told("demo, to a report"):
+    with reported("demo, to a report"):
         root.run(program, "demo", "--out", "demonstration")
     report = root.outside(root.home / "demonstration" / "report.pdf")
     if not report.read_bytes().startswith(b"%PDF"):
         raise TrialError("The report is none.")
-    with told("analyse (a child reads the files)"):
+    with reported("analyse (a child reads the files)"):
         root.run(program, "analyse", "demonstration/session", "--out", "analysed")
     same = [root.outside(root.home / folder / "summary.json").read_bytes() for folder in ("demonstration", "analysed")]
     if same[0] != same[1]:
         raise TrialError("analyse and demo give other results.")
     root.run("sh", "-c", "mkdir -p many && cp -r demonstration/session many/a && cp -r demonstration/session many/b")
-    with told("batch with two workers"):
+    with reported("batch with two workers"):
         root.run(program, "batch", "many", "--out", "table", "--workers", "2")
     root.run(program, "query", "select count(*) from parameters", "--in", "table/parameters.parquet")
     root.run(program, "export", "demonstration/session", "--as", "xlsx,c3d,mot,fhir,bids-motion", "--out", "exported")
     with tour.own_display() as display:
         open_and_close(root, program, display)
-    with told("tour: the demonstration to its saved report"):
+    with reported("tour: the demonstration to its saved report"):
         lead(root, place, MOUSE)
 
 
@@ -209,7 +209,7 @@ def root_command(root: BareRoot, display: str, program: str) -> list[str]:
 
 
 @contextmanager
-def told(what: str) -> Iterator[None]:
+def reported(what: str) -> Iterator[None]:
     began_s = time.monotonic()
     yield
     say(f"{what}: {time.monotonic() - began_s:.1f} s")
@@ -221,17 +221,17 @@ def main() -> None:
         "--only", nargs="+", choices=TRIALS, default=list(TRIALS), metavar="NAME", help="/".join(TRIALS)
     )
     parser.add_argument("--inside", nargs=2, help=argparse.SUPPRESS)
-    wanted = parser.parse_args()
-    if wanted.inside:
-        lead(BareRoot(Path(wanted.inside[0])), INSTALLED, REVIEWED, Path(wanted.inside[1]))
+    required = parser.parse_args()
+    if required.inside:
+        lead(BareRoot(Path(required.inside[0])), INSTALLED, REVIEWED, Path(required.inside[1]))
         return
     if reason := why_not():
         sys.exit(f"This cannot be tried here: {reason}.")
     if not list(DIST.glob("gaitwright_*.deb")) or not (DIST / "gaitwright-tour").exists():
         sys.exit("Run first: python3 packaging/build.py --with-tour")
-    for name in wanted.only:
+    for name in required.only:
         say(f"== {name}")
-        with bare_root(PLACE) as root, told(name):
+        with bare_root(PLACE) as root, reported(name):
             TRIALS[name](root)
 
 

@@ -1,7 +1,7 @@
 """Try the README's two commands in a Debian that has only Python: `python3 -m tests.installation.try_readme`.
 
 As a new user would: what is committed here, unpacked; the first command, to the first report; then the second, every
-check and every test but the long ones. Told are the times; recordings of people are not there, so their tests are
+check and every test but the long ones. Reported are the times; recordings of people are not there, so their tests are
 skipped. Needs debootstrap and to be root.
 """
 
@@ -71,7 +71,7 @@ def try_tests(root: BareRoot) -> None:
 def main() -> None:
     parser = argparse.ArgumentParser(description=(__doc__ or "").split("\n")[0])
     parser.add_argument("--only-start", action="store_true", help="leave the tests out")
-    wanted = parser.parse_args()
+    required = parser.parse_args()
     if reason := why_not():
         sys.exit(f"This cannot be tried here: {reason}.")
     with bare_root(PLACE) as root:
@@ -82,7 +82,7 @@ def main() -> None:
         packed = subprocess.run(["git", "archive", "HEAD"], cwd=ROOT, check=True, stdout=subprocess.PIPE)
         subprocess.run(["tar", "--extract", "--directory", target], input=packed.stdout, check=True)
         try_start(root)
-        if not wanted.only_start:
+        if not required.only_start:
             try_tests(root)
 
 

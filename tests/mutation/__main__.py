@@ -37,15 +37,15 @@ def main() -> None:
     parser.add_argument("--again", action="store_true", help="try those that survived or took too long once more")
     parser.add_argument("--seconds", type=float, default=float("inf"), help="begin no mutant after so long")
     parser.add_argument("--report", action="store_true", help="run nothing, tell what was found")
-    wanted = parser.parse_args()
-    each = -(-wanted.count // len(wanted.packages))
-    mutants = {package: chosen(ROOT, all_mutants(ROOT, package), each, wanted.seed) for package in wanted.packages}
-    if not wanted.report:
-        if wanted.cover or not COVERING.exists():
+    required = parser.parse_args()
+    each = -(-required.count // len(required.packages))
+    mutants = {package: chosen(ROOT, all_mutants(ROOT, package), each, required.seed) for package in required.packages}
+    if not required.report:
+        if required.cover or not COVERING.exists():
             cover()
-        until_s = time.monotonic() + wanted.seconds
+        until_s = time.monotonic() + required.seconds
         in_turn = zip_longest(*mutants.values())  # so that a run that is cut short has tried as many of each
-        run([one for several in in_turn for one in several if one], wanted.again, until_s)
+        run([one for several in in_turn for one in several if one], required.again, until_s)
     report(mutants)
 
 
@@ -75,7 +75,7 @@ def run(mutants: Iterable[Mutant], is_again: bool, until_s: float) -> None:
 
 
 def note(one: Mutant, outcome: Outcome) -> None:
-    told = {
+    reported = {
         "name": one.name,
         "source": digest(one.file),
         "file": one.file,
@@ -89,7 +89,7 @@ def note(one: Mutant, outcome: Outcome) -> None:
     }
     RESULTS.parent.mkdir(parents=True, exist_ok=True)
     with RESULTS.open("a", encoding="utf-8") as file:
-        file.write(json.dumps(told, ensure_ascii=False) + "\n")
+        file.write(json.dumps(reported, ensure_ascii=False) + "\n")
 
 
 def digest(file: str) -> str:
@@ -99,8 +99,8 @@ def digest(file: str) -> str:
 def results() -> Results:
     if not RESULTS.exists():
         return {}
-    told = (json.loads(line) for line in RESULTS.read_text(encoding="utf-8").splitlines())
-    return {one["name"]: one for one in told}
+    reported = (json.loads(line) for line in RESULTS.read_text(encoding="utf-8").splitlines())
+    return {one["name"]: one for one in reported}
 
 
 Change = tuple[str, str, str]
@@ -109,8 +109,8 @@ Change = tuple[str, str, str]
 
 def equivalents() -> dict[Change, str]:
     """Mutants that behave as the code does, and why."""
-    told = tomllib.loads(EQUIVALENT.read_text(encoding="utf-8"))
-    return {(one["file"], one["line"], one["becomes"]): one["reason"] for one in told.get("mutant", [])}
+    reported = tomllib.loads(EQUIVALENT.read_text(encoding="utf-8"))
+    return {(one["file"], one["line"], one["becomes"]): one["reason"] for one in reported.get("mutant", [])}
 
 
 def named(one: Mutant) -> Change:

@@ -1,4 +1,4 @@
-"""Which tests run which lines? A plugin of pytest that tells, test by test and fixture by fixture.
+"""Which tests run which lines? A plugin of pytest that reports, test by test and fixture by fixture.
 
     python -m pytest -p tests.mutation.covering --covering=build/mutation/covering.json tests/core
 
@@ -65,11 +65,13 @@ class Covering:
         lines: dict[str, dict[int, list[int]]] = {}
         for file in sorted(data.measured_files()):
             of_file = data.contexts_by_lineno(file)
-            told = {
+            reported = {
                 line: sorted(contexts.setdefault(name, len(contexts)) for name in names if name)
                 for line, names in of_file.items()
             }
-            lines[Path(file).relative_to(self._root).as_posix()] = {line: some for line, some in told.items() if some}
+            lines[Path(file).relative_to(self._root).as_posix()] = {
+                line: some for line, some in reported.items() if some
+            }
         self._into.parent.mkdir(parents=True, exist_ok=True)
         found = {"tests": self._tests, "contexts": list(contexts), "lines": lines}
         self._into.write_text(json.dumps(found), encoding="utf-8")

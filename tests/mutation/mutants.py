@@ -55,9 +55,9 @@ class Mutant:
 
     @property
     def name(self) -> str:
-        """The same for the same change of the same line of code, wherever the line stands."""
-        told = "\0".join([self.file, self.before, self.after, str(self.number)])
-        return hashlib.sha256(told.encode()).hexdigest()[:12]
+        """The same for the same change of the same line of code, wherever the line is."""
+        reported = "\0".join([self.file, self.before, self.after, str(self.number)])
+        return hashlib.sha256(reported.encode()).hexdigest()[:12]
 
     def applied(self, source: str) -> str:
         """The source with the node replaced."""

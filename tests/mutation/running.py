@@ -32,7 +32,7 @@ TEST_FOLDERS = (
 LEFT_BEHIND = (".git", ".venv", "build", "__pycache__", ".hypothesis", "*.egg-info", ".*_cache")
 MOST_SECONDS = 30.0  # of tests for one mutant; the mirror's and the shortest come first
 MOST_TESTS = 400
-PRELOADED = (  # so that no mutant waits for them; the project itself is imported anew each time
+PRELOADED = (  # so that no mutant waits for them; the project itself is imported again each time
     *(
         "numpy",
         "scipy.signal",
@@ -82,19 +82,19 @@ class Coverage:
 
     @classmethod
     def read(cls, path: Path) -> "Coverage":
-        told = json.loads(path.read_text(encoding="utf-8"))
-        passed = {test for test, one in told["tests"].items() if one["passed"]}
+        reported = json.loads(path.read_text(encoding="utf-8"))
+        passed = {test for test, one in reported["tests"].items() if one["passed"]}
         users: dict[str, set[str]] = defaultdict(set)
         for test in passed:
             users[test].add(test)
-            for fixture in told["tests"][test]["fixtures"]:
+            for fixture in reported["tests"][test]["fixtures"]:
                 users[fixture].add(test)
-        of_context = [users.get(context, set()) for context in told["contexts"]]
+        of_context = [users.get(context, set()) for context in reported["contexts"]]
         lines = {
             file: {int(line): set().union(*(of_context[k] for k in contexts)) for line, contexts in some.items()}
-            for file, some in told["lines"].items()
+            for file, some in reported["lines"].items()
         }
-        return cls({test: float(told["tests"][test]["seconds"]) for test in passed}, lines)
+        return cls({test: float(reported["tests"][test]["seconds"]) for test in passed}, lines)
 
     def of_mutant(self, root: Path, mutant: Mutant) -> set[str]:
         """Tests that run the line; of a line that runs at import, those that run what its names are used in."""
@@ -210,36 +210,36 @@ class Tree:
         file.write_text(mutant.applied(source), encoding="utf-8")
         began_s = time.monotonic()
         try:
-            fate, said = self._run(START_S + SLOWER * expected_s)
+            fate, stated = self._run(START_S + SLOWER * expected_s)
         finally:
             file.write_text(source, encoding="utf-8")
-        killers = [line.split(" - ")[0].split(" ", 1)[-1] for line in said if line.startswith(("FAILED", "ERROR"))]
+        killers = [line.split(" - ")[0].split(" ", 1)[-1] for line in stated if line.startswith(("FAILED", "ERROR"))]
         return Outcome(fate, time.monotonic() - began_s, len(tests), killers[0] if killers else "")
 
     def _run(self, most_s: float) -> tuple[Fate, list[str]]:
-        told = self._place / "told.txt"
+        reported = self._place / "told.txt"
         child = os.fork()
         if not child:
-            self._look(told)
+            self._look(reported)
         until_s = time.monotonic() + most_s
         while True:
             done, status = os.waitpid(child, os.WNOHANG)
             if done:
                 is_whole = os.waitstatus_to_exitcode(status) == 0
-                said = told.read_text(encoding="utf-8", errors="replace").splitlines()
-                return (Fate.SURVIVED if is_whole else Fate.KILLED), said
+                stated = reported.read_text(encoding="utf-8", errors="replace").splitlines()
+                return (Fate.SURVIVED if is_whole else Fate.KILLED), stated
             if time.monotonic() > until_s:
                 os.killpg(child, signal.SIGKILL)
                 os.waitpid(child, 0)
                 return Fate.TIMEOUT, []
             time.sleep(0.02)
 
-    def _look(self, told: Path) -> NoReturn:
+    def _look(self, reported: Path) -> NoReturn:
         """Run the tests in a child process, which has the libraries already and none of the project."""
         code = 1
         try:
             os.setsid()
-            into = os.open(told, os.O_WRONLY | os.O_CREAT | os.O_TRUNC)
+            into = os.open(reported, os.O_WRONLY | os.O_CREAT | os.O_TRUNC)
             os.dup2(into, 1)
             os.dup2(into, 2)
             os.chdir(self._place)

@@ -1,4 +1,5 @@
-"""Are mutants what they are said to be: one change each, told by name, and tried by the tests that run the line?"""
+"""Are mutants what they are stated to be: one change each, reported by name, and tried by the tests that run the
+line?"""
 
 import json
 from pathlib import Path
@@ -77,11 +78,11 @@ def test_a_line_that_moves_keeps_its_mutants_and_their_choice(tmp_path: Path) ->
 
 
 def test_a_mutant_is_tried_by_the_tests_that_run_its_line(tmp_path: Path) -> None:
-    """Lines of a fixture count for its tests, those of a table for the tests of the lines where its name stands."""
+    """Lines of a fixture count for its tests, those of a table for the tests of the lines where its name is."""
     (tmp_path / "core").mkdir()
     (tmp_path / "core" / "one.py").write_text(SOURCE)
     names = ["tests/core/test_one.py::a", "tests/core/test_one.py::b", "tests/app/test_far.py::c", "fixture  made"]
-    told = {
+    reported = {
         "tests": {
             names[0]: {"fixtures": [], "seconds": 2.0, "passed": True},
             names[1]: {"fixtures": ["fixture  made"], "seconds": 0.5, "passed": True},
@@ -91,7 +92,7 @@ def test_a_mutant_is_tried_by_the_tests_that_run_its_line(tmp_path: Path) -> Non
         "contexts": [*names, "tests/core/test_one.py::fails"],
         "lines": {"core/one.py": {"10": [0, 2, 3, 4], "11": [3, 4], "13": [0]}},
     }
-    (tmp_path / "covering.json").write_text(json.dumps(told))
+    (tmp_path / "covering.json").write_text(json.dumps(reported))
     coverage = Coverage.read(tmp_path / "covering.json")
     tests = {one.after: coverage.of_mutant(tmp_path, one) for one in mutants_of(SOURCE, "core/one.py")}
     assert tests["shifted = (value + offset)"] == set(names[:3])

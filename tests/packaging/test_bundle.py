@@ -44,10 +44,10 @@ def test_what_is_packed_is_what_was_tested() -> None:
 def test_the_bundle_has_every_extra_and_what_builds_it_and_nothing_for_tests() -> None:
     project = tomllib.loads((ROOT / "pyproject.toml").read_text(encoding="utf-8"))["project"]
     extras = project["optional-dependencies"]
-    wanted = project["dependencies"] + [
+    required = project["dependencies"] + [
         one for name, asked in extras.items() if name not in ("dev", "opensim") for one in asked
     ]
-    names = {re.split(r"[^\w.-]", requirement)[0].lower() for requirement in wanted}
+    names = {re.split(r"[^\w.-]", requirement)[0].lower() for requirement in required}
     packed = pins("bundle.lock").keys()
     assert names <= packed
     assert {"pytest", "hypothesis", "pandas", "mypy", "pgserver", "moto"} & packed == set()
@@ -138,13 +138,13 @@ def test_the_bill_leaves_out_what_built_and_adds_what_is_no_distribution(parts: 
 
 def test_the_package_asks_for_every_library_that_the_set_up_asks_for(packages: ModuleType, tmp_path: Path) -> None:
     (tmp_path / "file").write_bytes(bytes(3000))
-    told = packages.control("1.2.3", "amd64", tmp_path)
-    fields = dict(line.split(": ", 1) for line in told.splitlines() if re.match(r"[A-Z]", line))
+    reported = packages.control("1.2.3", "amd64", tmp_path)
+    fields = dict(line.split(": ", 1) for line in reported.splitlines() if re.match(r"[A-Z]", line))
     asked = {name.strip() for names in fields["Depends"].split(",") for name in names.split("|")}
     assert set(packages.QT_LIBRARIES.values()) <= asked
     assert fields["Version"] == "1.2.3"
     assert fields["Installed-Size"] == "3"
-    assert "Not a medical device." in told
+    assert "Not a medical device." in reported
 
 
 def test_the_package_puts_a_program_a_menu_entry_and_an_icon_and_nothing_else_outside_opt(
@@ -168,13 +168,13 @@ def test_the_package_puts_a_program_a_menu_entry_and_an_icon_and_nothing_else_ou
 def test_the_menu_entry_starts_what_the_package_installs() -> None:
     entry = configparser.ConfigParser(interpolation=None)
     entry.read(PACKAGING / "installers" / "gaitwright.desktop", encoding="utf-8")
-    told = entry["Desktop Entry"]
-    assert told["Exec"] == "/usr/bin/gaitwright"
-    assert "not a medical device" in told["Comment"].lower()
-    assert told["Categories"].endswith(";")
+    reported = entry["Desktop Entry"]
+    assert reported["Exec"] == "/usr/bin/gaitwright"
+    assert "not a medical device" in reported["Comment"].lower()
+    assert reported["Categories"].endswith(";")
 
 
-def test_the_archive_says_which_libraries_a_bare_system_lacks(packages: ModuleType) -> None:
+def test_the_archive_states_which_libraries_a_bare_system_lacks(packages: ModuleType) -> None:
     text = packages.readme()
     (line,) = re.findall(r"apt-get install (.+)", text)
     assert set(packages.QT_LIBRARIES.values()) <= set(line.split())

@@ -35,7 +35,7 @@ def recipe(language: str) -> str:
 
 
 @pytest.mark.parametrize("language", RECIPES)
-def test_every_page_stands_once_in_the_list_of_its_site(language: str, pages: Path) -> None:
+def test_every_page_is_once_in_the_list_of_its_site(language: str, pages: Path) -> None:
     listed = re.findall(r"[\w/-]+\.md", recipe(language).partition("nav:\n")[2])
     there = [page.relative_to(pages / language).as_posix() for page in (pages / language).rglob("*.md")]
     assert sorted(listed) == sorted(there)
@@ -47,10 +47,10 @@ def test_the_manual_has_the_order_and_the_groups_of_the_application(language: st
     assert re.findall(r"manual/([\w-]+)\.md", nav) == [str(topic) for topic in Topic]
     use_language(language)
     try:
-        wanted = [group_title(group) for group in TopicGroup]
+        required = [group_title(group) for group in TopicGroup]
     finally:
         use_language("en")
-    assert re.findall(r"(?m)^ {6}- ([^:\n]+):", nav.partition("  - Reference")[0]) == wanted
+    assert re.findall(r"(?m)^ {6}- ([^:\n]+):", nav.partition("  - Reference")[0]) == required
 
 
 @pytest.mark.parametrize("language", RECIPES)

@@ -1,4 +1,4 @@
-"""Is every locked part listed with why it is there, and under the licence that it tells of itself?"""
+"""Is every locked part listed with why it is there, and under the licence that it reports itself?"""
 
 import importlib
 import re
@@ -58,16 +58,16 @@ def test_what_runs_with_the_program_is_not_called_a_tool(soup: ModuleType) -> No
     assert sorted(needed() - soup.locked().keys() - listed - {"keyring"}) == []
 
 
-def test_a_licence_is_the_one_that_the_part_tells_of_itself(soup: ModuleType) -> None:
+def test_a_licence_is_the_one_that_the_part_shows_of_itself(soup: ModuleType) -> None:
     differing = {}
     for part in soup.parts():
         for name, licence in part.names.items():
             try:
-                said = metadata.metadata(name).get_all("License-Expression")
+                stated = metadata.metadata(name).get_all("License-Expression")
             except metadata.PackageNotFoundError:
                 continue
-            if said and said != [licence]:
-                differing[name] = (licence, said)
+            if stated and stated != [licence]:
+                differing[name] = (licence, stated)
     assert differing == {}
 
 
@@ -75,7 +75,7 @@ def test_what_is_missing_or_there_twice_is_named(soup: ModuleType, monkeypatch: 
     monkeypatch.setattr(soup, "locked", lambda: {"numpy": "2.0", "new-part": "1.0", "pytest": "9.0"})
     twice = soup.Soup({"numpy": "BSD", "gone": "MIT", "pytest": "MIT"}, "Figures", "", "", "")
     monkeypatch.setattr(soup, "parts", lambda: [twice])
-    monkeypatch.setattr(soup, "told", lambda: {"development": {"names": ["pytest"]}})
+    monkeypatch.setattr(soup, "reported", lambda: {"development": {"names": ["pytest"]}})
     assert list(soup.faults()) == [
         "pytest is there twice",
         "new-part is locked, and nothing says why",

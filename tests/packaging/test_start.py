@@ -71,7 +71,7 @@ def test_a_changed_lock_or_project_updates_the_environment_in_place(set_up: Modu
     assert [" -m pip " in step for step in set_up.steps] == [True, True]
 
 
-def test_an_environment_whose_set_up_was_cut_short_is_made_anew(
+def test_an_environment_whose_set_up_was_cut_short_is_made_again(
     set_up: ModuleType, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     note = set_up._run_quietly
@@ -93,7 +93,7 @@ def test_an_environment_whose_set_up_was_cut_short_is_made_anew(
     assert not left.exists()
 
 
-def test_an_environment_without_its_python_is_made_anew(set_up: ModuleType) -> None:
+def test_an_environment_without_its_python_is_made_again(set_up: ModuleType) -> None:
     set_up.prepare(is_screen_needed=True)
     set_up.python().unlink()
     set_up.steps.clear()
@@ -101,15 +101,15 @@ def test_an_environment_without_its_python_is_made_anew(set_up: ModuleType) -> N
     assert " -m venv " in set_up.steps[0]
 
 
-def test_libraries_that_may_not_be_installed_are_told_in_one_line_and_stop_only_what_shows_a_window(
+def test_libraries_that_may_not_be_installed_are_reported_in_one_line_and_stop_only_what_shows_a_window(
     set_up: ModuleType, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.setattr(set_up, "missing_libraries", lambda: ["libegl1", "libgl1"])
     monkeypatch.setattr(os, "geteuid", lambda: 1000)
     monkeypatch.setattr(shutil, "which", lambda name: f"/usr/bin/{name}")
-    with pytest.raises(set_up.SetUpError) as told:
+    with pytest.raises(set_up.SetUpError) as reported:
         set_up.prepare(is_screen_needed=True)
-    assert "\n    sudo apt-get update && sudo apt-get install -y libegl1 libgl1" in str(told.value)
+    assert "\n    sudo apt-get update && sudo apt-get install -y libegl1 libgl1" in str(reported.value)
     assert set_up.steps == []
     set_up.prepare(is_screen_needed=False)
     assert set_up.is_current()
@@ -129,7 +129,7 @@ def test_the_superuser_gets_the_libraries_and_what_makes_environments_in_one_ste
 
 @pytest.fixture
 def project(tmp_path: Path) -> Path:
-    """A copy of the start script beside a finished environment, whose Python says how it was called."""
+    """A copy of the start script beside a finished environment, whose Python states how it was called."""
     shutil.copytree(PACKAGING, tmp_path / "packaging", ignore=shutil.ignore_patterns("__pycache__"))
     shutil.copy(PACKAGING.parent / "pyproject.toml", tmp_path)
     _fake_python(tmp_path, 'echo "called $*"; exit "${CODE:-0}"')
@@ -149,7 +149,7 @@ def start(project: Path, *arguments: str, **environment: str) -> subprocess.Comp
     )
 
 
-def test_without_a_screen_the_demonstration_runs_and_its_place_is_told(project: Path) -> None:
+def test_without_a_screen_the_demonstration_runs_and_its_place_is_reported(project: Path) -> None:
     done = start(project)
     assert done.stdout == "called -P -m app demo\n"
     assert str(project / "gaitwright-demo") in done.stderr

@@ -105,7 +105,7 @@ def local_cluster() -> Iterator[Any]:
         "distributed.worker.multiprocessing-method": "forkserver",
     }
     with dask.config.set(settings):
-        get_mp_context().set_forkserver_preload(list(PRELOADED_OF_BOTH))  # after it has said what it would preload
+        get_mp_context().set_forkserver_preload(list(PRELOADED_OF_BOTH))  # after it has stated what it would preload
     with (
         dask.config.set(settings),
         LocalCluster(
@@ -121,9 +121,9 @@ def undisturbed() -> Iterator[tuple[Workers, None]]:
         yield workers, None
 
 
-def stand_ins(count: int, every_s: float, rounds: int, wanted: str, found: BatchKills) -> None:
+def stand_ins(count: int, every_s: float, rounds: int, required: str, found: BatchKills) -> None:
     """Do so many numbers in three ways."""
-    for name, some in ways(every_s, wanted).items():
+    for name, some in ways(every_s, required).items():
         with some as (workers, killer):
             began_s = time.perf_counter()
             given = (StandIn(number, rounds=rounds) for number in range(count))
@@ -140,7 +140,7 @@ def stand_ins(count: int, every_s: float, rounds: int, wanted: str, found: Batch
     compare(found)
 
 
-def sessions(folder: Path, count: int, every_s: float, wanted: str, found: BatchKills) -> None:
+def sessions(folder: Path, count: int, every_s: float, required: str, found: BatchKills) -> None:
     """Do so many sessions in three ways; each is another session."""
     # here, not above: each worker begins with this module, and is killed soon
     from app.cohort.batch.analysed_folder import AnalysisChoices
@@ -152,7 +152,7 @@ def sessions(folder: Path, count: int, every_s: float, wanted: str, found: Batch
 
     choices = AnalysisChoices(Method.ROBUST, 2.0, has_report=False, has_log=False)
     write_swinging(folder / "in", count, most_patients=max(1, count // 3))
-    for name, some in ways(every_s, wanted).items():
+    for name, some in ways(every_s, required).items():
         out = folder / name
         with some as (workers, killer), batch_at(out) as batch:
             began_s = time.perf_counter()
@@ -165,9 +165,9 @@ def sessions(folder: Path, count: int, every_s: float, wanted: str, found: Batch
     compare(found)
 
 
-def ways(every_s: float, wanted: str) -> dict[str, Any]:
+def ways(every_s: float, required: str) -> dict[str, Any]:
     known = {"serial": undisturbed(), "pool": killed_pool(every_s, 1), "dask": killed_cluster(every_s, 2)}
-    return {name: known[name] for name in wanted.split(",")}
+    return {name: known[name] for name in required.split(",")}
 
 
 def note(found: BatchKills, name: str, began_s: float, killer: Killer | None) -> None:
@@ -202,12 +202,12 @@ def main() -> None:
     parser.add_argument("--sessions", type=int, default=1000)
     parser.add_argument("--ways", default="serial,pool,dask")
     parser.add_argument("--every", type=float, default=5.0, metavar="S", help="between two kills")
-    wanted, found = parser.parse_args(), BatchKills()
-    if wanted.stand_ins:
-        stand_ins(wanted.stand_ins, wanted.every, wanted.rounds, wanted.ways, found)
-    if wanted.sessions:
+    required, found = parser.parse_args(), BatchKills()
+    if required.stand_ins:
+        stand_ins(required.stand_ins, required.every, required.rounds, required.ways, found)
+    if required.sessions:
         with tempfile.TemporaryDirectory() as folder:
-            sessions(Path(folder), wanted.sessions, wanted.every, wanted.ways, found)
+            sessions(Path(folder), required.sessions, required.every, required.ways, found)
     print(*found.lines(), sep="\n")
     raise SystemExit(bool(found.faults))
 

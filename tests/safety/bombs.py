@@ -118,7 +118,7 @@ def bombs() -> dict[str, bytes]:
 
 
 def run(formats: Callable[[str], bool] = lambda _: True) -> Outcome:
-    """Read every file as each format, and without being told which."""
+    """Read every file as each format, and without being given which."""
     outcome = Outcome()
     reader = LimitedReader()
     with tempfile.TemporaryDirectory() as name:

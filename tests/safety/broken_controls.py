@@ -4,7 +4,7 @@
     python -m tests.safety.broken_controls R-GAT R-DIF-05     # those whose id begins so
 
 A requirement names its tests (`packaging/safety/requirements.toml`); that they pass shows that the control is there
-only if they fail where it is not. `broken_controls.toml` says how each is taken away. The requirement's tests are run
+only if they fail where it is not. `broken_controls.toml` states how each is taken away. The requirement's tests are run
 as they are first, and then with the control broken: one has to fail. Long tests and shared recordings are left out, so
 that what is shown holds for every run of the default tests.
 """
@@ -60,44 +60,44 @@ class Untouched:
         return source
 
 
-def controls(wanted: list[str]) -> list[BrokenControl]:
-    """Give the controls whose requirement's id begins with one of `wanted`; all without any."""
-    told = tomllib.loads(CONTROLS.read_text(encoding="utf-8"))["broken"]
-    every = [BrokenControl(**one) for one in told]
-    return [one for one in every if not wanted or one.requirement.startswith(tuple(wanted))]
+def controls(required: list[str]) -> list[BrokenControl]:
+    """Give the controls whose requirement's id begins with one of `required`; all without any."""
+    reported = tomllib.loads(CONTROLS.read_text(encoding="utf-8"))["broken"]
+    every = [BrokenControl(**one) for one in reported]
+    return [one for one in every if not required or one.requirement.startswith(tuple(required))]
 
 
 def tests_of_requirements() -> dict[str, list[str]]:
-    told = tomllib.loads(REQUIREMENTS.read_text(encoding="utf-8"))["requirement"]
-    return {one["id"]: one["tests"] for one in told}
+    reported = tomllib.loads(REQUIREMENTS.read_text(encoding="utf-8"))["requirement"]
+    return {one["id"]: one["tests"] for one in reported}
 
 
 def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("requirements", nargs="*", help="beginnings of ids; all without any")
-    wanted = controls(parser.parse_args().requirements)
+    required = controls(parser.parse_args().requirements)
     tests, tree = tests_of_requirements(), Tree(ROOT, PLACE)
     unnoticed: list[BrokenControl] = []
     passed: dict[str, bool] = {}
-    for number, control in enumerate(wanted, start=1):
+    for number, control in enumerate(required, start=1):
         began_s, looking = time.monotonic(), tests[control.requirement]
         if control.requirement not in passed:
             untouched = tree.outcome(Untouched(control.file), looking, MOST_S)
             passed[control.requirement] = untouched.fate is Fate.SURVIVED
         if not passed[control.requirement]:
-            said, killer = "fails as it is", ""
+            stated, killer = "fails as it is", ""
         else:
             outcome = tree.outcome(control, looking, MOST_S)
-            said, killer = (
+            stated, killer = (
                 ("noticed" if outcome.fate is Fate.KILLED else f"not noticed ({outcome.fate})"),
                 outcome.killer,
             )
-        if said != "noticed":
+        if stated != "noticed":
             unnoticed.append(control)
-        told = f"{number}/{len(wanted)} {control.requirement} {said:12} {time.monotonic() - began_s:5.0f} s"
-        print(f"{told}  {control.what}  {killer}", flush=True)
-    noticed = len(wanted) - len(unnoticed)
-    print(f"{noticed} of {len(wanted)} broken controls noticed by the tests of their requirement")
+        reported = f"{number}/{len(required)} {control.requirement} {stated:12} {time.monotonic() - began_s:5.0f} s"
+        print(f"{reported}  {control.what}  {killer}", flush=True)
+    noticed = len(required) - len(unnoticed)
+    print(f"{noticed} of {len(required)} broken controls noticed by the tests of their requirement")
     sys.exit(1 if unnoticed else 0)
 
 

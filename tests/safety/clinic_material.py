@@ -91,7 +91,7 @@ def name_of(address: str) -> str:
 
 
 def rows_of(address: str, query: str) -> list[Row]:
-    """What the server itself says."""
+    """What the server itself states."""
     with psycopg.connect(address) as connection, connection.cursor(row_factory=psycopg.rows.dict_row) as cursor:
         return list(cursor.execute(query.encode()))
 

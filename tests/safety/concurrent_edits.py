@@ -4,7 +4,7 @@
     python -m tests.safety.concurrent_edits --edits 500 --postgres   # a PostgreSQL of its own
     python -m tests.safety.concurrent_edits --url postgresql+psycopg://...   # an empty database
 
-Each station is a process. It edits upon what it was shown last, which is often old, with words and numbers that occur
+Each station is a process. It edits on what it was shown last, which is often old, with words and numbers that occur
 once, and answers what is asked about by chance. Afterwards the histories of both, the rows and the audit have to agree.
 """
 
@@ -38,7 +38,7 @@ DATA_KEY = bytes(range(32))
 STATIONS = ("aa", "bb")
 PATIENTS = 3
 MOST = 10_000_000
-OLD = 0.7  # the share of edits that are made upon what was shown before, not read anew
+OLD = 0.7  # the share of edits that are made on what was shown before, not read again
 NUMBERS = ("height_m", "mass_kg", "zero_rad.left_knee", "zero_rad.right_ankle")
 EDITED: Mapping[str, tuple[str, ...]] = {
     "patients": ("height_m", "mass_kg", "device", "aids"),
@@ -83,8 +83,8 @@ def prepare(url: str) -> list[Thing]:
         for number in range(PATIENTS):
             patient = library.patients.create(Patient(f"P-{number}"))
             visit = library.sessions.create(patient.id, Session(()))
-            told = Recording("walk 1", RecordingKind.WALKING, "walk_1", {})
-            walk = library.recordings.start(visit.id, told, is_simulated=False)
+            reported = Recording("walk 1", RecordingKind.WALKING, "walk_1", {})
+            walk = library.recordings.start(visit.id, reported, is_simulated=False)
             things += [Thing("patients", patient.id), Thing("sessions", visit.id), Thing("recordings", walk.id)]
         return things
 
@@ -102,7 +102,7 @@ def held(library: Library, thing: Thing) -> dict[str, Value]:
 
 
 class Station:
-    """Edits, and notes what was acknowledged: the row, the field, upon what, and what was said."""
+    """Edits, and notes what was acknowledged: the row, the field, on what, and what was stated."""
 
     def __init__(self, code: str, url: str, things: list[Thing], seed: int) -> None:
         self._code, self._things, self._chance = code, things, random.Random(f"{code} {seed}")
@@ -117,28 +117,28 @@ class Station:
             thing = self._chance.choice(self._things)
             if self._chance.random() > OLD:
                 self._shown[thing] = held(self._library, thing)
-            upon = self._shown[thing]
+            base = self._shown[thing]
             names = self._chance.sample(EDITED[thing.table], k=self._chance.randint(1, 3))
-            self._edit(thing, upon, {**upon, **{name: self._value(name, upon[name]) for name in names}})
+            self._edit(thing, base, {**base, **{name: self._value(name, base[name]) for name in names}})
         self._library.close()
 
-    def _edit(self, thing: Thing, upon: Values, said: Values) -> None:
+    def _edit(self, thing: Thing, base: Values, stated: Values) -> None:
         edits = self._library.edits
         edit: Callable[[UUID, Values, Values], Any] = {
             "patients": edits.patient,
             "sessions": edits.session,
             "recordings": edits.recording,
         }[thing.table]
-        edited = edit(thing.id, upon, said)
+        edited = edit(thing.id, base, stated)
         contested = {contest.field for contest in edited.contests}
-        for name, value in said.items():
-            if value != upon[name]:
-                note = {"upon": upon[name], "said": value, "is_contested": name in contested}
+        for name, value in stated.items():
+            if value != base[name]:
+                note = {"upon": base[name], "said": value, "is_contested": name in contested}
                 self.log.append({"row": str(thing.id), "table": thing.table, "field": name, **note})
         self.log += [{"is_merge": True}] * len(edited.others)
         self._shown[thing] = held(self._library, thing)
         asked = [contest for contest in edited.contests if self._chance.random() < 0.5]
-        if asked:  # ours is chosen, upon what the question showed
+        if asked:  # ours is chosen, on what the question showed
             theirs = {contest.field: contest.theirs for contest in asked}
             self._edit(thing, theirs, {contest.field: contest.mine for contest in asked})
 
@@ -161,7 +161,7 @@ def run_station(code: str, url: str, things: list[Thing], edits: int, seed: int,
 
 
 def judge(url: str, things: list[Thing], logs: Mapping[str, list[dict[str, Any]]]) -> EditsJudged:
-    """Compare what both stations were told with histories, rows, versions and audit."""
+    """Compare what both stations were reported with histories, rows, versions and audit."""
     verdict = EditsJudged()
     with open_station(url) as library:
         library.log_in("hk")
@@ -188,7 +188,7 @@ def _judge_patient(
     history = sorted(everything.corrections, key=lambda one: one.id)
     verdict.corrections += len(history)
     taken_back = {one.undoes for one in history} | {one.id for one in history if one.undoes}
-    told = {
+    reported = {
         (code, one["row"], one["field"].partition(".")[0], json.dumps(one["said"])): one
         for code, log in logs.items()
         for one in log
@@ -206,27 +206,27 @@ def _judge_patient(
             values[key] = change.new
             made.add((correction.operator, change.field, change.new))
             name = (correction.operator, str(_owner(change, visits)), change.field, json.dumps(change.new))
-            if correction.id not in taken_back and name in told and told[name]["upon"] != change.old:
+            if correction.id not in taken_back and name in reported and reported[name]["upon"] != change.old:
                 latest = [one for one in _all(logs, name) if one["upon"] == change.old]
                 if not latest:  # a value was overwritten that this station had never been shown
                     verdict.faults.append(f"{name} overwrote {change.old} unseen")
     for row, version in rows.items():
         if versions[row] != version:
             verdict.faults.append(f"{row} has version {version}, {versions[row] - 1} corrections")
-    for (operator, row, name, said), _ in told.items():
+    for (operator, row, name, stated), _ in reported.items():
         if name == "left_out_s":
             continue
         verdict.acknowledged += 1
-        if (operator, name, json.loads(said)) not in made:
-            verdict.faults.append(f"{said} of {operator} is not in the history of {row}")
+        if (operator, name, json.loads(stated)) not in made:
+            verdict.faults.append(f"{stated} of {operator} is not in the history of {row}")
     _judge_strides(library, rows, logs, verdict)
 
 
 def _all(logs: Mapping[str, list[dict[str, Any]]], name: tuple[str, str, str, str]) -> Iterator[dict[str, Any]]:
-    operator, row, column, said = name
+    operator, row, column, stated = name
     for one in logs[operator]:
         is_of_row = "row" in one and one["row"] == row and one["field"].partition(".")[0] == column
-        if is_of_row and json.dumps(one["said"]) == said:
+        if is_of_row and json.dumps(one["said"]) == stated:
             yield one
 
 

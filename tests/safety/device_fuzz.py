@@ -3,9 +3,9 @@
     python -m tests.safety.device_fuzz --frames 1000000 [--bursts]
 
 One message in seven is changed, cut, doubled in part, or has noise before it; the stream is fed in pieces of any size.
-A message that is whole, and begins where a whole one ended or after a whole end of line, has to be heard. With
+A message that is whole, and begins where a whole one ended or after a whole end of line, has to be received. With
 `--bursts` whole blocks are damaged, lost, swapped, repeated or stamped by a clock that leaps (`stream_bursts.py`); then
-a whole message has to be heard that follows two whole ones in their order.
+a whole message has to be received that follows two whole ones in their order.
 """
 
 import argparse
@@ -32,7 +32,7 @@ from devices.stream import Framer, Row
 from tests.safety.stream_bursts import in_bursts
 
 DAMAGED_SHARE = 1 / 7
-FOLLOWS = 2  # whole messages after a burst; the next one must be heard
+FOLLOWS = 2  # whole messages after a burst; the next one must be received
 LONGEST_PIECE = 300
 MOST_HELD = 4096 + LONGEST_PIECE
 SHIMMER3 = SourceInfo(
@@ -59,12 +59,12 @@ class Fuzzed:
     sample: Callable[[int], bytes]
     has_lines: bool
     row: Callable[[bytes], Row] | None = None
-    """What a message tells that is not understood alone."""
+    """What a message reports that is not understood alone."""
 
 
 @dataclass(slots=True)
 class Outcome:
-    """`false` counts samples that were never sent: damage that nothing tells from a measurement."""
+    """`false` counts samples that were never sent: damage that nothing reports from a measurement."""
 
     frames: int = 0
     whole: int = 0
@@ -111,55 +111,59 @@ def drivers() -> dict[str, Fuzzed]:
 
 
 def old_shimmer3() -> Fuzzed:
-    """A Shimmer3 whose packets have no checksum: not every whole one beside damage can be told from it."""
+    """A Shimmer3 whose packets have no checksum: not every whole one beside damage can be distinguished from it."""
     voice, checked = Shimmer3Voice(raw), drivers()["Shimmer3, with checksums"]
     voice.period = 320
     return Fuzzed(
-        lambda: Shimmer3Framer(OLD_SHIMMER3), voice.sample, False, lambda said: row_of(checked, said + checksum(said))
+        lambda: Shimmer3Framer(OLD_SHIMMER3),
+        voice.sample,
+        False,
+        lambda stated: row_of(checked, stated + checksum(stated)),
     )
 
 
 def fuzz(driver: Fuzzed, frames: int, seed: int, *, has_bursts: bool = False) -> Outcome:
     chance, outcome = random.Random(seed), Outcome(frames=frames)
     framer, begin_s = driver.make(), time.monotonic()
-    heard: dict[Row, int] = {}
+    received: dict[Row, int] = {}
     expected: set[Row] = set()
     sent: set[Row] = set()
     waiting = b""
-    for said, sample, is_expected in (_in_bursts if has_bursts else _one_by_one)(driver, frames, chance):
+    for stated, sample, is_expected in (_in_bursts if has_bursts else _one_by_one)(driver, frames, chance):
         if sample:
             sent.add(row := row_of(driver, sample))
             if is_expected:
                 expected.add(row)
                 outcome.whole += 1
-        waiting += said
+        waiting += stated
         while len(waiting) > LONGEST_PIECE:
             size = chance.randint(1, LONGEST_PIECE)
             piece, waiting = waiting[:size], waiting[size:]
-            _feed(framer, piece, heard, outcome)
-    _feed(framer, waiting, heard, outcome)
+            _feed(framer, piece, received, outcome)
+    _feed(framer, waiting, received, outcome)
     framer.flush()
-    _take(framer, heard)
-    outcome.lost = len(expected - heard.keys())
-    outcome.false = len(heard.keys() - sent)
+    _take(framer, received)
+    outcome.lost = len(expected - received.keys())
+    outcome.false = len(received.keys() - sent)
     outcome.seconds = time.monotonic() - begin_s
     return outcome
 
 
-Said = tuple[bytes, bytes, bool]
-"""What is fed, the message of the sample that was to be told, empty where there was none, and whether it must be."""
+Stated = tuple[bytes, bytes, bool]
+"""What is fed, the message of the sample that was to be reported, empty where there was none, and whether it must
+be."""
 
 
-def _one_by_one(driver: Fuzzed, frames: int, chance: random.Random) -> Iterator[Said]:
+def _one_by_one(driver: Fuzzed, frames: int, chance: random.Random) -> Iterator[Stated]:
     is_joined = False  # whether the end of the message before is whole
     for number in range(frames):
         sample = driver.sample(number)
-        said = _damaged(sample, chance) if chance.random() < DAMAGED_SHARE else sample
-        yield said, sample, said == sample and (is_joined or not driver.has_lines)
-        is_joined = said.endswith(b"\n") if driver.has_lines else True
+        stated = _damaged(sample, chance) if chance.random() < DAMAGED_SHARE else sample
+        yield stated, sample, stated == sample and (is_joined or not driver.has_lines)
+        is_joined = stated.endswith(b"\n") if driver.has_lines else True
 
 
-def _in_bursts(driver: Fuzzed, frames: int, chance: random.Random) -> Iterator[Said]:
+def _in_bursts(driver: Fuzzed, frames: int, chance: random.Random) -> Iterator[Stated]:
     follows, before = 0, -1  # how many whole messages in their order came before this one
     for one in in_bursts(driver.sample, frames, chance):
         follows = follows + 1 if one.number is not None and one.number == before + 1 else 0
@@ -167,31 +171,31 @@ def _in_bursts(driver: Fuzzed, frames: int, chance: random.Random) -> Iterator[S
         yield one.data, one.data if one.number is not None else b"", follows >= FOLLOWS
 
 
-def _feed(framer: Framer, piece: bytes, heard: dict[Row, int], outcome: Outcome) -> None:
+def _feed(framer: Framer, piece: bytes, received: dict[Row, int], outcome: Outcome) -> None:
     try:
         framer.feed(piece, 0.0)
     except Exception as error:  # which is what is looked for
         outcome.faults.append(repr(error))
     held = getattr(getattr(framer, "_framer", framer), "_held", getattr(framer, "_rest", b""))
     outcome.most_held = max(outcome.most_held, len(held))
-    _take(framer, heard)
+    _take(framer, received)
 
 
-def _take(framer: Framer, heard: dict[Row, int]) -> None:
-    for row in (row[1:] for row in framer.heard.rows):  # its time depends on those before
-        heard[row] = heard.get(row, 0) + 1
-    framer.heard.rows.clear()
-    framer.heard.replies.clear()
+def _take(framer: Framer, received: dict[Row, int]) -> None:
+    for row in (row[1:] for row in framer.received.rows):  # its time depends on those before
+        received[row] = received.get(row, 0) + 1
+    framer.received.rows.clear()
+    framer.received.replies.clear()
 
 
 def row_of(driver: Fuzzed, sample: bytes) -> Row:
-    """What a whole message tells: rate and force."""
+    """What a whole message reports: rate and force."""
     if driver.row is not None:
         return driver.row(sample)
     framer = driver.make()
     framer.feed((b"\n" if driver.has_lines else b"") + sample, 0.0)
     framer.flush()
-    (row,) = framer.heard.rows
+    (row,) = framer.received.rows
     return row[1:]
 
 
@@ -219,13 +223,13 @@ def _damaged(sample: bytes, chance: random.Random) -> bytes:
 
 def speed(driver: Fuzzed, frames: int = 20_000) -> float:
     """Messages decoded a second, of a clean stream in pieces of 500 bytes."""
-    said = b"".join(driver.sample(number) for number in range(frames))
+    stated = b"".join(driver.sample(number) for number in range(frames))
     framer = driver.make()
     begin_s = time.process_time()
-    for at in range(0, len(said), 500):
-        framer.feed(said[at : at + 500], 0.0)
+    for at in range(0, len(stated), 500):
+        framer.feed(stated[at : at + 500], 0.0)
     framer.flush()
-    assert len(framer.heard.rows) >= frames - 1
+    assert len(framer.received.rows) >= frames - 1
     return frames / (time.process_time() - begin_s)
 
 
@@ -235,12 +239,12 @@ def main() -> int:
     parser.add_argument("--seed", type=int, default=1)
     parser.add_argument("--bursts", action="store_true")
     parser.add_argument("--driver", default="", help="only those whose name has this in it")
-    wanted = parser.parse_args()
+    required = parser.parse_args()
     is_right = True
     for name, driver in drivers().items():
-        if wanted.driver not in name:
+        if required.driver not in name:
             continue
-        outcome = fuzz(driver, wanted.frames, wanted.seed, has_bursts=wanted.bursts)
+        outcome = fuzz(driver, required.frames, required.seed, has_bursts=required.bursts)
         print(f"{name}: {outcome}; {np.round(speed(driver), -2):.0f} messages decoded a second", flush=True)
         is_right &= not outcome.lost and not outcome.faults and outcome.most_held <= MOST_HELD
     return 0 if is_right else 1

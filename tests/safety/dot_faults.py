@@ -5,7 +5,7 @@
 Each run synchronises two to six sensors, streams from them for some seconds, lets them record in their memory, fetches
 and erases, while links are lost at any operation, notifications are lost, doubled, cut and damaged, sensors are busy,
 full, switched off, out of reach, or only say that they are synchronised. Seconds pass at once (`VirtualRadio`), and who
-waits for what never comes is an error. What a sensor took and recorded, and when, is told by itself, float for float.
+waits for what never comes is an error. What a sensor took and recorded, and when, is given by itself, float for float.
 With `--bumble` the links go through Bumble's virtual radio, which has advertisements, ATT and subscriptions of its own.
 """
 
@@ -37,7 +37,7 @@ from tests.devices.dot.virtual_time import VirtualRadio
 from tests.devices.dot.worn_dots import RAD, Through, WornDots, behind_bleak, not_there
 from tests.safety.journal_material import ID, KEY, NO_ROOM_ASKED
 
-TRIES = 12  # of a user who does what is said
+TRIES = 12  # of a user who does what is stated
 LIVE_S, RECORDED_S = 6.0, 5.0
 STAMPED_MS = 50.0  # the least latency of a link, which nobody can see, and what its clock is off by
 SHARED_MS = 2.0
@@ -53,8 +53,8 @@ class DotRuns:
     faults: list[str] = field(default_factory=list)
 
     def __str__(self) -> str:
-        told = ", ".join(f"{count} {what}" for what, count in sorted(self.seen.items()))
-        return f"{len(self.faults)} faults; {told}"
+        reported = ", ".join(f"{count} {what}" for what, count in sorted(self.seen.items()))
+        return f"{len(self.faults)} faults; {reported}"
 
 
 def some_faults(rng: random.Random) -> DotFaults:
@@ -84,7 +84,7 @@ def some_faults(rng: random.Random) -> DotFaults:
 
 
 def run_often(runs: int, seed: int, folder: Path, through: Through = behind_bleak) -> DotRuns:
-    """So many runs, each told by its number."""
+    """So many runs, each reported by its number."""
     every = DotRuns()
     for number in range(runs):
         rng, radio = random.Random(seed + number), VirtualRadio()
@@ -92,7 +92,7 @@ def run_often(runs: int, seed: int, folder: Path, through: Through = behind_blea
             place = folder / str(number)
             place.mkdir()
             every.faults += [f"run {seed + number}: {fault}" for fault in _run(rng, radio, place, every.seen, through)]
-        except Exception:  # what nobody was told to expect is a fault of this run
+        except Exception:  # what nobody was given to expect is a fault of this run
             every.faults.append(f"run {seed + number}: {traceback.format_exc()}")
         finally:
             radio.close()
@@ -117,7 +117,7 @@ def _opened(wearing: WornDots, seen: Counter[str]) -> bool:
             seen["openings refused"] += 1
             for source in wearing.sources:
                 source.close()
-            if attempt == TRIES // 2:  # switched off and on, as the refusal says
+            if attempt == TRIES // 2:  # switched off and on, as the refusal states
                 for dot in wearing.dots:
                     wearing.air.drop(dot)
                     dot.restart()
@@ -163,8 +163,8 @@ def _held_live(
     if len(set(rows)) != len(found):
         return ["a sample that was never taken, or twice"]
     faults, lacking = [], not_there(rows)
-    is_told = one.counts.lost >= lacking if was_restarted else one.counts.lost == lacking
-    if not is_told:
+    is_reported = one.counts.lost >= lacking if was_restarted else one.counts.lost == lacking
+    if not is_reported:
         faults.append(f"{lacking} samples lost, {one.counts.lost} told")
     off_ms = 1e3 * float(np.abs(one.block.time_s - wearing.truth(number)[1][rows]).max())
     seen["ms is the furthest stamp off"] = max(seen["ms is the furthest stamp off"], round(off_ms))
@@ -299,7 +299,7 @@ def _begun(memory: MemoryRecording, wearing: WornDots, seen: Counter[str]) -> bo
             seen["recordings refused"] += 1
             if isinstance(refused, MemoryFullError):
                 for dot in wearing.dots:
-                    dot.memory.room = 10**6  # fetched and erased, as the refusal says
+                    dot.memory.room = 10**6  # fetched and erased, as the refusal states
             elif "clock" in str(refused):
                 seen["synchronised again, for one was switched off"] += 1
                 _made_ready(wearing, seen)
@@ -372,17 +372,17 @@ def main() -> None:
     parser.add_argument("--runs", type=int, default=500)
     parser.add_argument("--seed", type=int, default=0)
     parser.add_argument("--bumble", action="store_true", help="through Bumble's virtual radio")
-    wanted = parser.parse_args()
+    required = parser.parse_args()
     through: Through = behind_bleak
-    if wanted.bumble:
+    if required.bumble:
         from tests.devices.dot.by_bumble import by_bumble
 
         through = by_bumble
     with tempfile.TemporaryDirectory() as folder:
-        every = run_often(wanted.runs, wanted.seed, Path(folder), through)
+        every = run_often(required.runs, required.seed, Path(folder), through)
     for fault in every.faults:
         print(fault)
-    print(f"{wanted.runs} runs: {every}")
+    print(f"{required.runs} runs: {every}")
     sys.exit(bool(every.faults))
 
 

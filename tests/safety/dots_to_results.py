@@ -125,7 +125,7 @@ def run(
 ) -> tuple[Outcome, DotWindowSession]:
     """Lead one session."""
     patient = EmulatedPatient()
-    air, dots = worn_air(patient, 6, says_so=False)
+    air, dots = worn_air(patient, 6, states_so=False)
     radio = Radio(air.backend, air.announced)
     if by_bumble:
         virtual = BumbleAir(dots)
@@ -143,11 +143,13 @@ def run(
         analysis = lead(session, KIND, ask, walks)
         assert all(dot.is_synchronised for dot in dots)
         when_ns = np.arange(patient.clips[0].start_ns, host_time_ns(), 1e9 / FINE_HZ)
-        told: dict[str, FloatArray] = {"when_s": when_ns / 1e9}
-        told |= {f"truth {joint}": np.array([patient.angle_rad(joint, at) for at in when_ns]) for joint in LEG_JOINTS}
+        reported: dict[str, FloatArray] = {"when_s": when_ns / 1e9}
+        reported |= {
+            f"truth {joint}": np.array([patient.angle_rad(joint, at) for at in when_ns]) for joint in LEG_JOINTS
+        }
         for dot, site in zip(dots, LEG_SITES, strict=True):
-            told |= _taken(dot, site)
-        found: Mapping[str, FloatArray] = told
+            reported |= _taken(dot, site)
+        found: Mapping[str, FloatArray] = reported
         return outcome_of(KIND, session.visit, analysis, found, folder / "library"), session
 
 
@@ -168,14 +170,16 @@ def main() -> int:
     parser.add_argument("--memory", action="store_true", help="record walks in the sensors")
     parser.add_argument("--bumble", action="store_true", help="through Bumble's virtual radio")
     parser.add_argument("--shots", type=Path, metavar="FOLDER", help="write pictures of the window there")
-    wanted = parser.parse_args()
+    required = parser.parse_args()
     application = QApplication([])
     application.setStyle("Fusion")
     load_fonts()
-    outcome, session = run(application, wanted.walks, wanted.shots, in_memory=wanted.memory, by_bumble=wanted.bumble)
+    outcome, session = run(
+        application, required.walks, required.shots, in_memory=required.memory, by_bumble=required.bumble
+    )
     print(outcome, flush=True)
     print(f"synchronised in {', '.join(f'{one:.0f}' for one in session.synchronised_s)} s", flush=True)
-    if wanted.memory:
+    if required.memory:
         fetched = ", ".join(f"{one:.0f}" for one in session.fetched_s)
         print(f"fetched in {fetched} s over {session.breaks} broken links", flush=True)
     apart_ms = max(float(np.ptp(late)) for late in outcome.late_ms.values())

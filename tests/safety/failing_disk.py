@@ -1,4 +1,4 @@
-"""A disk that fails when it is told to: a folder seen through FUSE, which then refuses what is written.
+"""A disk that fails when it is given to: a folder seen through FUSE, which then refuses what is written.
 
 `with failing_disk(folder) as disk:` and `disk.fail(EIO, after=3)`: the fourth write or sync, and all that follow, are
 refused with EIO; with EROFS whatever would change the disk is, as after it was remounted read-only. Reading goes on.
@@ -64,11 +64,11 @@ FILLER = CFUNCTYPE(c_int, c_void_p, c_char_p, c_void_p, c_int64, c_uint)
 
 
 class _Below:
-    """Passes each operation on to the folder below, unless it is told to refuse it."""
+    """Passes each operation on to the folder below, unless it is given to refuse it."""
 
-    def __init__(self, folder: Path, told: Path) -> None:
-        self._folder, self._told = folder, told
-        self._heard, self._writes = "", 0  # what was told, and the writes since
+    def __init__(self, folder: Path, reported: Path) -> None:
+        self._folder, self._reported = folder, reported
+        self._received, self._writes = "", 0  # what was reported, and the writes since
         self._libc = ctypes.CDLL(None, use_errno=True)
         for name in ("pread", "pwrite"):
             getattr(self._libc, name).argtypes = [c_int, c_void_p, c_size_t, c_int64]
@@ -81,14 +81,14 @@ class _Below:
         return c_char_p(os.fsencode(self._path(path)))
 
     def _refuse(self, *, is_content: bool) -> None:
-        """Raise what was told, once so many writes were let through."""
+        """Raise what was reported, once so many writes were let through."""
         try:
-            told = self._told.read_text()
+            reported = self._reported.read_text()
         except FileNotFoundError:
             return
-        if told != self._heard:
-            self._heard, self._writes = told, 0
-        number, after, _ = map(int, told.split())
+        if reported != self._received:
+            self._received, self._writes = reported, 0
+        number, after, _ = map(int, reported.split())
         if is_content or number == EROFS:
             self._writes += 1
             if self._writes > after:
@@ -188,13 +188,13 @@ def _answering(operation: Callable[..., int | None]) -> Callable[..., int]:
     return answer
 
 
-def serve(below: Path, seen: Path, told: Path) -> int:
+def serve(below: Path, seen: Path, reported: Path) -> int:
     """Be the file system at `seen` until it is unmounted."""
     kinds: dict[str, Any] = {
         name: CFUNCTYPE(c_int, *arguments) if arguments else c_void_p for name, arguments in OPERATIONS
     }
     table = type("Operations", (ctypes.Structure,), {"_fields_": list(kinds.items())})()
-    folder = _Below(below, told)
+    folder = _Below(below, reported)
     for name, arguments in OPERATIONS:
         if arguments:
             setattr(table, name, kinds[name](_answering(getattr(folder, name))))
@@ -210,17 +210,17 @@ def serve(below: Path, seen: Path, told: Path) -> int:
 class FailingDisk:
     """`folder`: what is on the disk, as whoever uses it sees it."""
 
-    def __init__(self, folder: Path, told: Path) -> None:
-        self.folder, self._told = folder, told
+    def __init__(self, folder: Path, reported: Path) -> None:
+        self.folder, self._reported = folder, reported
 
     def fail(self, number: int, after: int = 0) -> None:
         """Refuse with this error, once so many writes were let through."""
-        beside = self._told.with_suffix(".new")
+        beside = self._reported.with_suffix(".new")
         beside.write_text(f"{number} {after} {time.monotonic_ns()}")
-        beside.replace(self._told)
+        beside.replace(self._reported)
 
     def mend(self) -> None:
-        self._told.unlink(missing_ok=True)
+        self._reported.unlink(missing_ok=True)
 
 
 def missing() -> str:
@@ -238,11 +238,11 @@ def missing() -> str:
 
 @contextmanager
 def failing_disk(folder: Path) -> Iterator[FailingDisk]:
-    """An empty disk in `folder`, which works until it is told to fail."""
-    below, seen, told = folder / "below", folder / "seen", folder / "told"
+    """An empty disk in `folder`, which works until it is given to fail."""
+    below, seen, reported = folder / "below", folder / "seen", folder / "told"
     below.mkdir()
     seen.mkdir()
-    command = [sys.executable, "-m", "tests.safety.failing_disk", *map(str, (below, seen, told))]
+    command = [sys.executable, "-m", "tests.safety.failing_disk", *map(str, (below, seen, reported))]
     with subprocess.Popen(command, cwd=Path(__file__).parents[2]) as serving:
         try:
             give_up_s = time.monotonic() + PATIENCE_S
@@ -250,9 +250,9 @@ def failing_disk(folder: Path) -> Iterator[FailingDisk]:
                 if serving.poll() is not None or time.monotonic() > give_up_s:
                     raise OSError(EIO, "the disk was not mounted")
                 time.sleep(0.01)
-            yield FailingDisk(seen, told)
+            yield FailingDisk(seen, reported)
         finally:
-            told.unlink(missing_ok=True)
+            reported.unlink(missing_ok=True)
             subprocess.run(["fusermount3", "-u", "-z", seen], check=False)
             try:
                 serving.wait(PATIENCE_S)

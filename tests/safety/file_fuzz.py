@@ -220,7 +220,7 @@ def read_export(reader: LimitedReader, folder: Path) -> object:
 
 
 def read_unnamed(reader: LimitedReader, folder: Path) -> object:
-    """The format told by the content, as without --as."""
+    """The format reported by the content, as without --as."""
     trial = LimitedReading(reader, nobody).read_trial("", [folder / "export.csv"], None)
     return place_trial(trial, {Site.LEFT_THIGH: "A"}, "walk 1")
 
@@ -556,11 +556,11 @@ def main() -> int:
     parser.add_argument("--files", type=int, default=10_000)
     parser.add_argument("--seed", type=int, default=1)
     parser.add_argument("--importer", choices=tuple(importers()), action="append")
-    wanted = parser.parse_args()
+    required = parser.parse_args()
     reader = LimitedReader()
     faults = 0
-    for name in wanted.importer or importers():
-        found = fuzz(importers()[name], wanted.files, wanted.seed, reader)
+    for name in required.importer or importers():
+        found = fuzz(importers()[name], required.files, required.seed, reader)
         print(f"{name}: {found}", *found.faults[:10], sep="\n  ", flush=True)
         faults += len(found.faults)
     reader.close()

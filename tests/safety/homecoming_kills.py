@@ -54,10 +54,10 @@ def bring_home_killed(folder: Path, count: int, seed: int) -> Homecomings:
 def _come_home(opened: OpenedLibrary, rng: random.Random, found: Homecomings) -> None:
     assert opened.shelter is not None
     shelter = opened.shelter.made()
-    wanted = {}
+    required = {}
     for _ in range(JOURNALS):
         path = record_some(shelter, KEY, recording_id=uuid7(), rounds=ROUNDS).path
-        wanted[path.name] = path.read_bytes()
+        required[path.name] = path.read_bytes()
     while shelter.exists():
         child = os.fork()
         if not child:
@@ -69,13 +69,13 @@ def _come_home(opened: OpenedLibrary, rng: random.Random, found: Homecomings) ->
         if os.WIFSIGNALED(status):
             found.kills += 1
             names = {path.name for path in shelter.glob("*")} if shelter.exists() else set()
-            found.amid += names != set(wanted) and bool(names)
+            found.amid += names != set(required) and bool(names)
         elif os.waitstatus_to_exitcode(status):
             found.faults.append("it ended by itself, and not well")
             return
     got = {path.name: path.read_bytes() for path in opened.recordings.iterdir()}
-    found.faults += [f"{name} is not as it was" for name in wanted if got.get(name) != wanted[name]]
-    found.faults += [f"{name} is nobody's" for name in got.keys() - wanted.keys()]
+    found.faults += [f"{name} is not as it was" for name in required if got.get(name) != required[name]]
+    found.faults += [f"{name} is nobody's" for name in got.keys() - required.keys()]
     for path in opened.recordings.iterdir():
         path.unlink()
 
@@ -84,11 +84,11 @@ def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("--count", type=int, default=500)
     parser.add_argument("--seed", type=int, default=1)
-    wanted = parser.parse_args()
+    required = parser.parse_args()
     with tempfile.TemporaryDirectory() as folder:
         os.environ["XDG_DATA_HOME"] = folder
         root_module.SHELTERS = f"kill test {os.getpid()}"  # of no library of this user's, on any system
-        found = bring_home_killed(Path(folder), wanted.count, wanted.seed)
+        found = bring_home_killed(Path(folder), required.count, required.seed)
     print(found)
     for fault in found.faults:
         print(f"- {fault}")

@@ -3,7 +3,7 @@
     python -m tests.safety.hostile_names --count 500
 
 Each name makes a report and a folder of results. In the report's PDF nothing may be alive (no link, no action, no
-script, no file), and every number and every word that nobody typed stands as in a report with plain names; in the
+script, no file), and every number and every word that nobody typed is as in a report with plain names; in the
 tables of the results no cell of a name may begin as a formula does.
 """
 
@@ -117,7 +117,7 @@ def named(plain_visit: AnalysedVisit, name: str) -> ReportRequest:
 
 
 def numbers_and_figures(data: dict[str, Any]) -> list[Any]:
-    """Give what nobody typed: every table's cells, every picture, what page one tells but of whom."""
+    """Give what nobody typed: every table's cells, every picture, what page one reports but of whom."""
     first = data["first_page"]
     found: list[Any] = [first[name] for name in ("readable", "curves", "quality")]
     for block in (*first["key_numbers"], *(block for page in data["pages"] for block in page)):
@@ -180,8 +180,8 @@ def try_names(count: int) -> Trial:
     for name in names(count):
         trial.names += 1
         request = named(plain_visit, name)
-        said = json.dumps(numbers_and_figures(report_data(request)), ensure_ascii=False)
-        if said != json.dumps(expected_data, ensure_ascii=False):
+        stated = json.dumps(numbers_and_figures(report_data(request)), ensure_ascii=False)
+        if stated != json.dumps(expected_data, ensure_ascii=False):
             trial.changed.append(name)
         pdf = make_report(request)
         if texts(pdf) != expected:

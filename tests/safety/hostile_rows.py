@@ -5,7 +5,7 @@
 The hostile station has its own login and SQL; the honest one, before or amid whose work rows are changed, opens the
 library, edits, hands over what it recorded, reads all there is and destroys what is overdue. Then all is put back.
 `AT_ONCE` rows are changed together; where the honest station ends with a sentence, half of them, down to one, since the
-first sentence hides what comes after it. A change that was told before is made alone. A fault is anything but a
+first sentence hides what comes after it. A change that was reported before is made alone. A fault is anything but a
 sentence for the user, samples of a recording that were never recorded in it, and any file that was made, changed or
 removed outside of the honest station's folder and the shared place.
 """
@@ -67,7 +67,7 @@ TIMES = ("0001-01-01", "9999-12-31 23:59:59+14", "infinity", "-infinity", "1970-
 UUIDS = ("00000000-0000-0000-0000-000000000000", "ffffffff-ffff-ffff-ffff-ffffffffffff")
 
 
-TOLD_EVERY = 500
+REPORTED_EVERY = 500
 AT_ONCE = 8
 STEPS = 4  # of the honest station's work, before each of which rows may be changed
 
@@ -81,11 +81,11 @@ class Outcome:
     refused
         By the server, or there was no row.
     sentences
-        Told to the user of the honest station, or found in its audit.
+        Reported to the user of the honest station, or found in its audit.
     same
         That station read what it would have read without the change, nor with those that were made with it.
     shown
-        It may have read the row as it stands now, which is a value that each station may write.
+        It may have read the row as it is now, which is a value that each station may write.
     days
         How often the honest station worked.
     """
@@ -185,7 +185,7 @@ def work(folder: Path, key: DataKey, read: Read) -> Generator[None]:
 
 
 def _digests(recording: Recording) -> frozenset[bytes]:
-    """One for each sensor, wherever it is said to have been worn."""
+    """One for each sensor, wherever it is stated to have been worn."""
     blocks = recording.imu.values()
     return frozenset(sha256(block.gyr_rad_s.tobytes() + block.acc_m_s2.tobytes()).digest() for block in blocks)
 
@@ -195,7 +195,7 @@ class Attack:
 
     def __init__(self, root: Path, server: OwnServer) -> None:
         self._clinic = make_clinic(root / "clinic", server)
-        self.told = set[str]()  # what ended in a sentence before
+        self.reported = set[str]()  # what ended in a sentence before
         hostile_station, self._folder = self._clinic.stations
         station = station_of(hostile_station)
         assert station is not None
@@ -260,11 +260,11 @@ class Attack:
         """Change rows before that step of the other station's work, put all back, and look closer where it stopped."""
         what = " and ".join(change.what for change in changes)
         outcome.days += 1
-        is_told = False
+        is_reported = False
         try:
             read = self._read(changes, at_step)
         except SENTENCES:
-            is_told = True
+            is_reported = True
         except Exception as error:  # the fault that is looked for
             outcome.faults.append(f"{what}: {type(error).__name__} {error!s:.300}")
         else:
@@ -278,12 +278,12 @@ class Attack:
         if self._files() != self._before:
             outcome.faults.append(f"{what}: a file outside was touched")
         self._restore()
-        if is_told and len(changes) > 1:
+        if is_reported and len(changes) > 1:
             half = len(changes) // 2
             self.make(changes[:half], at_step, outcome)
             self.make(changes[half:], at_step, outcome)
-        elif is_told:
-            self.told.add(what)
+        elif is_reported:
+            self.reported.add(what)
             outcome.sentences += 1
 
     def _read(self, changes: Sequence[Change], at_step: int) -> Read:
@@ -313,8 +313,8 @@ class Attack:
         for _ in work(self._folder, self._key, Read()):
             """A first day: all journals are fetched."""
         with logged_in(self._folder, self._key, "hk") as opened:  # one is left to be handed over
-            told = Recording("walk here", RecordingKind.WALKING, "walk_here", {})
-            row = opened.library.recordings.start(kept.id, told, is_simulated=False)
+            reported = Recording("walk here", RecordingKind.WALKING, "walk_here", {})
+            row = opened.library.recordings.start(kept.id, reported, is_simulated=False)
             summary = record_some(opened.recordings, self._key, recording_id=row.id)
             header = read_header(summary.path)
             opened.library.recordings.add_journal(row.id, StoredJournal(row.id, header.segment, header.wrapped_key))
@@ -360,14 +360,14 @@ def run(changes: int, seed: int) -> Outcome:
     waiting: list[Change] = []
     with attack() as attacked:
         for number in range(changes):
-            if number and number % TOLD_EVERY == 0:
+            if number and number % REPORTED_EVERY == 0:
                 print(outcome, *outcome.faults[-3:], sep="\n", flush=True)
             table, column = columns()[number] if number < len(columns()) else draw.choice(columns())
             change = attacked.draw_change(table, column, draw)
             outcome.changes += 1
             if not attacked.takes(change):
                 outcome.refused += 1
-            elif change.what in attacked.told:
+            elif change.what in attacked.reported:
                 attacked.make([change], draw.randrange(STEPS), outcome)
             else:
                 waiting.append(change)

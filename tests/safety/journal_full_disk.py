@@ -31,16 +31,16 @@ PATIENCE_S = 30.0
 
 @dataclass(slots=True)
 class Fills:
-    """`said_ms` after the last record that is kept was put in; `footers` of journals closed with one."""
+    """`stated_ms` after the last record that is kept was put in; `footers` of journals closed with one."""
 
-    said_ms: list[float] = field(default_factory=list)
+    stated_ms: list[float] = field(default_factory=list)
     footers: int = 0
     faults: list[str] = field(default_factory=list)
 
     def __str__(self) -> str:
         return (
-            f"{len(self.said_ms)} full disks, {len(self.faults)} journals at fault, {self.footers} with a footer; "
-            f"said after {np.median(self.said_ms):.0f} ms (median), {max(self.said_ms):.0f} ms (max)"
+            f"{len(self.stated_ms)} full disks, {len(self.faults)} journals at fault, {self.footers} with a footer; "
+            f"said after {np.median(self.stated_ms):.0f} ms (median), {max(self.stated_ms):.0f} ms (max)"
         )
 
 
@@ -92,14 +92,14 @@ def fill_often(count: int, seed: int) -> Fills:
 
 
 def fill_once(folder: Path, piece_bytes: int, room: Room, fills: Fills) -> str:
-    """Record some 30 MB/s until the journal says that it stopped; what is wrong with what is kept, if anything is."""
-    said: list[tuple[Trouble, int]] = []
+    """Record some 30 MB/s until the journal states that it stopped; what is wrong with what is kept, if anything is."""
+    stated: list[tuple[Trouble, int]] = []
     journal = JournalWriter.create(
-        folder, ID, KEY, room=room, on_trouble=lambda trouble: said.append((trouble, host_time_ns()))
+        folder, ID, KEY, room=room, on_trouble=lambda trouble: stated.append((trouble, host_time_ns()))
     )
     source = journal.source(LINES)
     begin_s, number, sent_bytes = time.monotonic(), 0, 0
-    while journal.status.state is State.RECORDING and not said:
+    while journal.status.state is State.RECORDING and not stated:
         if time.monotonic() - begin_s > PATIENCE_S:
             journal.stop()
             return "it never stopped"
@@ -109,13 +109,13 @@ def fill_once(folder: Path, piece_bytes: int, room: Room, fills: Fills) -> str:
     summary = journal.stop()
     records, damages, report = read_all(summary.path, KEY)
     kept = [record for record in records if record.kind is RecordKind.BYTES]
-    fills.said_ms.append((said[0][1] - kept[-1].time_ns) / 1e6)
+    fills.stated_ms.append((stated[0][1] - kept[-1].time_ns) / 1e6)
     fills.footers += report.footer is not None
     # a disk may be seen to be full to the last byte before it refuses one
     expected = (Trouble.NO_ROOM,) if room.kept_bytes else (Trouble.DISK_FULL, Trouble.NO_ROOM)
     wrong = {
-        f"said {said}": len(said) != 1 or said[0][0] not in expected,
-        f"said after {fills.said_ms[-1]:.0f} ms": fills.said_ms[-1] > 1000,
+        f"said {stated}": len(stated) != 1 or stated[0][0] not in expected,
+        f"said after {fills.stated_ms[-1]:.0f} ms": fills.stated_ms[-1] > 1000,
         f"damaged: {damages}": bool(damages),
         "not what was put in": [record.payload[2:] for record in kept]
         != [_piece(k, piece_bytes) for k in range(len(kept))],
@@ -136,9 +136,9 @@ def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("--count", type=int, default=200)
     parser.add_argument("--seed", type=int, default=1)
-    told = parser.parse_args()
+    reported = parser.parse_args()
     print("an 8 MB tmpfs" if can_mount() else "files of 8 MB at most")
-    fills = fill_often(told.count, told.seed)
+    fills = fill_often(reported.count, reported.seed)
     print(fills, *fills.faults, sep="\n")
 
 

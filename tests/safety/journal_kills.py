@@ -97,7 +97,8 @@ def judge(folder: Path) -> tuple[float, str]:
 
 
 def serve() -> None:
-    """Fork a recorder for every folder that is named, tell its number, and how it ended: forking saves the imports."""
+    """Fork a recorder for every folder that is named, report its number, and how it ended: forking saves the
+    imports."""
     for folder in sys.stdin:
         child = os.fork()
         if child == 0:
@@ -130,12 +131,12 @@ def main() -> None:
     parser.add_argument("--count", type=int, default=1000)
     parser.add_argument("--seed", type=int, default=1)
     parser.add_argument("--serve", action="store_true", help=argparse.SUPPRESS)
-    told = parser.parse_args()
-    if told.serve:
+    reported = parser.parse_args()
+    if reported.serve:
         serve()
         return
     with tempfile.TemporaryDirectory() as folder:
-        kills = kill_often(Path(folder), told.count, told.seed)
+        kills = kill_often(Path(folder), reported.count, reported.seed)
     print(kills, *kills.faults, sep="\n")
 
 

@@ -25,7 +25,7 @@ NAMES = tuple(f"sensor-{k}" for k in range(6))
 
 
 def block(sensor: str, first: int, count: int = 1, rate_hz: float = RATE_HZ) -> ImuBlock:
-    """`count` samples from number `first` on, all values told by their number."""
+    """`count` samples from number `first` on, all values reported by their number."""
     number = np.arange(first, first + count, dtype=float)
     return ImuBlock(
         sensor=sensor,
@@ -72,7 +72,7 @@ def line(number: int) -> bytes:
 
 
 class LineDecoder:
-    """Decodes `line`: comma-separated values, one sample a line, lost ones told by their number."""
+    """Decodes `line`: comma-separated values, one sample a line, lost ones reported by their number."""
 
     def __init__(self) -> None:
         self._rate_hz = RATE_HZ

@@ -120,7 +120,7 @@ DAMAGES: tuple[Damaging, ...] = (
     shuffled_blocks,
     earlier_pieces,
 )
-IN_PLACE = (cut, blank, scribble, flip, stranger_blocks)  # what they do not touch stands where it stood
+IN_PLACE = (cut, blank, scribble, flip, stranger_blocks)  # what they do not touch is where it stood
 
 
 def tail_blocks(content: bytearray, synced: int) -> list[slice]:
@@ -192,14 +192,14 @@ def main() -> None:
     parser.add_argument("--tails", type=int, default=20_000)
     parser.add_argument("--flips", type=int, default=10_000)
     parser.add_argument("--seed", type=int, default=1)
-    told = parser.parse_args()
+    reported = parser.parse_args()
     with tempfile.TemporaryDirectory() as folder:
-        tails = tear_often(Path(folder), told.tails, told.seed)
+        tails = tear_often(Path(folder), reported.tails, reported.seed)
         print(tails, *tails.faults, sep="\n")
     for key in (KEY, None):
         with tempfile.TemporaryDirectory() as folder:
-            unnoticed = unnoticed_flips(Path(folder), told.flips, told.seed, key)
-        print(f"{told.flips} flipped bits in a {'sealed' if key else 'open'} journal: {len(unnoticed)} not noticed")
+            unnoticed = unnoticed_flips(Path(folder), reported.flips, reported.seed, key)
+        print(f"{reported.flips} flipped bits in a {'sealed' if key else 'open'} journal: {len(unnoticed)} not noticed")
 
 
 if __name__ == "__main__":

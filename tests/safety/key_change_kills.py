@@ -47,8 +47,8 @@ def make(folder: Path) -> None:
         visit = library.sessions.create(patient.id, Session((), started="2026-11-20T09:00:00"))
         opened = OpenedLibrary(library, folder, data_key)
         for number in range(JOURNALS):
-            told = Recording(f"walk {number}", RecordingKind.WALKING, f"walk_{number}", {})
-            row = library.recordings.start(visit.id, told, is_simulated=False)
+            reported = Recording(f"walk {number}", RecordingKind.WALKING, f"walk_{number}", {})
+            row = library.recordings.start(visit.id, reported, is_simulated=False)
             with JournalWriter.create(opened.recordings, row.id, data_key) as writer:
                 for k in range(2000):
                     writer.mark(f"mark {k} of journal {number}")
@@ -112,8 +112,8 @@ def main() -> int:
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("--count", type=int, default=100, help="kills at random instants")
     parser.add_argument("--seed", type=int, default=7)
-    wanted = parser.parse_args()
-    rng = random.Random(wanted.seed)
+    required = parser.parse_args()
+    rng = random.Random(required.seed)
     kills = new = at_fault = 0
     with tempfile.TemporaryDirectory() as place:
         untouched = Path(place) / "untouched"
@@ -121,7 +121,7 @@ def main() -> int:
         whole_s = -time.monotonic()
         kill_in_child(Path(shutil.copytree(untouched, Path(place) / "timed")), 0, 0.0)
         whole_s += time.monotonic()
-        runs = [(k, 0.0) for k in range(1, 1000)] + [(0, rng.uniform(0.001, whole_s)) for _ in range(wanted.count)]
+        runs = [(k, 0.0) for k in range(1, 1000)] + [(0, rng.uniform(0.001, whole_s)) for _ in range(required.count)]
         is_through = False
         for number, (at_event, after_s) in enumerate(runs):
             if at_event and is_through:

@@ -96,7 +96,7 @@ controller.finish()
 
 @dataclass(frozen=True, slots=True)
 class Copies:
-    """How often a key stands in a process's memory."""
+    """How often a key is in a process's memory."""
 
     raw: int
     lower_hex: int
@@ -153,12 +153,12 @@ def measured(place: Path, locks: int) -> list[tuple[str, Copies]]:
 def main() -> int:
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("--locks", type=int, default=3)
-    wanted = parser.parse_args()
+    required = parser.parse_args()
     with tempfile.TemporaryDirectory() as place:
-        found = measured(Path(place), wanted.locks)
+        found = measured(Path(place), required.locks)
     for state, copies in found:
         print(f"{state}: {copies}")
-    return 1 if len(found) != 2 * wanted.locks + 1 or any(c.all for state, c in found if state == "locked") else 0
+    return 1 if len(found) != 2 * required.locks + 1 or any(c.all for state, c in found if state == "locked") else 0
 
 
 if __name__ == "__main__":

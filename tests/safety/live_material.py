@@ -21,7 +21,7 @@ TICK_S = 0.001
 
 
 class Clock:
-    """The host's clock, injected: it goes on where somebody sleeps by it, and when it is told to."""
+    """The host's clock, injected: it goes on where somebody sleeps by it, and when it is given to."""
 
     def __init__(self) -> None:
         self.time_ns = 5_000_000_000_000
@@ -64,18 +64,18 @@ def gaps_of(decoded: DecodedSensor) -> list[int]:
     return [step - 1 for step in (np.diff(number) % LOOP).tolist() if step != 1]
 
 
-def faults_of(sensors: Mapping[str, DecodedSensor], wanted: Mapping[str, int]) -> list[str]:
+def faults_of(sensors: Mapping[str, DecodedSensor], required: Mapping[str, int]) -> list[str]:
     """What is wrong with sensors that should have so many gaps each: nothing, where each gap is right to a sample."""
     faults = []
-    for name, gaps in wanted.items():
+    for name, gaps in required.items():
         decoded = sensors.get(name)
         if decoded is None:
             faults.append(f"{name} is not there")
             continue
         found, time_s = gaps_of(decoded), decoded.block.time_s
-        told = [round(step * RATE_HZ) - 1 for step in np.diff(time_s).tolist() if step > 1.5 / RATE_HZ]
+        reported = [round(step * RATE_HZ) - 1 for step in np.diff(time_s).tolist() if step > 1.5 / RATE_HZ]
         if time_s[0] < 0 or not all(later > earlier for earlier, later in pairwise(time_s.tolist())):
             faults.append(f"{name}: its times go back")
-        if len(found) != gaps or told != found or decoded.counts.lost != sum(found):
-            faults.append(f"{name}: {found} are missing, {told} by its clock, {decoded.counts.lost} counted")
+        if len(found) != gaps or reported != found or decoded.counts.lost != sum(found):
+            faults.append(f"{name}: {found} are missing, {reported} by its clock, {decoded.counts.lost} counted")
     return faults

@@ -32,7 +32,7 @@ ALLOWED_MB = 20.0
 
 @dataclass(frozen=True, slots=True)
 class Held:
-    """What the process holds. Where the system does not tell, 0."""
+    """What the process holds. Where the system does not report, 0."""
 
     rss_mb: float
     threads: int
@@ -85,7 +85,11 @@ class Adding:
 
 
 def record_long(
-    folder: Path, hours: float, speed: float = 1.0, warm_s: float = WARM_S, tell: Callable[[str], object] = print
+    folder: Path,
+    hours: float,
+    speed: float = 1.0,
+    warm_s: float = WARM_S,
+    show_message: Callable[[str], object] = print,
 ) -> LongRun:
     """Record for so long by the sensors' clock, pulling what a screen pulls."""
     source = ReplaySource(numbered_session("long", SENSORS), speed=speed)
@@ -105,7 +109,7 @@ def record_long(
             handles=max(most.handles, held.handles),
             none_references=max(most.none_references, held.none_references),
         )
-        tell(f"{acquisition.now_s / 3600:.2f} h {held}")
+        show_message(f"{acquisition.now_s / 3600:.2f} h {held}")
     core_share = (time.process_time() - begin_cpu_s) / (time.monotonic() - begin_s)
     after = Held.now()
     live = acquisition.status()
@@ -149,9 +153,9 @@ def main() -> int:
     parser.add_argument("--hours", type=float, default=2.0)
     parser.add_argument("--speed", type=float, default=1.0)
     parser.add_argument("--folder", type=Path, help="a disk with room for 1.5 GB per hour of 20 times the speed")
-    wanted = parser.parse_args()
-    with tempfile.TemporaryDirectory(prefix="gaitwright-long-", dir=wanted.folder) as folder:
-        run = record_long(Path(folder), wanted.hours, wanted.speed)
+    required = parser.parse_args()
+    with tempfile.TemporaryDirectory(prefix="gaitwright-long-", dir=required.folder) as folder:
+        run = record_long(Path(folder), required.hours, required.speed)
     for fault in run.faults:
         print(fault)
     print(run)

@@ -31,7 +31,7 @@ from app.storage.layout import DATABASE
 from app.storage.opened import logged_in, slots_of
 from tests.safety.clinic_material import OPERATORS, PASSPHRASE, make_library, silent
 
-TIMED = ("audit", "alembic_version")  # a login is added to the one, the other tells the version
+TIMED = ("audit", "alembic_version")  # a login is added to the one, the other reports the version
 Rows = Mapping[str, tuple[tuple[str, ...], list[tuple[object, ...]]]]
 
 
@@ -168,13 +168,13 @@ def count_statements(folder: Path, key: DataKey) -> tuple[int, float]:
     return seen[0], time.monotonic() - begin_s
 
 
-def update_killed(place: Path, count: int, seed: int, wanted: tuple[str, ...] = ()) -> Kills:
-    """Kill the update from each earlier version (or the `wanted`) `count` times, half of them at statements."""
+def update_killed(place: Path, count: int, seed: int, required: tuple[str, ...] = ()) -> Kills:
+    """Kill the update from each earlier version (or the `required`) `count` times, half of them at statements."""
     rng, found = random.Random(seed), Kills()
     newest = place / "newest"
     key = make(newest)
     recorded = samples_of(newest, key)
-    for step in wanted or steps()[:-1]:
+    for step in required or steps()[:-1]:
         found.libraries += 1
         earlier, whole = place / step, place / f"{step}-whole"
         shutil.copytree(newest, earlier)
@@ -201,8 +201,8 @@ def update_killed(place: Path, count: int, seed: int, wanted: tuple[str, ...] = 
                 "samples lost": samples_of(folder, key) != recorded,
                 "other rows than without a kill": rows_of(folder, key) != (NEWEST, expected),
             }
-            told = f"{step}, statement {at_statement}, {after_s:.3f} s"
-            found.faults += [f"{told}: {what}" for what, is_wrong in wrong.items() if is_wrong]
+            reported = f"{step}, statement {at_statement}, {after_s:.3f} s"
+            found.faults += [f"{reported}: {what}" for what, is_wrong in wrong.items() if is_wrong]
             shutil.rmtree(folder)
     return found
 

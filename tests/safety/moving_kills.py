@@ -44,7 +44,7 @@ TABLES = [
     *("patients", "sessions", "joints", "placements", "placed_sensors", "recordings", "journals"),
     *("results", "courses", "corrections", "operators"),
 ]
-PLACES = {"kept_as", "station"}  # columns that tell where something is
+PLACES = {"kept_as", "station"}  # columns that report where something is
 
 
 @dataclass(slots=True)
@@ -156,12 +156,14 @@ class _Journey:
         if len(ends) > 1:
             self._found.faults.append(f"{' and '.join(ends)} can be written at once")
 
-    def _compare(self, where: str, wanted: dict[str, list[str]], got: dict[str, list[str]]) -> None:
-        self._found.faults += [f"{table} {where} is not what it was" for table in wanted if wanted[table] != got[table]]
+    def _compare(self, where: str, required: dict[str, list[str]], got: dict[str, list[str]]) -> None:
+        self._found.faults += [
+            f"{table} {where} is not what it was" for table in required if required[table] != got[table]
+        ]
 
 
 def _work(work: Callable[[], None]) -> None:
-    """In the child; what it is refused is said."""
+    """In the child; what it is refused is stated."""
     try:
         work()
     except LibraryError as refusal:

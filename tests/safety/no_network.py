@@ -45,7 +45,7 @@ class Calls:
 
     families: Counter[str]
     outside: tuple[str, ...]
-    told: str
+    reported: str
 
     @property
     def addresses(self) -> frozenset[str]:
@@ -91,7 +91,7 @@ def _called(arguments: tuple[str, ...], longest_s: float) -> Calls:
         return calls_in(trace.read_text(), done.stdout.strip())
 
 
-def calls_in(trace: str, told: str = "") -> Calls:
+def calls_in(trace: str, reported: str = "") -> Calls:
     """Read what strace noted. A call without an address goes to where its socket was connected before."""
     families: Counter[str] = Counter()
     outside = []
@@ -102,7 +102,7 @@ def calls_in(trace: str, told: str = "") -> Calls:
             families[family] += 1
             if family not in WITHIN and not LOOPBACK.search(line):
                 outside.append(line)
-    return Calls(families, tuple(outside), told)
+    return Calls(families, tuple(outside), reported)
 
 
 # in the network
@@ -151,11 +151,11 @@ def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("--inside", nargs=2, help=argparse.SUPPRESS)
     parser.add_argument("--stream", action="store_true", help=argparse.SUPPRESS)
-    wanted = parser.parse_args()
-    if wanted.inside:
-        _search(*wanted.inside)
+    required = parser.parse_args()
+    if required.inside:
+        _search(*required.inside)
         return
-    if wanted.stream:
+    if required.stream:
         _stream()
         return
     if reason := why_not():
@@ -170,7 +170,7 @@ def main() -> None:
         families = ", ".join(f"{family} {count}" for family, count in calls.families.items()) or "none"
         print(f"{name}: {families}; others: {', '.join(sorted(calls.addresses)) or 'none'}", flush=True)
         if calls.addresses != expected or bool(calls.outside) != bool(expected):
-            print(calls.told, *calls.outside, sep="\n")
+            print(calls.reported, *calls.outside, sep="\n")
             is_right = False
     sys.exit(0 if is_right else 1)
 

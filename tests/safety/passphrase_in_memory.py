@@ -24,7 +24,7 @@ from app.main_window import MainWindow
 from app.system.settings import Settings
 from app.theme.notifier import ThemeNotifier, load_fonts
 
-SHIFTED = {"passphrase": "gnts!rinsu!vnser!idsd", "code": "Q,1056,YX["}  # each letter is its neighbour
+SHIFTED = {"passphrase": "gnts!rinsu!vnser!idsd", "code": "Q,1056,YX["}  # each letter is its adjacent one
 MAKE = """
 import json, sys
 from pathlib import Path

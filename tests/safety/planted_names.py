@@ -4,7 +4,7 @@
 
 A child imports sessions with names wherever somebody may type one, exports them without names, backs the library up
 and logs errors about them, until it is killed. Then everything that it wrote is searched: library, journals, backups,
-exports, logs, temporary files and what it said.
+exports, logs, temporary files and what it stated.
 """
 
 import argparse
@@ -115,9 +115,9 @@ def kill_and_search(folder: Path, count: int, seed: int) -> Search:
         environment = {**os.environ, "TMPDIR": str(place / "tmp"), "SQLITE_TMPDIR": str(place / "tmp")}
         command = [sys.executable, "-m", "tests.safety.planted_names", "--work", str(place)]
         with (
-            (place / "said").open("wb") as said,
+            (place / "said").open("wb") as stated,
             subprocess.Popen(
-                command, cwd=ROOT, env=environment, stdout=subprocess.PIPE, stderr=said, text=True
+                command, cwd=ROOT, env=environment, stdout=subprocess.PIPE, stderr=stated, text=True
             ) as child,
         ):
             assert child.stdout is not None
@@ -134,15 +134,15 @@ def kill_and_search(folder: Path, count: int, seed: int) -> Search:
 
 
 def search_files(place: Path, secrets: list[str], search: Search) -> None:
-    wanted = [STEM.lower().encode(encoding) for encoding in ENCODINGS] + [PASSPHRASE.lower().encode()]
+    required = [STEM.lower().encode(encoding) for encoding in ENCODINGS] + [PASSPHRASE.lower().encode()]
     for secret in secrets:
-        wanted += [secret.lower().encode(), secret.replace("-", "").lower().encode()]
+        required += [secret.lower().encode(), secret.replace("-", "").lower().encode()]
     key = bytes.fromhex(secrets[0])
     for path in place.rglob("*"):
         content = path.read_bytes() if path.is_file() else b""
         lower = content.lower() + str(path.relative_to(place)).lower().encode()
         search.files += path.is_file()
-        if key in content or any(one in lower for one in wanted):
+        if key in content or any(one in lower for one in required):
             search.found.append(str(path))
 
 
@@ -165,12 +165,12 @@ def main() -> int:
     parser.add_argument("--count", type=int, default=100)
     parser.add_argument("--seed", type=int, default=1)
     parser.add_argument("--work", type=Path, help=argparse.SUPPRESS)
-    wanted = parser.parse_args()
-    if wanted.work:
-        work(wanted.work)
+    required = parser.parse_args()
+    if required.work:
+        work(required.work)
         return 0
     with tempfile.TemporaryDirectory(prefix="gaitwright-names-") as folder:
-        search = kill_and_search(Path(folder), wanted.count, wanted.seed)
+        search = kill_and_search(Path(folder), required.count, required.seed)
     print(search, *search.found, *search.faults, sep="\n")
     return 1 if search.found or search.faults else 0
 

@@ -29,7 +29,7 @@ SENSORS, RATE_HZ, LOOP = 6, 200, 1900
 
 
 def motion(number: int) -> tuple[float, ...]:
-    """A rate that says which sample it is."""
+    """A rate that states which sample it is."""
     return (float(number % LOOP), 0.0, 0.0, 0.0, 0.0, 1.0)
 
 
@@ -45,8 +45,10 @@ def vanish_often(folder: Path, count: int, seed: int) -> Vanished:
     def faults_in(path: Path, gone: Collection[str]) -> list[str]:
         sensors = decode([path], KEY, DECODERS).sensors
         missing = [f"{name} is not there" for name in names if name not in sensors]
-        heard = [name for name in names if name in sensors]
-        return missing + [fault for name in heard for fault in faults_of(name, sensors[name], gaps=int(name in gone))]
+        received = [name for name in names if name in sensors]
+        return missing + [
+            fault for name in received for fault in faults_of(name, sensors[name], gaps=int(name in gone))
+        ]
 
     acquisition.start()
     try:

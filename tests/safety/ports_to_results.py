@@ -73,15 +73,15 @@ class Played:
         command = [sys.executable, "-m", "tests.safety.ports_to_results", "--play", str(folder)]
         command += ["--kinds", kind, "--rate", str(rate_hz)]
         self._process = subprocess.Popen(command, stdin=subprocess.PIPE, stdout=subprocess.PIPE, text=True)
-        self.places: list[str] = json.loads(self._said())
+        self.places: list[str] = json.loads(self._stated())
 
     def ask(self, kind: RecordingKind) -> float:
         """Let the patient move; for how many seconds from now."""
-        self._tell(kind.value)
-        return float(self._said())
+        self._show_message(kind.value)
+        return float(self._stated())
 
     def end(self) -> Mapping[str, FloatArray]:
-        self._tell("end")
+        self._show_message("end")
         self._process.wait()
         return dict(np.load(self._folder / "measured.npz"))
 
@@ -89,11 +89,11 @@ class Played:
         self._process.kill()
         self._process.communicate()  # which closes the pipes
 
-    def _tell(self, line: str) -> None:
+    def _show_message(self, line: str) -> None:
         assert self._process.stdin is not None
         print(line, file=self._process.stdin, flush=True)
 
-    def _said(self) -> str:
+    def _stated(self) -> str:
         assert self._process.stdout is not None
         return self._process.stdout.readline()
 
@@ -101,7 +101,7 @@ class Played:
 def play(kind: str, rate_hz: int, folder: Path) -> None:
     """Be the sensors' process."""
     patient = EmulatedPatient()
-    sensors = [EmulatedSensor(patient, kind, number, rate_hz, says_so=False) for number in range(SITES)]
+    sensors = [EmulatedSensor(patient, kind, number, rate_hz, states_so=False) for number in range(SITES)]
     emulations = [Emulation(one.voice, partial(PseudoTerminal, folder / f"{kind}-{one.site}")) for one in sensors]
     print(json.dumps([emulation.place for emulation in emulations]), flush=True)
     for line in sys.stdin:
@@ -112,10 +112,12 @@ def play(kind: str, rate_hz: int, folder: Path) -> None:
     for emulation in emulations:
         emulation.close()
     when_ns = np.arange(patient.clips[0].start_ns, host_time_ns(), 1e9 / FINE_HZ)
-    told = {f"truth {joint}": np.array([patient.angle_rad(joint, at_ns) for at_ns in when_ns]) for joint in LEG_JOINTS}
-    told |= {f"sent {one.site}": np.array(one.sent) for one in sensors}
-    told |= {f"sent_s {one.site}": np.array(one.sent_ns) / 1e9 for one in sensors}
-    np.savez(folder / "measured.npz", allow_pickle=False, when_s=when_ns / 1e9, **told)
+    reported = {
+        f"truth {joint}": np.array([patient.angle_rad(joint, at_ns) for at_ns in when_ns]) for joint in LEG_JOINTS
+    }
+    reported |= {f"sent {one.site}": np.array(one.sent) for one in sensors}
+    reported |= {f"sent_s {one.site}": np.array(one.sent_ns) / 1e9 for one in sensors}
+    np.savez(folder / "measured.npz", allow_pickle=False, when_s=when_ns / 1e9, **reported)
 
 
 @dataclass(slots=True)
@@ -201,7 +203,7 @@ class WindowSession:
         sources = self.visit.choices
         assert not any(source.is_simulated for source in sources), "they would not be kept of this patient"
         if kind == "csv":
-            self.tell_columns()
+            self.show_columns()
         else:
             self.visit.sensors.search(next(source for source in sources if source.key == SEARCH))
         self.wait(lambda: self.visit.sensors.acquisition is not None, "sensors")
@@ -210,7 +212,7 @@ class WindowSession:
         assert len(acquisition.sensors) == SITES, acquisition.sensors
         assert {reader.source.info.driver for reader in acquisition._readers} == {kind}
 
-    def tell_columns(self) -> None:
+    def show_columns(self) -> None:
         """Say what the columns of lines of numbers mean, as the page guesses it."""
         step = self.wizard.steps[StepId.SENSORS]
         assert isinstance(step, SensorsStep)
@@ -259,7 +261,7 @@ def run(application: QApplication, kind: str, rate_hz: int, walks: int, shots: P
 
 
 def lead(session: WindowSession, kind: str, ask: Callable[[RecordingKind], float], walks: int) -> Analysis:
-    """Lead a session from its sensors to its results; `ask` lets the patient move, and says for how long."""
+    """Lead a session from its sensors to its results; `ask` lets the patient move, and states for how long."""
     visit, wizard, shots = session.visit, session.wizard, session.shots
     session.to_sensors("P-8", kind)
     session.place()
@@ -308,14 +310,18 @@ def has_evaluated(visit: Visit, walks: int) -> bool:
     return is_whole and not visit.evaluation.is_busy
 
 
-def outcome_of(kind: str, visit: Visit, analysis: Analysis, told: Mapping[str, FloatArray], library: Path) -> Outcome:
+def outcome_of(
+    kind: str, visit: Visit, analysis: Analysis, reported: Mapping[str, FloatArray], library: Path
+) -> Outcome:
     """Compare what was recorded with what was measured, and the angles with the truth."""
-    outcome, zero = Outcome(kind), true_zero(visit, told, library)
+    outcome, zero = Outcome(kind), true_zero(visit, reported, library)
     for recording in visit.recordings.every:
         assert recording.read_back is not None
         for site, block in recording.read_back.imu.items():
-            rows = compare_samples(outcome, block, told[f"sent {site}"], STEPS[kind])
-            late_s = block.time_s[rows >= 0] + opened_s(recording, library) - told[f"sent_s {site}"][rows[rows >= 0]]
+            rows = compare_samples(outcome, block, reported[f"sent {site}"], STEPS[kind])
+            late_s = (
+                block.time_s[rows >= 0] + opened_s(recording, library) - reported[f"sent_s {site}"][rows[rows >= 0]]
+            )
             outcome.late_ms.setdefault(recording.details.name, []).append(1000 * float(late_s.mean()))
             if recording.details.kind is RecordingKind.FREE_MOTION:
                 outcome.moved_s = float(np.ptp(block.time_s))
@@ -324,19 +330,19 @@ def outcome_of(kind: str, visit: Visit, analysis: Analysis, told: Mapping[str, F
         if recording.details.kind is RecordingKind.WALKING and found is not None:
             about_s = float(np.mean(outcome.late_ms[found.name])) / 1000
             begin_s = opened_s(recording, library) - (about_s if about_s > DELAYS_S[-1] else 0.0)
-            compare_angles(outcome, found, told, zero, begin_s)
+            compare_angles(outcome, found, reported, zero, begin_s)
     return outcome
 
 
-def true_zero(visit: Visit, told: Mapping[str, FloatArray], library: Path) -> dict[Joint, float]:
+def true_zero(visit: Visit, reported: Mapping[str, FloatArray], library: Path) -> dict[Joint, float]:
     """How far each joint was bent, on average, while the standing was recorded that the angles are zero at."""
     recording = visit.recordings.standing
     assert recording is not None
     assert recording.read_back is not None
     (site, *_) = Site
     first_s, last_s = opened_s(recording, library) + recording.read_back.imu[site].time_s[[0, -1]]
-    is_then = (told["when_s"] >= first_s) & (told["when_s"] <= last_s)
-    return {joint: float(told[f"truth {joint}"][is_then].mean()) for joint in LEG_JOINTS}
+    is_then = (reported["when_s"] >= first_s) & (reported["when_s"] <= last_s)
+    return {joint: float(reported[f"truth {joint}"][is_then].mean()) for joint in LEG_JOINTS}
 
 
 def opened_s(recording: SessionRecording, library: Path) -> float:
@@ -377,13 +383,13 @@ def compare_samples(outcome: Outcome, block: ImuBlock, sent: FloatArray, steps: 
 def compare_angles(
     outcome: Outcome,
     found: RecordingAnalysis,
-    told: Mapping[str, FloatArray],
+    reported: Mapping[str, FloatArray],
     zero: Mapping[Joint, float],
     begin_s: float,
 ) -> None:
     """Find the delay that all sensors share, and the angles' errors without it."""
     at_s = found.time_s + begin_s
-    errors = {delay_s: errors_deg(found, told, zero, at_s - delay_s) for delay_s in DELAYS_S}
+    errors = {delay_s: errors_deg(found, reported, zero, at_s - delay_s) for delay_s in DELAYS_S}
     delay_s = min(errors, key=lambda one: sum(value * value for value in errors[one].values()))
     outcome.delay_ms.append(1000 * delay_s)
     for joint, value in errors[delay_s].items():
@@ -391,12 +397,12 @@ def compare_angles(
 
 
 def errors_deg(
-    found: RecordingAnalysis, told: Mapping[str, FloatArray], zero: Mapping[Joint, float], at_s: FloatArray
+    found: RecordingAnalysis, reported: Mapping[str, FloatArray], zero: Mapping[Joint, float], at_s: FloatArray
 ) -> dict[Joint, float]:
     """RMS error of each joint, its angles having been measured at `at_s` (n,) by the host's clock."""
     errors = {}
     for joint in LEG_JOINTS:
-        true_rad = np.interp(at_s, told["when_s"], told[f"truth {joint}"]) - zero[joint]
+        true_rad = np.interp(at_s, reported["when_s"], reported[f"truth {joint}"]) - zero[joint]
         error = found.joints[joint].angle_rad - true_rad
         errors[joint] = float(np.degrees(np.sqrt(np.nanmean(error**2))))
     return errors
@@ -417,16 +423,16 @@ def main() -> int:
     parser.add_argument("--walks", type=int, default=3)
     parser.add_argument("--shots", type=Path, metavar="FOLDER", help="write pictures of the window there")
     parser.add_argument("--play", type=Path, help=argparse.SUPPRESS)  # be the sensors' process
-    wanted = parser.parse_args()
-    if wanted.play is not None:
-        play(wanted.kinds[0], wanted.rate, wanted.play)
+    required = parser.parse_args()
+    if required.play is not None:
+        play(required.kinds[0], required.rate, required.play)
         return 0
     application = QApplication([])
     application.setStyle("Fusion")
     load_fonts()
     is_right = True
-    for kind in wanted.kinds:
-        outcome = run(application, kind, wanted.rate, wanted.walks, wanted.shots)
+    for kind in required.kinds:
+        outcome = run(application, kind, required.rate, required.walks, required.shots)
         print(outcome, flush=True)
         is_right &= outcome.is_right
     return 0 if is_right else 1

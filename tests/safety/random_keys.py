@@ -40,7 +40,7 @@ LIVES = 8  # of one library
 LIFE_S = (60.0, 300.0)
 KILLED_SHARE = 0.35
 ENDS_WITHIN_S = 120.0
-TAIL = 6000  # letters of what a process said last
+TAIL = 6000  # letters of what a process stated last
 HOMES = ("HOME", "XDG_DATA_HOME", "XDG_CONFIG_HOME", "XDG_STATE_HOME", "XDG_CACHE_HOME", "TMPDIR")
 
 
@@ -80,8 +80,8 @@ def live(place: Path, seed: str, outcome: Outcome, seconds: float, end: str) -> 
     environment.pop("DISPLAY", None)
     errors, began = place / "errors.txt", datetime.now().astimezone().isoformat(timespec="seconds")
     with (
-        errors.open("w") as told,
-        subprocess.Popen(command, stdout=subprocess.PIPE, stderr=told, text=True, env=environment) as process,
+        errors.open("w") as reported,
+        subprocess.Popen(command, stdout=subprocess.PIPE, stderr=reported, text=True, env=environment) as process,
     ):
         watchdog_s = time.monotonic() + seconds + ENDS_WITHIN_S
         assert process.stdout is not None
@@ -93,25 +93,25 @@ def live(place: Path, seed: str, outcome: Outcome, seconds: float, end: str) -> 
             process.kill()
             outcome.note({"fault": "does not end", "seed": seed, "what": errors.read_text()[-TAIL:]})
             return
-    wanted = -signal.SIGKILL if end == "kill" else 0
-    if code != wanted:
+    required = -signal.SIGKILL if end == "kill" else 0
+    if code != required:
         kind = "hang" if "Timeout (" in errors.read_text() else "crash"
         outcome.note({"fault": kind, "seed": seed, "code": code, "what": errors.read_text()[-TAIL:]})
     outcome.did["lives"] += 1
-    for what in _left(place / "library", began if end == "close" and code == wanted else None):
+    for what in _left(place / "library", began if end == "close" and code == required else None):
         outcome.note({"fault": "left behind", "seed": seed, "end": end, "what": what})
 
 
 def _hear(line: str, seed: str, outcome: Outcome) -> None:
     try:
-        told = json.loads(line)
+        reported = json.loads(line)
     except ValueError:
         return
-    if "fault" in told:
-        outcome.note({"seed": seed, **told})
-    elif "did" in told:
-        outcome.did[told["did"]] += told.get("count", 1)
-        outcome.longest_held_up_s = max(outcome.longest_held_up_s, told.get("longest_held_up_s", 0.0))
+    if "fault" in reported:
+        outcome.note({"seed": seed, **reported})
+    elif "did" in reported:
+        outcome.did[reported["did"]] += reported.get("count", 1)
+        outcome.longest_held_up_s = max(outcome.longest_held_up_s, reported.get("longest_held_up_s", 0.0))
 
 
 def _left(library: Path, closed_since: str | None) -> list[str]:
@@ -154,14 +154,14 @@ def main() -> int:
     parser.add_argument("--hours", type=float, default=2.0)
     parser.add_argument("--seed", type=int, default=1)
     parser.add_argument("--life", metavar="SEED/NUMBER", help="this life alone, for two minutes")
-    wanted = parser.parse_args()
+    required = parser.parse_args()
     with tempfile.TemporaryDirectory(ignore_cleanup_errors=True) as folder:
-        if wanted.life:
+        if required.life:
             outcome = Outcome()
             make_place(Path(folder) / "place")
-            live(Path(folder) / "place", wanted.life, outcome, 120.0, "close")
+            live(Path(folder) / "place", required.life, outcome, 120.0, "close")
         else:
-            outcome = play(3600.0 * wanted.hours, wanted.seed, Path(folder))
+            outcome = play(3600.0 * required.hours, required.seed, Path(folder))
     print(outcome)
     return 1 if outcome.faults else 0
 

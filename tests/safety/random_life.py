@@ -53,13 +53,13 @@ from tests.safety.said_and_held import HeldLibrary, contradictions, left_open
 SPEED = 20.0
 PAUSE_MS = (10, 120)
 CHECK_EVERY = 5  # steps
-SETTLES_S, SETTLES_BUSY_S = 4.0, 45.0  # what is said and what is held may differ for so long
+SETTLES_S, SETTLES_BUSY_S = 4.0, 45.0  # what is stated and what is held may differ for so long
 LOOK_AGAIN_MS = 250
 HELD_UP_S = 2.0  # of the thread that draws
-HANGS_S = 90.0  # without a step: then all threads are told, and the life ends
+HANGS_S = 90.0  # without a step: then all threads are reported, and the life ends
 STALE_STEPS, STALE_S = 150, 20.0  # with nothing new on the screen: then every control is tried
 WAY_OUT_S = 120.0  # a page on which nothing can be pressed may stay for so long, on a busy machine
-REMEMBERED = 25  # steps told with a fault
+REMEMBERED = 25  # steps reported with a fault
 NOISE = ("This plugin does not support",)  # offscreen's own
 ENDS = ("close", "kill")
 
@@ -70,11 +70,11 @@ class RandomLife(QObject):
     def __init__(self, window: MainWindow, user: RandomUser, dog: Watchdog, chance: random.Random, end: str) -> None:
         super().__init__()
         self._window, self._user, self._dog, self._chance, self._end = window, user, dog, chance, end
-        self.tells = False
-        self._number = self._nested = self._late_told = self._compared = 0
+        self.shows = False
+        self._number = self._nested = self._late_reported = self._compared = 0
         self._is_acting = self._is_over = self._has_library_answered = False
         self._before: deque[str] = deque(maxlen=REMEMBERED)
-        self._told: set[str] = set()
+        self._reported: set[str] = set()
         self._doubts: set[str] = set()
         self._doubted_s = 0.0
         self._seen = ""
@@ -88,12 +88,12 @@ class RandomLife(QObject):
         print(json.dumps({"did": what}), flush=True)
 
     def fault(self, kind: str, what: str) -> None:
-        if (key := f"{kind} {what[-300:]}") not in self._told:
-            self._told.add(key)
+        if (key := f"{kind} {what[-300:]}") not in self._reported:
+            self._reported.add(key)
             screen, home = self._window.screens.currentWidget(), self._window.home
             seen = {"page": type(screen).__name__, "home says": "" if home is None else home.banner.text}
-            told = {"fault": kind, "step": self._number, "what": what, **seen, "before": list(self._before)}
-            print(json.dumps(told), flush=True)
+            reported = {"fault": kind, "step": self._number, "what": what, **seen, "before": list(self._before)}
+            print(json.dumps(reported), flush=True)
 
     def step(self) -> None:
         """Do one thing, or look again; the next step is asked for first, for a menu has a loop of its own."""
@@ -130,10 +130,10 @@ class RandomLife(QObject):
                 self._compare()
             if self._doubts:
                 return  # hands off, until it is settled
-        for late in self._dog.late[self._late_told :]:
+        for late in self._dog.late[self._late_reported :]:
             if late.busy_s + late.waited_s > HELD_UP_S:
                 self.fault("held up", str(late))
-        self._late_told = len(self._dog.late)
+        self._late_reported = len(self._dog.late)
         if self._to_try is not None:
             self._try_next()
         else:
@@ -144,10 +144,10 @@ class RandomLife(QObject):
         if self._before and self._before[-1].endswith(f": {deed}"):
             self._before.pop()  # the last of many alike is enough
         self._before.append(f"{self._number}: {deed}")
-        if self.tells:
+        if self.shows:
             print(f"{self._number}: {deed}", file=sys.stderr, flush=True)
 
-    # what the screen says
+    # what the screen states
 
     def _compare(self) -> None:
         if QApplication.activeModalWidget() is not None or self._window.is_covered or (held := self._held()) is None:
@@ -166,7 +166,7 @@ class RandomLife(QObject):
         self._doubts &= now
         waited_s = time.monotonic() - self._doubted_s
         if self._doubts and waited_s > (SETTLES_BUSY_S if self._is_busy() else SETTLES_S):
-            for one in self._doubts:  # what is said before the library was heard is not so either
+            for one in self._doubts:  # what is stated before the library was received is not so either
                 self.fault("contradiction" if self._has_library_answered else "said too early", one)
             self._doubts.clear()
 
@@ -286,17 +286,20 @@ def listen(life: RandomLife) -> None:
     def hook(kind: type[BaseException], error: BaseException | None, trace: TracebackType | None) -> None:
         life.fault("exception", "".join(traceback.format_exception(kind, error, trace)))
 
-    def unraisable(told: Any) -> None:
-        life.fault("unraisable", "".join(traceback.format_exception(told.exc_type, told.exc_value, told.exc_traceback)))
+    def unraisable(reported: Any) -> None:
+        life.fault(
+            "unraisable",
+            "".join(traceback.format_exception(reported.exc_type, reported.exc_value, reported.exc_traceback)),
+        )
 
-    def qt_said(kind: QtMsgType, _context: QMessageLogContext, message: str) -> None:
+    def qt_stated(kind: QtMsgType, _context: QMessageLogContext, message: str) -> None:
         if kind not in (QtMsgType.QtDebugMsg, QtMsgType.QtInfoMsg) and not message.startswith(NOISE):
             life.fault("Qt warns", f"{message}\n{''.join(traceback.format_stack(limit=12))}")
 
     sys.excepthook = hook
     sys.unraisablehook = unraisable
-    threading.excepthook = lambda told: hook(told.exc_type, told.exc_value, told.exc_traceback)
-    qInstallMessageHandler(qt_said)
+    threading.excepthook = lambda reported: hook(reported.exc_type, reported.exc_value, reported.exc_traceback)
+    qInstallMessageHandler(qt_stated)
     logging.getLogger().addHandler(_LoudLog(life))
 
 
@@ -319,7 +322,7 @@ def main() -> int:
     parser.add_argument("--seconds", type=float, default=60.0)
     parser.add_argument("--end", choices=ENDS, default="close")
     parser.add_argument("--tell", action="store_true", help="write every step to the standard error")
-    wanted = parser.parse_args()
+    required = parser.parse_args()
     faulthandler.enable()
     source = simulated_source()
     sources.choices = lambda: (source,)  # before the wizard takes it from there
@@ -328,13 +331,13 @@ def main() -> int:
     application.setApplicationName("Gaitwright")
     application.setStyle("Fusion")
     load_fonts()
-    chance = random.Random(wanted.seed)
-    settings = Settings(QSettings(str(wanted.place / "settings.ini"), QSettings.Format.IniFormat))
-    window = MainWindow(ThemeNotifier(application), settings, wanted.place / "library")
+    chance = random.Random(required.seed)
+    settings = Settings(QSettings(str(required.place / "settings.ini"), QSettings.Format.IniFormat))
+    window = MainWindow(ThemeNotifier(application), settings, required.place / "library")
     dog = Watchdog()
-    user = RandomUser(window, chance, wanted.place)
-    life = RandomLife(window, user, dog, chance, wanted.end)
-    life.tells = wanted.tell
+    user = RandomUser(window, chance, required.place)
+    life = RandomLife(window, user, dog, chance, required.end)
+    life.shows = required.show_message
     listen(life)
     garbage = GarbageCollector(window, lambda: window.preparing.is_busy)
     window.preparing.done.connect(garbage.pass_over_imported)
@@ -343,7 +346,7 @@ def main() -> int:
     window.prepare()
     dog.start()
     QTimer.singleShot(0, life, life.step)
-    QTimer.singleShot(round(1000 * wanted.seconds), life, life.finish)
+    QTimer.singleShot(round(1000 * required.seconds), life, life.finish)
     application.exec()
     faulthandler.dump_traceback_later(HANGS_S, exit=True)
     dog.stop()

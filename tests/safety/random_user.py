@@ -38,7 +38,7 @@ SIZES = ((640, 480), (800, 600), (1024, 700), (1280, 800), (1600, 1000), (2200, 
 
 
 class RandomUser(SensibleUser):
-    """Each `act` does one thing and says in words what it was."""
+    """Each `act` does one thing and states in words what it was."""
 
     def act(self) -> str:
         popup, modal = QApplication.activePopupWidget(), QApplication.activeModalWidget()

@@ -31,8 +31,8 @@ class SensibleUser(Hands):
             "HelpPage": self._on_help,
             "SessionScreen": self._on_session_screen,
         }.get(name)
-        said = deed(screen) if deed is not None else "waits"
-        return f"{name}: {said}"
+        stated = deed(screen) if deed is not None else "waits"
+        return f"{name}: {stated}"
 
     def _on_first_start(self, page: Any) -> str:
         if page.typed.isVisible():
@@ -159,11 +159,11 @@ class SensibleUser(Hands):
             self.type_into(page.code.line_edit, self._code())
             return "types a code"
         if self._chance.random() < 0.6:
-            return self._tell_of_patient(page)
+            return self._show_of_patient(page)
         self._primary(wizard)
         return "goes on"
 
-    def _tell_of_patient(self, page: Any) -> str:
+    def _show_of_patient(self, page: Any) -> str:
         field, text = self._chance.choice(
             (
                 (page.birth_year, str(self._chance.randrange(1925, 2015))),

@@ -7,7 +7,7 @@ source. It goes the way of a visit: the source reads it and stamps it live, a jo
 decoded from the journal. Streams of samples (Lab Streaming Layer) are kept as they are stamped live.
 
 Whatever was sent, stamps ascend, each sample is there once, and counts add up. How many whole samples were left out and
-how many are stamped more than `RIGHT_S` wrong is told: a clock that leaps amid damage cannot always be followed.
+how many are stamped more than `RIGHT_S` wrong is reported: a clock that leaps amid damage cannot always be followed.
 """
 
 import argparse
@@ -25,8 +25,8 @@ from pathlib import Path
 
 import numpy as np
 
-from app.acquisition.heard_sensor import HeardSensor
-from app.acquisition.source_tape import SourceTape
+from app.acquisition.journal_stream import JournalStream
+from app.acquisition.sensor_stream import SensorStream
 from app.storage.journal.decoding import DecodedJournal, decode
 from app.storage.journal.payloads import layout_of
 from app.storage.journal.writer import JournalWriter
@@ -58,7 +58,7 @@ NAME, SITE = "fuzzed", Site.LEFT_FOOT
 
 @dataclass(frozen=True, slots=True)
 class Stream:
-    """A kind of sensor: what its decoder is told, and its protocol; None where it gives samples, not bytes."""
+    """A kind of sensor: what its decoder is reported, and its protocol; None where it gives samples, not bytes."""
 
     info: SourceInfo
     protocol: Fuzzed | None
@@ -106,8 +106,8 @@ def streams() -> dict[str, Stream]:
     }
     known = {**drivers(), "Shimmer3, without": old_shimmer3()}
     found = {
-        name: Stream(SourceInfo(driver, "1", "", (NAME,), told), known[name], rate_hz)
-        for name, (driver, told, rate_hz) in settings.items()
+        name: Stream(SourceInfo(driver, "1", "", (NAME,), reported), known[name], rate_hz)
+        for name, (driver, reported, rate_hz) in settings.items()
     }
     return {**found, "Lab Streaming Layer": Stream(SourceInfo(LSL, "1", "", (NAME,)), None, 100.0)}
 
@@ -208,7 +208,7 @@ class _BytesVisit:
         self._greeted, self._clock = _Greeted(stream, protocol), clock
         self._source = ByteSource(self._greeted, self._greeted, clock.now_ns)
         self._source.open()
-        self._tape, self._shown = SourceTape(journal, self._source), HeardSensor(NAME, stream.rate_hz, 0.0)
+        self._tape, self._shown = JournalStream(journal, self._source), SensorStream(NAME, stream.rate_hz, 0.0)
 
     def hear(self, arrival: Arrival) -> None:
         if arrival.is_back:
@@ -222,13 +222,13 @@ class _BytesVisit:
 
 
 class _SamplesVisit:
-    """The same of a source that gives samples, stamped by the clock of a sender that may begin anew."""
+    """The same of a source that gives samples, stamped by the clock of a sender that may begin again."""
 
     def __init__(self, stream: Stream, clock: _Clock, journal: JournalWriter) -> None:
         self._stream, self._host, self._journal, self._live = stream, clock, journal, LiveClock()
         self._layout = layout_of(self._block([]), stream.rate_hz)
         self._number = journal.source(stream.info, self._layout)
-        self._shown = HeardSensor(NAME, stream.rate_hz, 0.0)
+        self._shown = SensorStream(NAME, stream.rate_hz, 0.0)
 
     def hear(self, arrival: Arrival) -> None:
         if arrival.is_back:
@@ -282,11 +282,11 @@ def main() -> int:
     parser.add_argument("--samples", type=int, default=1_000_000, help="of each kind of sensor")
     parser.add_argument("--seed", type=int, default=1)
     parser.add_argument("--sensor", default="", help="only those whose name has this in it")
-    wanted = parser.parse_args()
+    required = parser.parse_args()
     is_right = True
     for name, stream in streams().items():
-        if wanted.sensor in name:
-            outcome = fuzz(stream, wanted.samples, wanted.seed)
+        if required.sensor in name:
+            outcome = fuzz(stream, required.samples, required.seed)
             print(f"{name}: {outcome}", *sorted(set(outcome.faults))[:3], sep="\n", flush=True)
             is_right &= not outcome.faults
     return 0 if is_right else 1

@@ -69,13 +69,13 @@ def list_in_new_process(folder: Path, count: int, rows: int) -> Listing:
     empty.library.close()
     environment = {**os.environ, "PYTHONPYCACHEPREFIX": str(folder / "compiled")}
     environment.pop("PYTHONDONTWRITEBYTECODE", None)
-    said, after_s = dict[Path, str](), dict[Path, float]()
+    stated, after_s = dict[Path, str](), dict[Path, float]()
     for place in (opened.folder, opened.folder, empty.folder):  # the first one compiles
         command = [sys.executable, "-c", LIST, str(place), PASSPHRASE]
         began_s = time.monotonic()
         done = subprocess.run(command, cwd=ROOT, env=environment, capture_output=True, text=True, check=True)
-        said[place], after_s[place] = done.stdout, time.monotonic() - began_s
-    recordings, orphans, problems = map(int, said[opened.folder].split())
+        stated[place], after_s[place] = done.stdout, time.monotonic() - began_s
+    recordings, orphans, problems = map(int, stated[opened.folder].split())
     taken = (after_s[opened.folder], after_s[empty.folder])
     return Listing(recordings, orphans, problems, sum(sizes) / 1e6, *taken)
 
@@ -84,8 +84,8 @@ def _interrupt(opened: OpenedLibrary, session_id: UUID, number: int, rows: int) 
     recording_id = uuid7()
     with JournalWriter.create(opened.recordings, recording_id, opened.data_key, room=NO_ROOM_ASKED) as writer:
         if number % 5:
-            told = Recording(f"walk {number}", RecordingKind.WALKING, f"walk_{number}", {})
-            opened.library.recordings.start(session_id, told, True, recording_id)
+            reported = Recording(f"walk {number}", RecordingKind.WALKING, f"walk_{number}", {})
+            opened.library.recordings.start(session_id, reported, True, recording_id)
             journal = StoredJournal(recording_id, writer.header.segment, writer.header.wrapped_key)
             opened.library.recordings.add_journal(recording_id, journal)
         source = writer.source(WALKER, LAYOUT)
@@ -102,11 +102,11 @@ def main() -> int:
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("--count", type=int, default=50)
     parser.add_argument("--rows", type=int, default=100_000)
-    wanted = parser.parse_args()
+    required = parser.parse_args()
     with tempfile.TemporaryDirectory(prefix="gaitwright-listing-") as folder:
-        listing = list_in_new_process(Path(folder), wanted.count, wanted.rows)
+        listing = list_in_new_process(Path(folder), required.count, required.rows)
     print(listing)
-    return 1 if listing.recordings != wanted.count or listing.after_s > 2.0 else 0
+    return 1 if listing.recordings != required.count or listing.after_s > 2.0 else 0
 
 
 if __name__ == "__main__":

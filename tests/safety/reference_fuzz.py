@@ -66,12 +66,12 @@ def main() -> int:
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("--files", type=int, default=500)
     parser.add_argument("--seed", type=int, default=1)
-    wanted = parser.parse_args()
+    required = parser.parse_args()
     faults = 0
     for name, one in reference_readers().items():
         reader = LimitedReader()
         try:
-            found = fuzz(one, wanted.files, wanted.seed, reader)
+            found = fuzz(one, required.files, required.seed, reader)
         finally:
             reader.close()
         print(f"{name}: {found}", *faults_of(name, found), sep="\n  ")

@@ -1,4 +1,4 @@
-"""Does what the window says of patients, sessions and recordings agree with what its library holds?
+"""Does what the window states of patients, sessions and recordings agree with what its library holds?
 
 The library is read by plain SQL in a connection of its own, beside the program that has it open: what a page or its
 model got wrong is not got wrong here again.
@@ -65,7 +65,7 @@ class HeldLibrary:
 
 
 def contradictions(window: "MainWindow", held: HeldLibrary) -> list[str]:
-    """What the screen in sight says otherwise than the library; what is still on its way may be among it."""
+    """What the screen in sight states otherwise than the library; what is still on its way may be among it."""
     screen = window.screens.currentWidget()
     if window.home is not None and screen is window.home:
         return [*_of_home(window.home, held), *_of_banner(window.home.banner, held)]
@@ -74,8 +74,8 @@ def contradictions(window: "MainWindow", held: HeldLibrary) -> list[str]:
         visit = wizard.visit
         if not held.ask("SELECT 1 FROM sessions WHERE id = ?", wizard.visit.session.id.hex):
             return ["the session in sight is not held"]
-        said = [*_of_frame(wizard, visit, held), *_of_rail(wizard, visit, held), *_of_page(wizard, visit, held)]
-        return [*said, *_of_banner(wizard.shell.banner, held)]
+        stated = [*_of_frame(wizard, visit, held), *_of_rail(wizard, visit, held), *_of_page(wizard, visit, held)]
+        return [*stated, *_of_banner(wizard.shell.banner, held)]
     return []
 
 
@@ -90,27 +90,27 @@ def _of_home(home: "Home", held: HeldLibrary) -> Iterator[str]:
     if isinstance(home.current, SettingsPage):
         yield from _of_settings(home.current, held)
     if home.current is not page or page._patients is None:
-        return  # of what is still to be read nothing is said
+        return  # of what is still to be read nothing is stated
     if not page.search.text():
         lines = [line for line in page.patients.lines if isinstance(line, PatientLine)]
-        said = Counter((line.code, _number(line.sessions)) for line in lines)
+        stated = Counter((line.code, _number(line.sessions)) for line in lines)
         are = Counter((str(code), int(count)) for code, count in held.ask(PATIENTS))
-        if said != are:
-            yield f"home lists patients {_only(said, are)}, held are {_only(are, said)}"
+        if stated != are:
+            yield f"home lists patients {_only(stated, are)}, held are {_only(are, stated)}"
     if page.patient_id is None:
         return
-    told = held.ask("SELECT code FROM patients WHERE id = ?", page.patient_id.hex)
-    if not told or page.panel.code.text() != told[0][0]:
-        yield f"home shows the sessions of {page.panel.code.text()!r}, held is {told}"
+    reported = held.ask("SELECT code FROM patients WHERE id = ?", page.patient_id.hex)
+    if not reported or page.panel.code.text() != reported[0][0]:
+        yield f"home shows the sessions of {page.panel.code.text()!r}, held is {reported}"
     shown = [line for line in page.sessions.lines if isinstance(line, SessionLine)]
     in_recordings = [line for line in shown if "recording" in line.amount]  # the others count strides
     uncounted = {line.id.hex for line in shown} - {line.id.hex for line in in_recordings}
-    said_of = Counter((line.id.hex, _number(line.amount)) for line in in_recordings)
-    said_of.update((identity, 0) for identity in uncounted)
+    stated_of = Counter((line.id.hex, _number(line.amount)) for line in in_recordings)
+    stated_of.update((identity, 0) for identity in uncounted)
     rows = held.ask(SESSIONS, page.patient_id.hex)
     held_of = Counter((str(identity), 0 if str(identity) in uncounted else int(count)) for identity, _, count in rows)
-    if said_of != held_of:
-        yield f"home lists sessions {_only(said_of, held_of)}, held are {_only(held_of, said_of)}"
+    if stated_of != held_of:
+        yield f"home lists sessions {_only(stated_of, held_of)}, held are {_only(held_of, stated_of)}"
     simulated = {identity for identity, is_simulated, _ in rows if is_simulated}
     for line in shown:
         conditions = {str(one) for (one,) in held.ask(CONDITIONS, line.id.hex)}
@@ -132,10 +132,10 @@ def _of_settings(page: Any, held: HeldLibrary) -> Iterator[str]:
     operators = held.ask("SELECT COUNT(*) FROM operators")[0][0]
     if page.operators.isVisible() and page.operators.rows.count() != operators:
         yield f"settings list {page.operators.rows.count()} operators, held are {operators}"
-    said = re.match(r"Backup folder: (.+)\.$", page.backup_folder.text())
+    stated = re.match(r"Backup folder: (.+)\.$", page.backup_folder.text())
     kept = held.ask("SELECT value FROM settings WHERE name = 'backup_folder'")
-    if page.backup_folder.isVisible() and said is not None and (not kept or said[1] not in str(kept[0][0])):
-        yield f"settings say {said[0]!r}, held is {kept}"
+    if page.backup_folder.isVisible() and stated is not None and (not kept or stated[1] not in str(kept[0][0])):
+        yield f"settings say {stated[0]!r}, held is {kept}"
 
 
 # a session
@@ -168,7 +168,7 @@ def _of_rail(wizard: "Wizard", visit: "Visit", held: HeldLibrary) -> Iterator[st
     kept = sum(bool(row[2] and _is_answered(row)) for row in walks)
     is_recording = visit.recordings.is_recording or visit.recordings.is_stopping
     for place in (4, 5):
-        if (said := KEPT.search(notes[place])) is not None and int(said[1]) != kept and not is_recording:
+        if (stated := KEPT.search(notes[place])) is not None and int(stated[1]) != kept and not is_recording:
             yield f"the rail says {notes[place]!r} at step {place + 1}, held are {kept} walks kept"
     if "include or exclude" in notes[4] and all(_is_answered(row) for row in walks):
         yield "the rail asks whether a walk is kept, held is none that is not decided"
@@ -223,10 +223,10 @@ def _of_walks(wizard: "Wizard", visit: "Visit", held: HeldLibrary) -> Iterator[s
     words = {"kept": True, "discarded": False}
     shown = [row for row in page.rows if row.state != "recording"]
     walks = held.ask(WALKS, visit.session.id.hex)
-    said = [row.label for row in shown]
+    stated = [row.label for row in shown]
     are = [row[1] or row[0] for row in walks]
-    if said != are:
-        yield f"the list of walks says {said}, held are {are}"
+    if stated != are:
+        yield f"the list of walks says {stated}, held are {are}"
         return
     for row, walk in zip(shown, walks, strict=True):
         if row.state in words and words[row.state] != bool(walk[2]):
@@ -247,17 +247,17 @@ def _of_results(wizard: "Wizard", visit: "Visit", held: HeldLibrary) -> Iterator
     if type(frame.currentWidget()).__name__ != "ResultPage":
         return
     choice = frame.currentWidget().recordings
-    said = [choice.itemText(k) for k in range(choice.count())]
+    stated = [choice.itemText(k) for k in range(choice.count())]
     for name, condition, is_kept, *_ in walks:
-        if is_kept and not any(_calls(one, name, condition) for one in said):
-            yield f"the results offer {said!r}, held is the kept {name!r} ({condition!r}), too"
+        if is_kept and not any(_calls(one, name, condition) for one in stated):
+            yield f"the results offer {stated!r}, held is the kept {name!r} ({condition!r}), too"
 
 
 def _of_report(wizard: "Wizard", visit: "Visit", held: HeldLibrary) -> Iterator[str]:
     note = wizard.shell.bar.state.note
     step: Any = wizard.current
-    if (said := SAVED_AS.search(note)) is not None and not any(step.saved.glob("*.pdf")):
-        yield f"the bar says {said[0]!r}, there is no report in it"
+    if (stated := SAVED_AS.search(note)) is not None and not any(step.saved.glob("*.pdf")):
+        yield f"the bar says {stated[0]!r}, there is no report in it"
     if visit.session is not None:
         rows = held.ask("SELECT comment FROM sessions WHERE id = ?", visit.session.id.hex)
         if rows and rows[0][0] != step.comment:
@@ -283,9 +283,9 @@ def _of_banner(banner: "Banner", held: HeldLibrary) -> Iterator[str]:
         yield f"the banner says {text!r}, there is no journal"
 
 
-def _calls(said: str, name: str, condition: str) -> bool:
+def _calls(stated: str, name: str, condition: str) -> bool:
     """Whether a recording may be called so: by its condition or name, with a letter and number before it or none."""
-    return re.fullmatch(rf"([A-Z]\d* )?{re.escape(condition or name)}", said) is not None
+    return re.fullmatch(rf"([A-Z]\d* )?{re.escape(condition or name)}", stated) is not None
 
 
 def left_open(held: HeldLibrary, since: str = "") -> list[str]:

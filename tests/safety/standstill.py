@@ -1,4 +1,5 @@
-"""Is a process that stood still told from a disk that is late, and is what that cost said as the journal has it?
+"""Is a process that stood still distinguished from a disk that is late, and is what that cost stated as the journal
+has it?
 
     python -m tests.safety.standstill --count 10 --seconds 20
 
@@ -54,26 +55,26 @@ def record(folder: Path, places: list[str]) -> None:
         summary = acquisition.stop_recording()
         acquisition.close()
     sensors = decode([summary.path], KEY, DECODERS).sensors.values()
-    told = {
+    reported = {
         "troubles": [str(trouble) for trouble in troubles],
         "words": [" ".join(message) for message in words],
         "lost_live": sum(lost.values()) - before,
         "lost": sum(sensor.counts.lost for sensor in sensors),
         "received": sum(sensor.counts.received for sensor in sensors),
     }
-    print(json.dumps(told), flush=True)
+    print(json.dumps(reported), flush=True)
 
 
-def faults_of(told: dict[str, object], seconds: float) -> list[str]:
+def faults_of(reported: dict[str, object], seconds: float) -> list[str]:
     faults = []
-    words = told["words"]
-    if told["troubles"]:
-        faults.append(f"blamed the disk: {told['troubles']}")
+    words = reported["words"]
+    if reported["troubles"]:
+        faults.append(f"blamed the disk: {reported['troubles']}")
     if not isinstance(words, list) or len(words) != 1 or not words[0].startswith("Gaitwright stalled for"):
         return [*faults, f"{words} of a standstill of {seconds} s"]
-    if told["lost"] and "Samples were lost" not in words[0]:
-        faults.append(f"{words[0]!r} where the journal lacks {told['lost']}")
-    if not told["lost"] and "No sample is missing" not in words[0]:
+    if reported["lost"] and "Samples were lost" not in words[0]:
+        faults.append(f"{words[0]!r} where the journal lacks {reported['lost']}")
+    if not reported["lost"] and "No sample is missing" not in words[0]:
         faults.append(f"{words[0]!r} where the journal lacks none")
     return faults
 
@@ -100,12 +101,12 @@ def stop_once(seconds: float) -> dict[str, object]:
                 os.kill(process.pid, signal.SIGSTOP)
                 time.sleep(seconds)
                 os.kill(process.pid, signal.SIGCONT)
-                said, _ = process.communicate("\n", timeout=120)
+                stated, _ = process.communicate("\n", timeout=120)
         finally:
             for emulation in emulations:
                 emulation.close()
-    told: dict[str, object] = json.loads(said)
-    return told
+    reported: dict[str, object] = json.loads(stated)
+    return reported
 
 
 def main() -> int:
@@ -114,16 +115,16 @@ def main() -> int:
     parser.add_argument("--seconds", type=float, default=20.0)
     parser.add_argument("--record", metavar="FOLDER", type=Path, help=argparse.SUPPRESS)
     parser.add_argument("places", nargs="*", help=argparse.SUPPRESS)
-    wanted = parser.parse_args()
-    if wanted.record is not None:
-        record(wanted.record, wanted.places)
+    required = parser.parse_args()
+    if required.record is not None:
+        record(required.record, required.places)
         return 0
     faults = []
-    for _ in range(wanted.count):
-        told = stop_once(wanted.seconds)
-        faults += faults_of(told, wanted.seconds)
-        print(told, flush=True)
-    print(f"{wanted.count} standstills of {wanted.seconds:.0f} s: {len(faults)} faults", *faults, sep="\n")
+    for _ in range(required.count):
+        reported = stop_once(required.seconds)
+        faults += faults_of(reported, required.seconds)
+        print(reported, flush=True)
+    print(f"{required.count} standstills of {required.seconds:.0f} s: {len(faults)} faults", *faults, sep="\n")
     return 1 if faults else 0
 
 

@@ -1,6 +1,6 @@
 """Two stations edit the same patients, sessions and recordings as fast as they can: is every edit there, once?
 
-Each station is a process. An edit that is refused because somebody else was quicker is read anew and tried again; one
+Each station is a process. An edit that is refused because somebody else was quicker is read again and tried again; one
 that was taken is noted in a file of the station's own. Afterwards the server's tables are compared with these notes,
 by SQL alone: nothing of the application is asked but whether the audit's keyed hashes are right.
 """
@@ -229,7 +229,7 @@ def corrected(table: str, row: UUID, version: int, subject: str, **new: object) 
     return edited(table, row, version, [subject]) | {"corrections": 1, "new": new}
 
 
-# what came of it, as the server's tables tell
+# what came of it, as the server's tables report
 
 
 def _tables(address: str) -> dict[str, list[Row]]:
@@ -248,9 +248,9 @@ def _judge(before: dict[str, list[Row]], after: dict[str, list[Row]], taken: lis
     ]
 
 
-def _counted(table: str, before: dict[str, list[Row]], after: dict[str, list[Row]], wanted: int) -> list[str]:
+def _counted(table: str, before: dict[str, list[Row]], after: dict[str, list[Row]], needed: int) -> list[str]:
     grown = len(after[table]) - len(before[table])
-    return [] if grown == wanted else [f"{grown} {table} came, not {wanted}"]
+    return [] if grown == needed else [f"{grown} {table} came, not {needed}"]
 
 
 def _versions(before: dict[str, list[Row]], after: dict[str, list[Row]], taken: list[Row]) -> list[str]:
@@ -262,9 +262,9 @@ def _versions(before: dict[str, list[Row]], after: dict[str, list[Row]], taken: 
         key = "code" if table == "operators" else "id"
         was = {str(row[key]): row["version"] for row in before[table]}
         for row in after[table]:
-            grown, wanted = row["version"] - was[str(row[key])], bumps[table, str(row[key])]
-            if grown != wanted:
-                faults.append(f"{table} {row[key]}: {grown} versions for {wanted} edits")
+            grown, needed = row["version"] - was[str(row[key])], bumps[table, str(row[key])]
+            if grown != needed:
+                faults.append(f"{table} {row[key]}: {grown} versions for {needed} edits")
     return faults
 
 
@@ -314,13 +314,13 @@ def _audit(before: list[Row], after: list[Row], taken: list[Row]) -> list[str]:
             faults.append(f"audit {row['number']} does not follow")
         previous = row["hash"]
     came = Counter(row["subject"] for row in entries[len(before) :])
-    wanted = Counter(subject for row in taken for subject in row["audits"]) + Counter(
+    needed = Counter(subject for row in taken for subject in row["audits"]) + Counter(
         f"operator:{code}" for code in OPERATORS
     )
     faults += [
-        f"audit of {subject}: {came[subject]} entries, {wanted[subject]} wanted"
-        for subject in came.keys() | wanted.keys()
-        if came[subject] != wanted[subject]
+        f"audit of {subject}: {came[subject]} entries, {needed[subject]} wanted"
+        for subject in came.keys() | needed.keys()
+        if came[subject] != needed[subject]
     ]
     return faults
 
@@ -347,9 +347,9 @@ def main() -> None:
     parser.add_argument("note", type=Path)
     parser.add_argument("--edits", type=int, required=True)
     parser.add_argument("--seed", type=int, default=1)
-    wanted = parser.parse_args()
-    editor = Editor(wanted.folder, wanted.code, wanted.note, wanted.seed)
-    for _ in range(wanted.edits):
+    needed = parser.parse_args()
+    editor = Editor(needed.folder, needed.code, needed.note, needed.seed)
+    for _ in range(needed.edits):
         editor.edit()
 
 

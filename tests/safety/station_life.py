@@ -1,4 +1,5 @@
-"""A clinic's station that records one walk after the other, whatever the server and the shared place do, until told.
+"""A clinic's station that records one walk after the other, whatever the server and the shared place do, until
+reported.
 
 It does what the window does: looks through what is left over, listens to the server, hands over, tries again what could
 not be read back. It notes what it is at, so that whoever kills it can choose the moment, and what it has recorded.
@@ -148,8 +149,8 @@ class StationLife:
 
     def _record(self, opened: OpenedLibrary, acquisition: Acquisition, number: int) -> None:
         name = f"{self._code} {os.getpid()} {number}"
-        told = Recording(name, RecordingKind.WALKING, name.replace(" ", "_"), {})
-        recorder = Recorder.begin(opened, acquisition, self._session_id, told, room=NO_ROOM_ASKED)
+        reported = Recording(name, RecordingKind.WALKING, name.replace(" ", "_"), {})
+        recorder = Recorder.begin(opened, acquisition, self._session_id, reported, room=NO_ROOM_ASKED)
         with self._moments.at(RECORDING):
             time.sleep(self._rng.uniform(SHORTEST_S, LONGEST_S))
             recorder.halt()
@@ -178,8 +179,8 @@ class StationLife:
             for refused in recover_all(opened):
                 self._note(not_recovered=refused)
 
-    def _note(self, **said: object) -> None:
-        self._file.write(json.dumps(said) + "\n")
+    def _note(self, **stated: object) -> None:
+        self._file.write(json.dumps(stated) + "\n")
         self._file.flush()
 
     def _mark_handing_over(self) -> None:
@@ -200,19 +201,19 @@ def read_all_of(opened: OpenedLibrary, session_id: UUID) -> Iterator[tuple[UUID,
 
 
 def serve() -> None:
-    """Fork a station for every line that tells of one, or say how one has ended: forking saves the imports."""
-    library_watch.LISTEN_EVERY_S = 0.5  # else a short outage is not heard of
+    """Fork a station for every line that reports one, or say how one has ended: forking saves the imports."""
+    library_watch.LISTEN_EVERY_S = 0.5  # else a short outage is not known of
     library_watch.BRING_AGAIN_S = 1.0
     print("ready", flush=True)
     living: dict[int, ForkProcess] = {}
     for line in sys.stdin:
-        told = json.loads(line)
-        if "ended" in told:
-            child = living.pop(told["ended"])
+        reported = json.loads(line)
+        if "ended" in reported:
+            child = living.pop(reported["ended"])
             child.join()
             print(child.exitcode, flush=True)
             continue
-        places = (Path(told["folder"]), told["code"], UUID(told["session"]), Path(told["notes"]))
+        places = (Path(reported["folder"]), reported["code"], UUID(reported["session"]), Path(reported["notes"]))
         child = get_context("fork").Process(target=_live, args=places)
         child.start()
         assert child.pid is not None

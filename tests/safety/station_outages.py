@@ -34,7 +34,7 @@ from tests.safety.station_life import ADOPTING, HANDING_OVER, RECORDING, STOP, i
 
 MOMENTS = {RECORDING: "recording", HANDING_OVER: "handing over", ADOPTING: "adopting", -1: "at any instant"}
 LOOKED_S, FORGOTTEN_S = 0.002, 180.0
-WANTED_S = 3.0  # so long a moment to kill at is waited for
+REQUIRED_S = 3.0  # so long a moment to kill at is waited for
 
 
 @dataclass(slots=True)
@@ -81,8 +81,8 @@ class _Storm:
         self._away = clinic.place.with_name("taken away")
         command = [sys.executable, "-m", "tests.safety.station_life"]
         root, pipe = Path(__file__).parents[2], subprocess.PIPE
-        with (folder / "said").open("w") as said:
-            self._nursery = subprocess.Popen(command, cwd=root, stdin=pipe, stdout=pipe, stderr=said, text=True)
+        with (folder / "said").open("w") as stated:
+            self._nursery = subprocess.Popen(command, cwd=root, stdin=pipe, stdout=pipe, stderr=stated, text=True)
         assert self._nursery.stdout is not None
         self._nursery.stdout.readline()  # it has loaded everything
         self._living = {code: self._start(code) for code in OPERATORS}
@@ -119,17 +119,17 @@ class _Storm:
 
     def _start(self, code: str) -> int:
         station = self.clinic.stations[OPERATORS.index(code)]
-        told = {"folder": str(station), "code": code, "session": str(self.session_id), "notes": str(self.noted)}
-        return self._ask(told)
+        reported = {"folder": str(station), "code": code, "session": str(self.session_id), "notes": str(self.noted)}
+        return self._ask(reported)
 
     def _ended(self, code: str) -> int:
         """How a station ended, once it has: the signal's number, negative, where it was killed."""
         return self._ask({"ended": self._living[code]})
 
-    def _ask(self, told: dict[str, object] | dict[str, str] | dict[str, int]) -> int:
+    def _ask(self, reported: dict[str, object] | dict[str, str] | dict[str, int]) -> int:
         assert self._nursery.stdin is not None
         assert self._nursery.stdout is not None
-        print(json.dumps(told), file=self._nursery.stdin, flush=True)
+        print(json.dumps(reported), file=self._nursery.stdin, flush=True)
         return int(self._nursery.stdout.readline())
 
     def _switch(self) -> None:
@@ -153,7 +153,7 @@ class _Storm:
         code, moment = self._rng.choice(OPERATORS), next(self._moments)
         if moment == ADOPTING:  # which it does at its start
             self._end(code)
-        wish, give_up_s = self.noted / f"{code}.wish", time.monotonic() + WANTED_S
+        wish, give_up_s = self.noted / f"{code}.wish", time.monotonic() + REQUIRED_S
         if moment >= 0:
             wish.with_suffix(".new").write_text(str(moment))
             wish.with_suffix(".new").replace(wish)
@@ -244,12 +244,12 @@ def _lines(path: Path) -> list[Row]:
 
 
 def _judge_place(clinic: Clinic, found: Outages) -> None:
-    """In the shared place is one file for each journal, which is what its name says, and nothing else."""
-    wanted = Counter(row["kept_as"] for row in rows_of(clinic.address, "SELECT kept_as FROM journals"))
+    """In the shared place is one file for each journal, which is what its name states, and nothing else."""
+    required = Counter(row["kept_as"] for row in rows_of(clinic.address, "SELECT kept_as FROM journals"))
     there = {path.name for path in clinic.place.iterdir() if path.suffix == SUFFIX}
-    found.faults += [f"{name} is kept for {count} journals" for name, count in wanted.items() if count > 1]
-    found.faults += [f"{name} is kept there for nobody" for name in there - wanted.keys()]
-    found.faults += [f"{name} is not there" for name in wanted.keys() - there]
+    found.faults += [f"{name} is kept for {count} journals" for name, count in required.items() if count > 1]
+    found.faults += [f"{name} is kept there for nobody" for name in there - required.keys()]
+    found.faults += [f"{name} is not there" for name in required.keys() - there]
     for name in there:
         if _sha256(clinic.place / name) + SUFFIX != name:
             found.faults.append(f"{name} is not what its name says")

@@ -22,7 +22,7 @@ class Sent:
     Attributes
     ----------
     number
-        Of the sample that they tell whole, by the sensor's clock; None of what is no whole message.
+        Of the sample that they report whole, by the sensor's clock; None of what is no whole message.
     index
         Which sample of the stream it is; None where none was taken then.
     """
@@ -46,11 +46,11 @@ def in_bursts(sample: Callable[[int], bytes], count: int, chance: random.Random)
 
 
 def _hurt(block: Sequence[Sent], sample: Callable[[int], bytes], chance: random.Random) -> list[Sent]:
-    said = b"".join(one.data for one in block)
+    stated = b"".join(one.data for one in block)
     k = chance.randrange(len(block))
     match chance.randrange(9):
         case 0:
-            return [Sent(_changed(said, chance))]
+            return [Sent(_changed(stated, chance))]
         case 1:
             return []
         case 2:
@@ -58,8 +58,8 @@ def _hurt(block: Sequence[Sent], sample: Callable[[int], bytes], chance: random.
         case 3:
             return [*block, *block]
         case 4:
-            at = chance.randrange(len(said))
-            return [Sent(said[:at] + said[at + chance.randint(1, len(said)) :])]
+            at = chance.randrange(len(stated))
+            return [Sent(stated[:at] + stated[at + chance.randint(1, len(stated)) :])]
         case 5:
             return [*block[:k], Sent(chance.randbytes(chance.randint(1, MOST_NOISE))), *block[k:]]
         case 6:
@@ -72,9 +72,9 @@ def _hurt(block: Sequence[Sent], sample: Callable[[int], bytes], chance: random.
             return [*block[:k], *(Sent(sample(number), number) for number in wild), *block[k:]]
 
 
-def _changed(said: bytes, chance: random.Random) -> bytes:
+def _changed(stated: bytes, chance: random.Random) -> bytes:
     """The same bytes, a share of them others."""
-    data, share = bytearray(said), chance.random() ** 3
+    data, share = bytearray(stated), chance.random() ** 3
     for at in range(len(data)):
         if chance.random() < share:
             data[at] = chance.randrange(256)

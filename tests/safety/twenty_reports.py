@@ -1,4 +1,4 @@
-"""Twenty sessions, strangers' among them: is every report whole, and every number that a sentence says in a file?
+"""Twenty sessions, strangers' among them: is every report whole, and every number that a sentence states in a file?
 
     GAITWRIGHT_TEST_DATA=... python -m tests.safety.twenty_reports [--pictures FOLDER]
 
@@ -51,7 +51,7 @@ HEAD_AND_FOOT = 0.08  # of a page's height, each
 NUMBER = re.compile(r"(?<![\w.])\u2212?\d+(?:[.,]\d+)?")
 MONTHS = "Jan|Feb|Mar|Mär|Apr|May|Mai|Jun|Jul|Aug|Sep|Oct|Okt|Nov|Dec|Dez"
 DATES = re.compile(rf"\d{{1,2}}\.? (?:{MONTHS})\w* ?(?:\d{{4}})?")
-SAID_OF_METHOD = {"1", "2", "3"}  # "2 SD", visit 1, band [1]
+STATED_OF_METHOD = {"1", "2", "3"}  # "2 SD", visit 1, band [1]
 
 
 @dataclass(slots=True)
@@ -66,8 +66,8 @@ class Trial:
 
 def sessions() -> Iterator[tuple[str, ReportRequest]]:
     """All twenty, those of strangers only where the recordings are at hand."""
-    told = simulate(DEMONSTRATION).session
-    base = replace(told, started="2026-11-23T09:10:00+01:00")
+    reported = simulate(DEMONSTRATION).session
+    base = replace(reported, started="2026-11-23T09:10:00+01:00")
     analysis = analyse(base)
 
     def of(session: Session, found: Analysis, **more: Any) -> ReportRequest:
@@ -115,13 +115,13 @@ def _only(session: Session, is_worn: Any) -> Session:
 def _alignments() -> Session:
     walks = tuple(Walk(name=f"walk {k}", strides=13, speed_m_s=speed) for k, speed in ((1, 1.05), (2, 1.15), (3, 1.2)))
     settings = replace(DEMONSTRATION, seed=7, prosthetic_side=Side.RIGHT)
-    told = simulate(replace(settings, recordings=(Standing(), FreeMotion(), *walks))).session
+    reported = simulate(replace(settings, recordings=(Standing(), FreeMotion(), *walks))).session
     letters = iter("ABC")
     recordings = tuple(
         replace(one, condition=f"alignment {next(letters)}") if one.kind is RecordingKind.WALKING else one
-        for one in told.recordings
+        for one in reported.recordings
     )
-    return replace(told, recordings=recordings, started="2026-11-20T09:42:00+01:00")
+    return replace(reported, recordings=recordings, started="2026-11-20T09:42:00+01:00")
 
 
 def _course(session: Session, analysis: Analysis) -> dict[str, Any]:
@@ -145,15 +145,15 @@ def _course(session: Session, analysis: Analysis) -> dict[str, Any]:
 def sentences_of(data: dict[str, Any]) -> list[str]:
     """Every sentence that a reader takes away: of page one, of the course, and of the patient's page."""
     first = data["first_page"]
-    said = [" ".join(words) for _, *words in first["answer"]["sentences"]]
-    said += [*first["answer"]["caveats"], *first["readable"]["notes"]]
+    stated = [" ".join(words) for _, *words in first["answer"]["sentences"]]
+    stated += [*first["answer"]["caveats"], *first["readable"]["notes"]]
     for page in data["pages"]:
         for block in page:
             if block["kind"] == "bullets":
-                said += block["said"]
+                stated += block["said"]
             elif block["kind"] == "patient":
-                said += [block["answer"], *(text for _, text in block["texts"])]
-    return said
+                stated += [block["answer"], *(text for _, text in block["texts"])]
+    return stated
 
 
 def numbers_in_files(folder: Path) -> set[float]:
@@ -205,7 +205,7 @@ def unknown_numbers(sentence: str, known: set[float]) -> list[str]:
         plain = word.replace("\u2212", "").replace(",", ".")
         decimals = len(plain.partition(".")[2])
         half = 0.5 * 10.0**-decimals * 1.001
-        if plain not in SAID_OF_METHOD and not any(abs(value - float(plain)) <= half for value in known):
+        if plain not in STATED_OF_METHOD and not any(abs(value - float(plain)) <= half for value in known):
             found.append(word)
     return found
 
@@ -278,9 +278,9 @@ def tried(name: str, request: ReportRequest, pictures: Path | None = None) -> Tr
         write_visits(request, folder)
         known = numbers_in_files(folder) | numbers_of_bands()
     known |= _of_earlier_visits(request)
-    said = sentences_of(data)
-    trial.sentences = len(said)
-    for sentence in said:
+    stated = sentences_of(data)
+    trial.sentences = len(stated)
+    for sentence in stated:
         if unknown := unknown_numbers(sentence, known):
             trial.faults.append(f"{', '.join(unknown)} is in no file: {sentence}")
     if pictures is not None:
@@ -290,7 +290,7 @@ def tried(name: str, request: ReportRequest, pictures: Path | None = None) -> Tr
 
 
 def _of_earlier_visits(request: ReportRequest) -> set[float]:
-    """What is kept of earlier visits stands in files of their own: their values, and what they differ by."""
+    """What is kept of earlier visits is in files of their own: their values, and what they differ by."""
     last = request.course[-1] if request.course else None
     found: set[float] = set()
     for visit in request.course:

@@ -6,9 +6,10 @@ Starts a PostgreSQL of its own and two instances of the application, each on a d
 and with folders of its own, worked from outside by xdotool as `tests/tours/tour.py` does. Station one begins with a new
 library and moves it to the server in the settings; station two joins at its first start. Then
 
-1. a session is recorded on one and reviewed on the other, which was not started anew;
-2. both open the same patient and change the height: what the second says does not overwrite the first, and it is told;
-3. the server is stopped at once amid a walk, which goes on and is stopped; once the server is there again the walk is
+1. a session is recorded on one and reviewed on the other, which was not started again;
+2. both open the same patient and change the height: what the second states does not overwrite the first, and it is
+reported; 3. the server is stopped at once amid a walk, which goes on and is stopped; once the server is there again
+the walk is
    in the library once, with all its samples, and is read on the other station.
 
 After each the database is looked into. Pictures of every stop go into OUT, a folder for each station.
@@ -49,13 +50,13 @@ from tests.tours.tour_stops import (
     at_step,
     is_recording,
     offers,
-    says,
+    states,
     walk,
 )
 
 LOOKS = (f"light {WINDOW}",)
 CODE = "DEMO-7"
-HEIGHTS = ("180", "182")  # cm, said at station one, then at station two
+HEIGHTS = ("180", "182")  # cm, stated at station one, then at station two
 PATIENCE_S = 60.0
 AWAY_S = 12.0  # that a walk goes on without a server
 MOST_ASKED_S = 0.5  # for an answer of a window's own thread; on a busy machine, with what xdotool takes
@@ -139,7 +140,7 @@ def _set_up(one: StationOnScreen, two: StationOnScreen, server: Server, place: P
         Stop("10-home", offers("New patient"), ("click Settings",)),
         Stop(
             "11-settings",
-            says("Several workstations"),
+            states("Several workstations"),
             (
                 "to Address of the clinic",
                 f"type {server.address}",
@@ -148,9 +149,12 @@ def _set_up(one: StationOnScreen, two: StationOnScreen, server: Server, place: P
                 "to Move to the clinic",
             ),
         ),
-        Stop("12-to-be-moved", says("Several workstations"), ("press space",)),
+        Stop("12-to-be-moved", states("Several workstations"), ("press space",)),
         Stop(
-            "13-moved", says("are on the clinic's server, checked row by row"), ("press Escape",), patience_s=PATIENCE_S
+            "13-moved",
+            states("are on the clinic's server, checked row by row"),
+            ("press Escape",),
+            patience_s=PATIENCE_S,
         ),
         Stop("14-home", offers("New patient")),
     )
@@ -167,11 +171,11 @@ def _set_up(one: StationOnScreen, two: StationOnScreen, server: Server, place: P
         Stop("13-typed", at("JoinPage"), ("press Return",)),
         Stop(
             "13a-place",
-            says("The server gives this storage for the recordings"),
+            states("The server gives this storage for the recordings"),
             ("press Return",),
             patience_s=PATIENCE_S,
         ),
-        Stop("14-log-in", says("The clinic's library on"), (f"type {PASSPHRASE}", "press Return")),
+        Stop("14-log-in", states("The clinic's library on"), (f"type {PASSPHRASE}", "press Return")),
         Stop("15-home", offers("New patient"), patience_s=PATIENCE_S),
     )
     _expect(server.rows("SELECT count(*) AS n FROM operators")[0]["n"] == 1, "one operator is on the server")
@@ -216,12 +220,15 @@ def _change_the_same(one: StationOnScreen, two: StationOnScreen, server: Server)
     one.lead(Stop("43-changes", at_step("PatientStep"), ("press ctrl+a", f"type {HEIGHTS[0]}", "press Tab")))
     _wait_until(lambda: _patient(server)["version"] == before["version"] + 1, "station one's height is saved")
     two.lead(Stop("42-changes", at_step("PatientStep"), ("press ctrl+a", f"type {HEIGHTS[1]}", "press Tab")))
-    told = "meanwhile"
+    reported = "meanwhile"
     two.lead(
         Stop(
-            "43-told", lambda seen: any(told in words for words in seen.words), ("click Leave theirs",), lingers_s=1.0
+            "43-told",
+            lambda seen: any(reported in words for words in seen.words),
+            ("click Leave theirs",),
+            lingers_s=1.0,
         ),
-        Stop("44-answered", lambda seen: at_step("PatientStep")(seen) and not seen.says(told), lingers_s=1.0),
+        Stop("44-answered", lambda seen: at_step("PatientStep")(seen) and not seen.states(reported), lingers_s=1.0),
     )
     after = _patient(server)
     # station two's own value is in the history, made and taken back; the row holds the first one's
@@ -237,7 +244,7 @@ def _lose_the_server(one: StationOnScreen, two: StationOnScreen, server: Server,
         Stop("52-patient", at_step("PatientStep"), ("click Put on sensors",)),
         Stop("53-source", at_step("SensorsStep"), ("press Return",), lingers_s=1.0),
         Stop("53b-sensors", offers("Detect from movement"), placed, lingers_s=5.0),
-        Stop("53c-placed", says("All six are assigned and connected"), ("press Return",), lingers_s=1.0),
+        Stop("53c-placed", states("All six are assigned and connected"), ("press Return",), lingers_s=1.0),
         Stop("54-stand-still", at_step("StandStillStep"), ("press space",), lingers_s=1.0),
         Stop("55-standing", is_recording, lingers_s=1.0),
         Stop("56-free-motion", lambda seen: at_step("FreeMotionStep")(seen) and seen.is_recording, lingers_s=7.0),
@@ -252,7 +259,7 @@ def _lose_the_server(one: StationOnScreen, two: StationOnScreen, server: Server,
     one.application.hand("key", "space")
     walked_s = time.monotonic() - began_s
     slowest_s = max(slowest_s, _watch(one, 5.0))
-    one.lead(Stop("60-stopped", lambda seen: not seen.says("Stop walk")))
+    one.lead(Stop("60-stopped", lambda seen: not seen.states("Stop walk")))
     server.start()
     one.lead(
         Stop("61-back", lambda seen: not any("does not respond" in one for one in (seen.banner, *seen.words))),
@@ -285,13 +292,13 @@ def _read_walk(server: Server, folder: Path, walked_s: float) -> tuple[int, floa
         walks = [one for one in stored.recordings if one.details.kind is RecordingKind.WALKING]
         _expect(len(walks) == 1, f"the walk is there once: {len(walks)}")
         read = session_with_samples(opened, stored, DECODERS, lambda _share, _what: None)
-    (told,) = (one for one in read.recordings if one.kind is RecordingKind.WALKING)
-    _expect(len(told.imu) == 6, f"six sensors: {sorted(told.imu)}")
-    gaps_s = {site: float(np.diff(block.time_s).max()) for site, block in told.imu.items()}
+    (reported,) = (one for one in read.recordings if one.kind is RecordingKind.WALKING)
+    _expect(len(reported.imu) == 6, f"six sensors: {sorted(reported.imu)}")
+    gaps_s = {site: float(np.diff(block.time_s).max()) for site, block in reported.imu.items()}
     _expect(max(gaps_s.values()) < LONGEST_GAP_S, f"no sample is missing: {gaps_s}")
-    lasted_s = min(float(block.time_s[-1] - block.time_s[0]) for block in told.imu.values())
+    lasted_s = min(float(block.time_s[-1] - block.time_s[0]) for block in reported.imu.values())
     _expect(lasted_s > walked_s, f"the walk goes on without the server: {lasted_s:.1f} s of more than {walked_s:.1f} s")
-    return min(len(block.time_s) for block in told.imu.values()), lasted_s
+    return min(len(block.time_s) for block in reported.imu.values()), lasted_s
 
 
 def _watch(station: StationOnScreen, for_s: float) -> float:

@@ -25,23 +25,23 @@ def main() -> None:
     parser.add_argument("--outage", type=float, default=600.0, metavar="S", help="how long things go wrong")
     parser.add_argument("--moves", type=int, default=200, metavar="KILLS", help="of moves there and back")
     parser.add_argument("--seed", type=int, default=1)
-    wanted = parser.parse_args()
+    required = parser.parse_args()
     logging.disable(logging.CRITICAL)  # a server that is gone is what this is about
     faults = []
     # a short path: a server's socket has 107 letters at most
     with tempfile.TemporaryDirectory(prefix="t15") as name, own_server(Path(name) / "pg") as server:
         Path(name).chmod(0o755)  # for the server's own user
         for what, work in (
-            ("edits", lambda folder: edit_together(make_clinic(folder, server), folder, wanted.edits, wanted.seed)),
+            ("edits", lambda folder: edit_together(make_clinic(folder, server), folder, required.edits, required.seed)),
             (
                 "outage",
                 lambda folder: live_through_outages(
-                    make_clinic(folder, server), server, folder, wanted.outage, wanted.seed
+                    make_clinic(folder, server), server, folder, required.outage, required.seed
                 ),
             ),
-            ("moves", lambda folder: move_killed(server, folder, wanted.moves, wanted.seed)),
+            ("moves", lambda folder: move_killed(server, folder, required.moves, required.seed)),
         ):
-            if getattr(wanted, what):
+            if getattr(required, what):
                 folder, begin_s = Path(name) / what, time.monotonic()
                 folder.mkdir()
                 found = work(folder)

@@ -1,4 +1,5 @@
-"""Sensors that are pulled out while they are recorded, and put in again: when each is back, and what the journals tell.
+"""Sensors that are pulled out while they are recorded, and put in again: when each is back, and what the journals
+report.
 
 Of `source_vanishes.py` and `port_vanishes.py`, which say what is pulled out and what a journal has to hold then.
 """
@@ -109,9 +110,9 @@ def run(description: str | None, vanish_often: Callable[[Path, int, int], Vanish
     parser = argparse.ArgumentParser(description=description)
     parser.add_argument("--count", type=int, default=200)
     parser.add_argument("--seed", type=int, default=1)
-    wanted = parser.parse_args()
+    required = parser.parse_args()
     with tempfile.TemporaryDirectory(prefix="gaitwright-vanish-") as folder:
-        vanished = vanish_often(Path(folder), wanted.count, wanted.seed)
+        vanished = vanish_often(Path(folder), required.count, required.seed)
     for fault in vanished.faults:
         print(fault)
     print(vanished)

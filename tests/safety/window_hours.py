@@ -4,9 +4,10 @@
 
 The whole window without a display leads a visit of the simulated patient with six sensors at 200 Hz to the walking
 page, and records one walk of so many hours, drawn 30 times a second. After the first minutes and before the stop are
-told: memory, threads, open files, objects, references to None. Then the walk is stopped, decoded and analysed, as ever.
-It ends with 1 if a sample is missing, or anything grew by more than it may. At a higher speed the clock of sensors and
-recording runs faster; frames, disk and processor do not, and the estimator may leave samples out of the preview.
+reported: memory, threads, open files, objects, references to None. Then the walk is stopped, decoded and analysed, as
+ever. It ends with 1 if a sample is missing, or anything grew by more than it may. At a higher speed the clock of
+sensors and recording runs faster; frames, disk and processor do not, and the estimator may leave samples out of the
+preview.
 """
 
 import argparse
@@ -36,14 +37,14 @@ if TYPE_CHECKING:
 RATE_HZ = 200.0
 ASKS_EVERY_S = 2.0  # shorter than any of the patient's walks: they follow each other
 SETTLED_S = 180.0  # until the buffers of the last seconds are full, and each page's parts are made
-TELLS_EVERY_S = 300.0
+SHOWS_EVERY_S = 300.0
 ANALYSED_WITHIN_S = 3600.0
 
 
 def lead(application: QApplication, window: MainWindow) -> "tuple[Wizard, Visit]":
     """Go from home to a walk that is being recorded."""
     assert window.home is not None
-    window.home.session_wished.emit(window.home.patients.patient)
+    window.home.session_requested.emit(window.home.patients.patient)
     wizard = window.wizard
     assert wizard is not None
     visit = wizard.visit
@@ -67,15 +68,17 @@ def lead(application: QApplication, window: MainWindow) -> "tuple[Wizard, Visit]
     return wizard, visit
 
 
-def walk_on(application: QApplication, acquisition: Acquisition, until_s: float, tell: Callable[[], None]) -> None:
+def walk_on(
+    application: QApplication, acquisition: Acquisition, until_s: float, show_message: Callable[[], None]
+) -> None:
     """Let the patient walk until so much of the acquisition's time has passed."""
-    told_s = time.monotonic()
+    reported_s = time.monotonic()
     while acquisition.now_s < until_s:
         acquisition.ask(RecordingKind.WALKING)
         linger(application, ASKS_EVERY_S)
-        if time.monotonic() - told_s >= TELLS_EVERY_S:
-            told_s = time.monotonic()
-            tell()
+        if time.monotonic() - reported_s >= SHOWS_EVERY_S:
+            reported_s = time.monotonic()
+            show_message()
 
 
 def faults_of(block: ImuBlock, seconds: float) -> list[str]:
@@ -93,25 +96,25 @@ def main() -> int:
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("--hours", type=float, default=2.0)
     parser.add_argument("--speed", type=float, default=1.0)
-    wanted = parser.parse_args()
-    seconds = 3600.0 * wanted.hours
+    required = parser.parse_args()
+    seconds = 3600.0 * required.hours
     session = simulate(replace(DEMONSTRATION_SESSION, rate_hz=RATE_HZ)).session
-    source = ReplaySource(session, finishes=True, speed=wanted.speed)
+    source = ReplaySource(session, finishes=True, speed=required.speed)
     with opened_window(lambda: Acquisition([source], now_ns=source.now_ns)) as (application, window):
         wizard, visit = lead(application, window)
         acquisition = visit.sensors.acquisition
         assert acquisition is not None
         began_s = acquisition.now_s
 
-        def tell() -> None:
+        def show_message() -> None:
             print(f"{(acquisition.now_s - began_s) / 3600:.2f} h: {held(window)}", flush=True)
 
-        walk_on(application, acquisition, began_s + min(SETTLED_S * wanted.speed, seconds / 4), tell)
-        tell()
+        walk_on(application, acquisition, began_s + min(SETTLED_S * required.speed, seconds / 4), show_message)
+        show_message()
         before = held(window)
-        walk_on(application, acquisition, began_s + seconds, tell)
+        walk_on(application, acquisition, began_s + seconds, show_message)
         after = held(window)
-        print(f"after {wanted.hours:g} h: {after}", flush=True)
+        print(f"after {required.hours:g} h: {after}", flush=True)
         faults = [
             f"{name} lost {one.counts.lost} live" for name, one in acquisition.status().items() if one.counts.lost
         ]

@@ -3,9 +3,9 @@
     python -m tests.safety.window_visits [--visits 30]
 
 The whole window without a display: a session is begun, sensors are opened, placed and listened to, every page that can
-be entered is shown, and the session is left; again and again. After the first five visits and after the last are told:
-memory, threads, open files, objects of Qt below the window and of Python in all, and references to None, which a fault
-in a binding would use up. It ends with 1 if anything grew by more than it may.
+be entered is shown, and the session is left; again and again. After the first five visits and after the last are
+reported: memory, threads, open files, objects of Qt below the window and of Python in all, and references to None,
+which a fault in a binding would use up. It ends with 1 if anything grew by more than it may.
 """
 
 import argparse
@@ -34,7 +34,7 @@ LISTENS_S = 0.5
 def make_visit(application: QApplication, window: MainWindow) -> None:
     """Begin a session, put six sensors on, look at every page that may be entered, and leave."""
     assert window.home is not None
-    window.home.session_wished.emit(window.home.patients.patient)
+    window.home.session_requested.emit(window.home.patients.patient)
     wizard = window.wizard
     assert wizard is not None
     visit: Visit | None = wizard.visit

@@ -3,7 +3,8 @@
     python -m tests.safety.wizard_kills LIBRARY PASSPHRASE POINT [--pelvis]
 
 The whole window without a display, on a library with one patient coded for simulations, whose time runs twenty times
-as fast as ours. When the point is reached it prints one line of JSON, what was said and recorded until then, and waits.
+as fast as ours. When the point is reached it prints one line of JSON, what was stated and recorded until then, and
+waits.
 """
 
 import argparse
@@ -65,7 +66,7 @@ class Guide:
         window.controller.open(library, passphrase)
         self._wait(lambda: window.home is not None and window.home.patients.patient is not None)
         assert window.home is not None
-        window.home.session_wished.emit(window.home.patients.patient)
+        window.home.session_requested.emit(window.home.patients.patient)
         assert window.wizard is not None
         assert window.wizard.visit is not None
         self.wizard, self.visit = window.wizard, window.wizard.visit
@@ -105,7 +106,7 @@ class Guide:
         self._wait(lambda: self.visit.evaluation.analysis is not None and not self.visit.evaluation.is_busy)
         first, second = self.visit.recordings.walks
         step = self._results
-        self.visit.recordings.change(first, lambda told: replace(told, left_out_s={Side.LEFT: (4.0,)}))
+        self.visit.recordings.change(first, lambda reported: replace(reported, left_out_s={Side.LEFT: (4.0,)}))
         step._on_condition_typed(str(first.id), CONDITION)  # before the library has the stride: both hold
         step._on_sign_turned(str(Joint.LEFT_KNEE), True)
         step._on_kept_turned(str(second.id), False)
@@ -129,10 +130,10 @@ class Guide:
         self._report.save_in(str(out))
         self._wait(lambda: any(out.parent.glob(f".{out.name}-*/new/*")))
 
-    def tell(self) -> None:
-        """Print what was said and recorded."""
+    def show_message(self) -> None:
+        """Print what was stated and recorded."""
         assert self.visit.session is not None
-        heard = self.acquisition.latest(self.acquisition.sensors[0], 29.0)  # as long as it holds
+        received = self.acquisition.latest(self.acquisition.sensors[0], 29.0)  # as long as it holds
         recordings = {
             recording.details.name: {
                 str(site): len(block)
@@ -140,12 +141,12 @@ class Guide:
             }
             for recording in self.visit.recordings.every
         }
-        told = {
+        reported = {
             "session": str(self.visit.session.id),
             "takes": recordings,
-            "heard_s": float(heard.time_s[-1]) - self._began_s,
+            "heard_s": float(received.time_s[-1]) - self._began_s,
         }
-        print(json.dumps(told), flush=True)
+        print(json.dumps(reported), flush=True)
 
     def _record(self, kind: RecordingKind, seconds: float) -> None:
         recordings, count = self.visit.recordings, len(self.visit.recordings.every)
@@ -194,9 +195,9 @@ def main() -> int:
     parser.add_argument("passphrase")
     parser.add_argument("point", type=Point)
     parser.add_argument("--pelvis", action="store_true", help="with a seventh sensor")
-    wanted = parser.parse_args()
+    required = parser.parse_args()
     played = (Standing(duration_s=10.0), FreeMotion(duration_s=30.0), Walk(strides=14), Walk("walk 2", strides=14))
-    sites = tuple(Site) if wanted.pelvis else LEG_SITES
+    sites = tuple(Site) if required.pelvis else LEG_SITES
     session = simulate(replace(DEMONSTRATION, sites=sites, recordings=played)).session
     source = ReplaySource(session, speed=SPEED)
     fast = SourceChoice("fast", "Fast patient", lambda: Acquisition([source], source.now_ns), is_simulated=True)
@@ -205,13 +206,13 @@ def main() -> int:
     application = QApplication([])
     application.setStyle("Fusion")
     load_fonts()
-    settings = Settings(QSettings(str(wanted.library.parent / "settings.ini"), QSettings.Format.IniFormat))
-    window = MainWindow(ThemeNotifier(application), settings, wanted.library)
+    settings = Settings(QSettings(str(required.library.parent / "settings.ini"), QSettings.Format.IniFormat))
+    window = MainWindow(ThemeNotifier(application), settings, required.library)
     window.show()
     guide = Guide(application, window)
-    guide.begin(wanted.library, wanted.passphrase, sites)
-    lead(guide, wanted.point)
-    guide.tell()
+    guide.begin(required.library, required.passphrase, sites)
+    lead(guide, required.point)
+    guide.show_message()
     linger(application, WAITS_S)
     return 1
 

@@ -3,11 +3,11 @@
 Starts the application on a display of its own (Xvfb with openbox) and with a data folder of its own, which is gone
 afterwards. The window is worked by xdotool alone, from outside. `--keyboard` uses no mouse: from the first start, with
 a library of its own, to the saved results. `--mouse` uses keys for nothing, in the demonstration. What is on the screen
-is told by the application's own process, and pictures of every stop are written into OUT, a folder for each look. It
+is given by the application's own process, and pictures of every stop are written into OUT, a folder for each look. It
 exits with 1, naming the stop, when a session cannot be led to its end, or not in five minutes of the application's
 stopwatch.
 
-To change a tour change `tour_stops.py`: each stop waits until the screen says what it should, has its pictures taken
+To change a tour change `tour_stops.py`: each stop waits until the screen states what it should, has its pictures taken
 and acts. `--manual` puts the pictures that the manual and the README show where they are read; `--lang` leads the same
 sessions in another language.
 """
@@ -68,7 +68,7 @@ class TourError(Exception):
 
 @dataclass(slots=True)
 class Application:
-    """The application in a process of its own, and what it tells."""
+    """The application in a process of its own, and what it reports."""
 
     process: subprocess.Popen[str]
     display: str
@@ -85,10 +85,10 @@ class Application:
         raise TourError("The application has ended.")
 
     def seen(self) -> Seen:
-        told = self.ask("tell")
-        controls = {name: (x, y) for name, (x, y) in told.pop("controls").items()}
-        words, focus = tuple(told.pop("words")), tuple(told.pop("focus"))
-        return Seen(**told, words=words, focus=focus, controls=controls)
+        reported = self.ask("tell")
+        controls = {name: (x, y) for name, (x, y) in reported.pop("controls").items()}
+        words, focus = tuple(reported.pop("words")), tuple(reported.pop("focus"))
+        return Seen(**reported, words=words, focus=focus, controls=controls)
 
     def picture(self, look: str, file: Path) -> None:
         file.parent.mkdir(parents=True, exist_ok=True)
@@ -117,41 +117,43 @@ def main(arguments: list[str]) -> None:
     parser.add_argument("--trace", type=Path, metavar="FILE", help="note there, by strace, whom the application calls")
     parser.add_argument("--lang", default="en", help="what the application speaks, as de")
     parser.add_argument("--manual", action="store_true", help="give the manual of that language its pictures anew")
-    wanted = parser.parse_args(arguments)
+    required = parser.parse_args(arguments)
     missing = [package for program, package in PROGRAMS.items() if shutil.which(program) is None]
     if missing:
         sys.exit(f"The tour needs a display and hands. Install {', '.join(missing)}, then start again.")
-    themes = THEMES if wanted.theme == "both" else (wanted.theme,)
-    looks = [f"{theme} {size}" for size in wanted.sizes for theme in themes]
-    for tour in [wanted.tour] if wanted.tour else list(TOURS):
+    themes = THEMES if required.theme == "both" else (required.theme,)
+    looks = [f"{theme} {size}" for size in required.sizes for theme in themes]
+    for tour in [required.tour] if required.tour else list(TOURS):
         with ExitStack() as stack:
             display = stack.enter_context(own_display())
-            application = stack.enter_context(running(display, [*tracer(wanted.trace), *INSIDE]))
-            if wanted.lang != "en":
-                application.ask(f"speak {wanted.lang}")
+            application = stack.enter_context(running(display, [*tracer(required.trace), *INSIDE]))
+            if required.lang != "en":
+                application.ask(f"speak {required.lang}")
                 application.ask("begin")  # the window is another
             try:
-                stopwatch_s = lead(application, TOURS[tour], wanted.out.resolve(), looks)
+                stopwatch_s = lead(application, TOURS[tour], required.out.resolve(), looks)
             except TourError as end:
                 sys.exit(str(end))
-        if wanted.manual:
+        if required.manual:
             _give_pictures(
-                wanted.out, MANUAL.get(tour, {}), PICTURES if wanted.lang == "en" else HELP / wanted.lang / "pictures"
+                required.out,
+                MANUAL.get(tour, {}),
+                PICTURES if required.lang == "en" else HELP / required.lang / "pictures",
             )
         print(f"{len(TOURS[tour])} stops by {tour} alone, {stopwatch_s:.0f} s of the application's stopwatch.")
 
 
-def _give_pictures(out: Path, wanted: Mapping[str, str], pictures: Path) -> None:
+def _give_pictures(out: Path, required: Mapping[str, str], pictures: Path) -> None:
     """With a palette of 256 colours, more than the pages have, they are a third as large."""
     pictures.mkdir(parents=True, exist_ok=True)
-    for stop, picture in wanted.items():
+    for stop, picture in required.items():
         for theme, suffix in (("light", ""), ("dark", "-dark")):
             taken, given = out / f"{theme}-{WINDOW}" / f"{stop}.png", pictures / f"{picture}{suffix}.png"
             subprocess.run(["convert", taken, "-dither", "None", "-colors", "256", f"PNG8:{given}"], check=True)
 
 
 def lead(application: Application, stops: Sequence[Stop], out: Path, looks: Sequence[str]) -> float:
-    """Go from stop to stop, and give what the application's own stopwatch says of the session.
+    """Go from stop to stop, and give what the application's own stopwatch states of the session.
 
     Parameters
     ----------

@@ -1,4 +1,4 @@
-"""The application's side of a tour: it opens as always, and tells on a pipe what is on its screen.
+"""The application's side of a tour: it opens as always, and reports on a pipe what is on its screen.
 
 Started by `tour.py`.
 """
@@ -30,7 +30,7 @@ def run() -> int:
     from app.main_window import open_window
 
     class Guide(QObject):
-        """Hears commands from a thread that reads, and answers on the screen's."""
+        """Receives commands from a thread that reads, and answers on the screen's."""
 
         asked = Signal(str)
 
@@ -52,7 +52,7 @@ def _answer(command: str) -> None:
     windows = [widget for widget in QApplication.topLevelWidgets() if isinstance(widget, MainWindow)]
     window = next(widget for widget in windows if widget.isVisible())
     verb, *rest = command.split()
-    told: dict[str, Any] = {}
+    reported: dict[str, Any] = {}
     match verb:
         case "begin":
             window.move(*CORNER)
@@ -60,14 +60,14 @@ def _answer(command: str) -> None:
         case "look":
             _take_look(window, *rest)
         case "speak":
-            window._settings.language = rest[0]  # the window is made anew in it
+            window._settings.language = rest[0]  # the window is made again in it
         case "picture":
             _picture_of(window).save(rest[0])
         case "tell":
-            told = _look_at(window)
+            reported = _look_at(window)
         case "end":
             window.close()
-    print(f"tour: {json.dumps(told)}", flush=True)
+    print(f"tour: {json.dumps(reported)}", flush=True)
 
 
 def _take_look(window: Any, theme: str, size: str) -> None:
@@ -120,12 +120,12 @@ def _look_at(window: Any) -> dict[str, Any]:
 
     language = spoken_language()
 
-    def read(said: str) -> tuple[str, ...]:
+    def read(stated: str) -> tuple[str, ...]:
         if language == "en":  # as always in the installed folder, which has neither catalogues to read nor their reader
-            return (said,)
+            return (stated,)
         from tests.tours.tour_words import in_english
 
-        return in_english(said, language)
+        return in_english(stated, language)
 
     screen = window.screens.currentWidget()
     step = getattr(screen, "current", None)
@@ -163,8 +163,8 @@ def _name_of(widget: "QWidget") -> str:
     """By its accessible name, or as a native dialog's button is read."""
     from PySide6.QtWidgets import QAbstractButton
 
-    said = widget.text().replace("&", "") if isinstance(widget, QAbstractButton) else ""
-    return widget.accessibleName() or said
+    stated = widget.text().replace("&", "") if isinstance(widget, QAbstractButton) else ""
+    return widget.accessibleName() or stated
 
 
 def _banners(window: "QWidget") -> list[Any]:

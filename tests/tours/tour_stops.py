@@ -11,9 +11,9 @@ PATIENCE_S = 30.0
 
 @dataclass(frozen=True, slots=True)
 class Seen:
-    """What the application tells of itself: screen and step by their classes, the control that has the focus, and the
+    """What the application reports itself: screen and step by their classes, the control that has the focus, and the
     enabled controls in sight by their accessible names, each with its middle on the display. All in English, too,
-    whatever is spoken; a word that may stand for several stands there as each of them."""
+    whatever is spoken; a word that may stand for several is there as each of them."""
 
     screen: str
     step: str
@@ -27,7 +27,7 @@ class Seen:
     def has(self, control: str) -> bool:
         return any(name.startswith(control) for name in self.controls)
 
-    def says(self, words: str) -> bool:
+    def states(self, words: str) -> bool:
         return any(words in text for text in self.words)
 
 
@@ -72,8 +72,8 @@ def offers(*controls: str) -> Callable[[Seen], bool]:
     return lambda seen: all(seen.has(control) for control in controls)
 
 
-def says(words: str) -> Callable[[Seen], bool]:
-    return lambda seen: seen.says(words)
+def states(words: str) -> Callable[[Seen], bool]:
+    return lambda seen: seen.states(words)
 
 
 def shows_pages(seen: Seen) -> bool:
@@ -81,8 +81,8 @@ def shows_pages(seen: Seen) -> bool:
 
 
 def compares(letter: str) -> Callable[[Seen], bool]:
-    """Whether the bench tells what a walk that waits to be kept is like, and not that it is being analysed."""
-    return lambda seen: seen.has(f"Include {letter}") and seen.says(f"with {letter}, ")
+    """Whether the bench gives what a walk that waits to be kept is like, and not that it is being analysed."""
+    return lambda seen: seen.has(f"Include {letter}") and seen.states(f"with {letter}, ")
 
 
 def is_recording(seen: Seen) -> bool:
@@ -141,8 +141,8 @@ KEYBOARD: tuple[Stop, ...] = (
         ),
     ),
     Stop("02-typed", at("FirstStartPage"), ("press Return",)),
-    Stop("03-recovery-key", says("Your recovery key"), ("to Type it", "copy key")),
-    Stop("04-typed-back", says("Your recovery key"), ("press Return",)),
+    Stop("03-recovery-key", states("Your recovery key"), ("to Type it", "copy key")),
+    Stop("04-typed-back", states("Your recovery key"), ("press Return",)),
     Stop("05-home", offers("New patient"), ("press ctrl+n",), lingers_s=1.0),
     Stop(
         "06-patient",
@@ -153,7 +153,7 @@ KEYBOARD: tuple[Stop, ...] = (
     Stop("07-patient-typed", offers("Attach sensors"), ("press Return",), lingers_s=1.0),
     Stop("07a-source", at_step("SensorsStep"), ("press Return",), lingers_s=1.0),
     Stop("07b-sensors", offers("Detect from movement"), PLACED_BY_KEYS, lingers_s=5.0),
-    Stop("07c-placed", says("All six are assigned and connected"), ("press Return",), lingers_s=1.0),
+    Stop("07c-placed", states("All six are assigned and connected"), ("press Return",), lingers_s=1.0),
     Stop("08a-stand-still", at_step("StandStillStep"), ("press space",), lingers_s=1.0),
     Stop("08b-standing", is_recording, lingers_s=1.5),
     Stop("09-free-motion", lambda seen: at_step("FreeMotionStep")(seen) and seen.is_recording, lingers_s=7.0),
@@ -164,15 +164,15 @@ KEYBOARD: tuple[Stop, ...] = (
     Stop("12d-keep", offers("Include 1"), ("press i",), lingers_s=1.0),
     Stop("12e-kept", offers("Results"), ("press Return",), lingers_s=1.0),
     Stop("13a-results", offers("Legs", "Data"), ("press g",), lingers_s=2.0, patience_s=60.0),
-    Stop("13b-legs", says("Drawn from joint angles"), ("press g", "press f"), lingers_s=1.0),
-    Stop("13c-figures", says("Peaks and ranges"), ("press f", "press q"), lingers_s=1.0),
+    Stop("13b-legs", states("Drawn from joint angles"), ("press g", "press f"), lingers_s=1.0),
+    Stop("13c-figures", states("Peaks and ranges"), ("press f", "press q"), lingers_s=1.0),
     Stop("13d-quality", offers("Engineering details"), ("press Escape", "to Summary", "press Right"), lingers_s=1.0),
     Stop("13e-compare", offers("Differences"), ("press Right",), lingers_s=1.0),
     Stop("13f-whole-walk", offers("Published"), ("press Right",), lingers_s=2.0),
-    Stop("13g-strides", says("Excluded strides stay in the files with the reason"), ("press ctrl+7",), lingers_s=1.0),
+    Stop("13g-strides", states("Excluded strides stay in the files with the reason"), ("press ctrl+7",), lingers_s=1.0),
     Stop("14a-report", at_step("ReportStep"), ("press ctrl+s",), lingers_s=1.0),
     Stop("14b-where", offers("Save"), ("press ctrl+a", "type {home}/results", "press Return"), lingers_s=1.0),
-    Stop("14c-saved", says("Saved as"), ("press F1",), lingers_s=1.0),
+    Stop("14c-saved", states("Saved as"), ("press F1",), lingers_s=1.0),
     Stop("15-manual", offers("Search the help"), ("press Escape",), lingers_s=1.0),
     Stop("16-leave", at_step("ReportStep"), ("to Step 7", "press Down", "press Return")),
     Stop("17-home-again", offers("New session"), lingers_s=1.0),
@@ -183,7 +183,7 @@ MOUSE: tuple[Stop, ...] = (
     Stop("06-patient", offers("Attach sensors"), ("click Attach sensors",), lingers_s=1.0),
     Stop("07a-source", at_step("SensorsStep"), ("click Simulated patient",), lingers_s=1.0),
     Stop("07b-sensors", offers("Detect from movement"), PLACED_BY_MOUSE, lingers_s=5.0),
-    Stop("07c-placed", says("All six are assigned and connected"), ("click Stand still",), lingers_s=1.0),
+    Stop("07c-placed", states("All six are assigned and connected"), ("click Stand still",), lingers_s=1.0),
     Stop("08a-stand-still", at_step("StandStillStep"), ("click Start count",), lingers_s=1.0),
     Stop("08b-standing", is_recording, lingers_s=1.5),
     Stop("09-free-motion", lambda seen: at_step("FreeMotionStep")(seen) and seen.is_recording, lingers_s=7.0),
@@ -194,20 +194,20 @@ MOUSE: tuple[Stop, ...] = (
     Stop("12d-keep", offers("Include 1"), ("click Include 1",), lingers_s=1.0),
     Stop("12e-kept", offers("Results"), ("click Results",), lingers_s=1.0),
     Stop("13a-results", offers("Legs", "Data"), ("click Legs",), lingers_s=2.0, patience_s=60.0),
-    Stop("13b-legs", says("Drawn from joint angles"), ("click Legs", "click All values"), lingers_s=1.0),
-    Stop("13c-figures", says("Peaks and ranges"), ("click All values", "click Data"), lingers_s=1.0),
+    Stop("13b-legs", states("Drawn from joint angles"), ("click Legs", "click All values"), lingers_s=1.0),
+    Stop("13c-figures", states("Peaks and ranges"), ("click All values", "click Data"), lingers_s=1.0),
     Stop("13d-quality", offers("Engineering details"), ("click Summary", "click Compare"), lingers_s=1.0),
     Stop("13e-compare", offers("Differences"), ("click Whole walk",), lingers_s=1.0),
     Stop("13f-whole-walk", offers("Published"), ("click Strides",), lingers_s=2.0),
     Stop(
         "13g-strides",
-        says("Excluded strides stay in the files with the reason"),
+        states("Excluded strides stay in the files with the reason"),
         ("click Go to the report",),
         lingers_s=1.0,
     ),
     Stop("14a-report", at_step("ReportStep"), ("click Save the report",), lingers_s=1.0),
     Stop("14b-where", offers("Save"), ("click Save",), lingers_s=1.0),
-    Stop("14c-saved", says("Saved as"), ("click Help",), lingers_s=1.0),
+    Stop("14c-saved", states("Saved as"), ("click Help",), lingers_s=1.0),
     Stop("15-manual", offers("Search the help"), ("click Back",), lingers_s=1.0),
     Stop("16-leave", at_step("ReportStep"), ("click All patients",)),
     Stop("17-home-again", offers("New session"), lingers_s=1.0),
@@ -216,7 +216,7 @@ SECOND_BY_KEYS: tuple[Stop, ...] = (  # the same patient comes back: nothing is 
     Stop("21-second-visit", offers("New session"), ("press Return",), lingers_s=1.0),
     Stop("22-patient", offers("Use last visit's set-up"), ("to Use last visit's set-up", "press space"), lingers_s=1.0),
     Stop("23-source", at_step("SensorsStep"), ("press Return",), lingers_s=1.0),
-    Stop("23a-placed", says("All six are assigned and connected"), ("press Return",), lingers_s=1.0),
+    Stop("23a-placed", states("All six are assigned and connected"), ("press Return",), lingers_s=1.0),
     Stop("24a-stand-still", at_step("StandStillStep"), ("press space",), lingers_s=1.0),
     Stop("24b-free-motion", lambda seen: at_step("FreeMotionStep")(seen) and seen.is_recording, lingers_s=7.0),
     *walk(15, ("press 1", "press space"), "press space"),
@@ -225,14 +225,14 @@ SECOND_BY_KEYS: tuple[Stop, ...] = (  # the same patient comes back: nothing is 
     Stop("25a-results", offers("Legs", "Data"), ("press ctrl+7",), lingers_s=2.0, patience_s=60.0),
     Stop("26a-report", shows_pages, ("press ctrl+s",), lingers_s=2.0, patience_s=60.0),
     Stop("26b-where", offers("Save"), ("press ctrl+a", "type {home}/second", "press Return"), lingers_s=1.0),
-    Stop("26c-saved", says("Saved as"), ("to Step 7", "press Down", "press Return"), lingers_s=1.0),
+    Stop("26c-saved", states("Saved as"), ("to Step 7", "press Down", "press Return"), lingers_s=1.0),
     Stop("27-home-again", offers("New session"), lingers_s=2.0),
 )
 SECOND_BY_MOUSE: tuple[Stop, ...] = (
     Stop("21-second-visit", offers("New session"), ("click New session",), lingers_s=1.0),
     Stop("22-patient", offers("Use last visit's set-up"), ("click Use last visit's set-up",), lingers_s=1.0),
     Stop("23-source", at_step("SensorsStep"), ("click Simulated patient",), lingers_s=1.0),
-    Stop("23a-placed", says("All six are assigned and connected"), ("click Stand still",), lingers_s=1.0),
+    Stop("23a-placed", states("All six are assigned and connected"), ("click Stand still",), lingers_s=1.0),
     Stop("24a-stand-still", at_step("StandStillStep"), ("click Start count",), lingers_s=1.0),
     Stop("24b-free-motion", lambda seen: at_step("FreeMotionStep")(seen) and seen.is_recording, lingers_s=7.0),
     *walk(15, ("click Shoes", "click Start walk"), "click Stop walk"),
@@ -242,7 +242,7 @@ SECOND_BY_MOUSE: tuple[Stop, ...] = (
     Stop("25b-compare", offers("Differences"), ("click Go to the report",), lingers_s=1.0),
     Stop("26a-report", at_step("ReportStep"), ("click Save the report",), lingers_s=2.0),
     Stop("26b-where", offers("Save"), ("click Save",), lingers_s=1.0),
-    Stop("26c-saved", says("Saved as"), ("click All patients",), lingers_s=1.0),
+    Stop("26c-saved", states("Saved as"), ("click All patients",), lingers_s=1.0),
     Stop("27-home-again", offers("New session"), lingers_s=2.0),
 )
 BENCH_UP_TO = next(k for k, stop in enumerate(KEYBOARD) if stop.name == "10a-choose")
@@ -289,14 +289,14 @@ BENCH: tuple[Stop, ...] = (  # three alignments of one prosthesis, by keys
     Stop("35a-c-walking", has_walked(STRIDES), ("press space",), patience_s=60.0),
     Stop("36-c-against-b", offers("Include C"), ("press 3", "press shift+1"), lingers_s=3.0, patience_s=60.0),
     Stop("37-c-against-a", offers("Return to A"), ("to Return to A", "press shift+Return"), lingers_s=1.0),
-    Stop("38-back-to-a", says("Back to A"), ("press ctrl+z", "to Include C", "press Return"), lingers_s=1.0),
+    Stop("38-back-to-a", states("Back to A"), ("press ctrl+z", "to Include C", "press Return"), lingers_s=1.0),
     Stop("39-c-kept", offers("Results"), ("to Results", "press Return"), lingers_s=1.0),
     Stop("40-results", offers("Legs", "Data"), ("press ctrl+7",), lingers_s=1.0, patience_s=60.0),
     Stop("41-report", at_step("ReportStep"), ("press ctrl+s",), lingers_s=1.0, patience_s=60.0),
     Stop("42-where", offers("Save"), ("press ctrl+a", "type {home}/results", "press Return"), lingers_s=1.0),
     Stop(
         "43-saved",
-        says("Saved as"),
+        states("Saved as"),
         lingers_s=2.0,
         leaves=(
             ("results*/**/alignments.csv", " A,foot_front_screw,2,0.5,4,"),
@@ -310,7 +310,7 @@ BENCH: tuple[Stop, ...] = (  # three alignments of one prosthesis, by keys
 TIMED: tuple[Stop, ...] = (  # ten metres, timed by the motion, then sit to stand broken off, by keys
     *KEYBOARD[:BENCH_UP_TO],
     Stop("51-choose", offers("Barefoot"), ("press t",), lingers_s=1.0, patience_s=90.0),
-    Stop("52-chosen", says("Next: 10-metre walk"), ("press space",), lingers_s=1.0),
+    Stop("52-chosen", states("Next: 10-metre walk"), ("press space",), lingers_s=1.0),
     Stop("53-running", lambda seen: seen.is_recording and seen.has("End at the tape"), lingers_s=3.0, patience_s=60.0),
     Stop("54-over", lambda seen: not seen.is_recording, ("press i",), lingers_s=2.0, patience_s=60.0),
     Stop("55-kept", offers("Results"), (*pressed("t", 4), "press space"), lingers_s=2.0),
@@ -320,7 +320,7 @@ TIMED: tuple[Stop, ...] = (  # ten metres, timed by the motion, then sit to stan
     Stop("59-results", offers("Legs", "Data"), ("press ctrl+7",), lingers_s=1.0, patience_s=60.0),
     Stop("60-report", at_step("ReportStep"), ("press ctrl+s",), lingers_s=1.0, patience_s=60.0),
     Stop("61-where", offers("Save"), ("press ctrl+a", "type {home}/results", "press Return"), lingers_s=1.0),
-    Stop("62-saved", says("Saved as"), lingers_s=2.0, leaves=(("results*/**/timed_test.csv", "10 m"),)),
+    Stop("62-saved", states("Saved as"), lingers_s=2.0, leaves=(("results*/**/timed_test.csv", "10 m"),)),
 )
 REVIEWED: tuple[Stop, ...] = (  # the demonstration up to its results, which Rerun shows then, and its report
     *(stop for stop in MOUSE if stop.name < "13a"),
@@ -334,7 +334,7 @@ PELVIS: tuple[Stop, ...] = (  # seven sensors, by keys
     *KEYBOARD[:SOURCE],
     Stop("51-source", at_step("SensorsStep"), ("to Simulated patient, seven", "press Return"), lingers_s=1.0),
     Stop("52-sensors", offers("Detect from movement"), (*PLACED_BY_KEYS, "press 7"), lingers_s=5.0),
-    Stop("53-placed", says("All seven are assigned and connected"), ("press Return",), lingers_s=1.0),
+    Stop("53-placed", states("All seven are assigned and connected"), ("press Return",), lingers_s=1.0),
     Stop("54-stand-still", at_step("StandStillStep"), ("press space",), lingers_s=1.0),
     Stop("55-standing", is_recording, lingers_s=1.5),
     Stop("56-lunges", lambda seen: at_step("FreeMotionStep")(seen) and seen.is_recording, lingers_s=5.0),
@@ -345,7 +345,7 @@ PELVIS: tuple[Stop, ...] = (  # seven sensors, by keys
     Stop("61-results", offers("Legs", "Data"), ("press ctrl+7",), lingers_s=2.0, patience_s=60.0),
     Stop("62-report", at_step("ReportStep"), ("press ctrl+s",), lingers_s=2.0),
     Stop("63-where", offers("Save"), ("press ctrl+a", "type {home}/results", "press Return"), lingers_s=1.0),
-    Stop("64-saved", says("Saved as"), lingers_s=2.0, leaves=(("results*/**/angles.csv", "left_hip_deg"),)),
+    Stop("64-saved", states("Saved as"), lingers_s=2.0, leaves=(("results*/**/angles.csv", "left_hip_deg"),)),
 )
 SWAPPED = {"L shank": "R thigh", "R thigh": "L shank"}  # where somebody straps them by mistake
 SWAPPED_BY_KEYS = tuple(
@@ -354,7 +354,7 @@ SWAPPED_BY_KEYS = tuple(
 DEAD_ENDS: tuple[Stop, ...] = (  # what once led nowhere: swapped sensors, a key with the focus elsewhere, by keys
     *KEYBOARD[: SOURCE + 1],
     Stop("51-sensors", offers("Detect from movement"), SWAPPED_BY_KEYS, lingers_s=5.0),
-    Stop("52-placed", says("All six are assigned and connected"), ("press Return",), lingers_s=1.0),
+    Stop("52-placed", states("All six are assigned and connected"), ("press Return",), lingers_s=1.0),
     Stop("53-stand-still", at_step("StandStillStep"), ("press space",), lingers_s=1.0),
     Stop("54-standing", is_recording, lingers_s=1.5),
     Stop("55-swapped", offers("Use detected positions"), ("press Return",), lingers_s=1.0, patience_s=90.0),
@@ -371,7 +371,7 @@ DEAD_ENDS: tuple[Stop, ...] = (  # what once led nowhere: swapped sensors, a key
     Stop("62-where", offers("Save"), ("press ctrl+a", "type {home}/results", "press Return"), lingers_s=1.0),
     Stop(
         "63-saved",
-        says("Saved as"),
+        states("Saved as"),
         ("to Step 7", "press Down", "press Return"),
         lingers_s=2.0,
         leaves=(("results*/**/angles.csv", "left_knee_deg"),),
@@ -380,7 +380,7 @@ DEAD_ENDS: tuple[Stop, ...] = (  # what once led nowhere: swapped sensors, a key
     Stop("71-report", shows_pages, ("to Compare with", "press Down"), lingers_s=2.0, patience_s=60.0),
     Stop("72-compared", shows_pages, ("press ctrl+s",), lingers_s=6.0, patience_s=60.0),
     Stop("73-where", offers("Save"), ("press ctrl+a", "type {home}/second", "press Return"), lingers_s=1.0),
-    Stop("74-saved", says("Saved as"), lingers_s=2.0, leaves=(("second*/**/angles.csv", "left_knee_deg"),)),
+    Stop("74-saved", states("Saved as"), lingers_s=2.0, leaves=(("second*/**/angles.csv", "left_knee_deg"),)),
 )
 TOURS = {
     "keyboard": (*KEYBOARD, *SECOND_BY_KEYS),

@@ -1,4 +1,4 @@
-"""What a tour reads on the screen, told in English whatever language is spoken: its stops are written once.
+"""What a tour reads on the screen, reported in English whatever language is spoken: its stops are written once.
 
 Used by `tour_inside.py`.
 """
@@ -26,28 +26,28 @@ class FieldMessage:
     english: str
 
 
-def in_english(said: str, language: str) -> tuple[str, ...]:
-    """Give all that `said` of another language may mean, as it stands first: one word may be several English ones."""
-    return tuple(dict.fromkeys([said, *_meant(said, language)]))
+def in_english(stated: str, language: str) -> tuple[str, ...]:
+    """Give all that `stated` of another language may mean, as it is first: one word may be several English ones."""
+    return tuple(dict.fromkeys([stated, *_meant(stated, language)]))
 
 
-def _meant(said: str, language: str) -> Iterator[str]:
+def _meant(stated: str, language: str) -> Iterator[str]:
     whole, with_fields = _catalogue(language)
-    yield from whole.get(said, ())
+    yield from whole.get(stated, ())
     for between in (": ", ", "):  # a name with its value, or its unit and state, behind it
-        first, found_between, rest = said.partition(between)
+        first, found_between, rest = stated.partition(between)
         if found_between:
             yield from (f"{one}{between}{rest}" for one in _meant(first, language))
-    several = re.split(r"(?<=\.) ", said)
+    several = re.split(r"(?<=\.) ", stated)
     if len(several) > 1:
         yield " ".join(next(_meant(one, language), one) for one in several)
     for message in with_fields:
-        if found := message.pattern.fullmatch(said):
-            told = {
+        if found := message.pattern.fullmatch(stated):
+            reported = {
                 name: next(_meant(one, language), one) for name, one in zip(message.names, found.groups(), strict=True)
             }
             parts = FIELD.split(message.english)  # texts, and between them the fields' names
-            yield "".join(told.get(part, "") if k % 2 else part for k, part in enumerate(parts))
+            yield "".join(reported.get(part, "") if k % 2 else part for k, part in enumerate(parts))
 
 
 @cache

@@ -48,11 +48,11 @@ Summary = Mapping[str, Any]
 
 
 def agreed(session: Path, references: Sequence[Path], out: Path) -> Summary:
-    """What `gaitwright agree` writes as JSON; what it says goes nowhere."""
+    """What `gaitwright agree` writes as JSON; what it states goes nowhere."""
     arguments = ["agree", str(session), "--out", str(out), "--no-report"]
     arguments += [argument for file in references for argument in ("--reference", str(file))]
-    said, progress = io.StringIO(), io.StringIO()
-    with contextlib.redirect_stdout(said), contextlib.redirect_stderr(progress):
+    stated, progress = io.StringIO(), io.StringIO()
+    with contextlib.redirect_stdout(stated), contextlib.redirect_stderr(progress):
         code = gaitwright(arguments)
     if code:
         raise RuntimeError(f"{session}: {progress.getvalue().splitlines()[-1]}")
@@ -173,18 +173,18 @@ def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("--people", type=int, default=10, help="simulated people in the paper's experiment")
     parser.add_argument("--write", action="store_true", help=f"put the tables into {PAGE.name}")
-    wanted = parser.parse_args()
+    required = parser.parse_args()
     page = PAGE.read_text(encoding="utf-8")
-    told = os.environ.get("GAITWRIGHT_TEST_DATA")
-    tables = {EXPERIMENT: list(experiment_table(wanted.people)), WHY: list(why_table(min(5, wanted.people)))}
-    if told:
-        tables[RECORDINGS] = list(recordings_table(Path(told)))
+    reported = os.environ.get("GAITWRIGHT_TEST_DATA")
+    tables = {EXPERIMENT: list(experiment_table(required.people)), WHY: list(why_table(min(5, required.people)))}
+    if reported:
+        tables[RECORDINGS] = list(recordings_table(Path(reported)))
     else:
         print("GAITWRIGHT_TEST_DATA is not set: the public recordings are left out.", file=sys.stderr)
     for title, table in tables.items():
         print(title, "", *table, "", sep="\n")
         page = with_table(page, title, table)
-    if wanted.write:
+    if required.write:
         PAGE.write_text(page, encoding="utf-8")
 
 

@@ -3,7 +3,7 @@
     python -m tests.validation.fitting [--people 20] [--first 0] [--tissue soft] [--prosthetic left] [--optics]
 
 Bias of a walk's mean and the 90th percentile of its size, each leg of each person one. Which changes of them are found
-tells `fitting_power`.
+reports `fitting_power`.
 """
 
 import argparse
@@ -97,17 +97,17 @@ def main() -> None:
     parser.add_argument("--tissue", type=Tissue, nargs="+", default=list(Tissue))
     parser.add_argument("--prosthetic", type=Side, default=None)
     parser.add_argument("--optics", action="store_true")
-    wanted = parser.parse_args()
-    if wanted.optics:
+    required = parser.parse_args()
+    if required.optics:
         data = Path(os.environ["GAITWRIGHT_TEST_DATA"])
         print("two feet beside optics: measure, strides, bias, sd, median, middle half")
         print(*feet_beside_optics(data), sep="\n", flush=True)
         print("mechanical hinge beside optics: lean, samples, rms")
         print(*hinges_beside_optics(data), sep="\n", flush=True)
-    for tissue in wanted.tissue:
-        if wanted.people:
+    for tissue in required.tissue:
+        if required.people:
             print(f"{tissue}: measure, legs, bias, p90", flush=True)
-            print(*accuracy(wanted.people, wanted.first, tissue, wanted.prosthetic), sep="\n", flush=True)
+            print(*accuracy(required.people, required.first, tissue, required.prosthetic), sep="\n", flush=True)
 
 
 if __name__ == "__main__":

@@ -20,7 +20,7 @@ from tests.benchmarks.gait import optical_foot, recorded_foot
 from tests.validation.recordings_with_references import HINGES
 
 SAME_S = 0.15
-MAX_AXIS_RISE_RAD = np.deg2rad(45.0)  # about an axis that stands nearer the vertical nothing leans
+MAX_AXIS_RISE_RAD = np.deg2rad(45.0)  # about an axis that is nearer the vertical nothing leans
 
 
 def feet_beside_optics(data: Path) -> Iterator[str]:
@@ -53,7 +53,7 @@ def _pitch_deg(earth_from_foot: Rotation) -> FloatArray:
     """Toes up, over what joins both ends of a stretch from stance to stance.
 
     The optics' axes are not the foot's: forward is level and square to what the foot mostly turns about, and its way
-    is told by a heel that rises further than the toes do.
+    is given by a heel that rises further than the toes do.
     """
     turns = (earth_from_foot[:-1].inv() * earth_from_foot[1:]).as_rotvec()
     axis = np.linalg.eigh(turns.T @ turns)[1][:, -1]

@@ -1,12 +1,12 @@
-"""Which changes of a prosthesis are found by the measures for fitting, and what is told where nothing was changed?
+"""Which changes of a prosthesis are found by the measures for fitting, and what is given where nothing was changed?
 
     python -m tests.validation.fitting_power [--people 100] [--silent 200] [--first 0] [--tissue soft] [--processes 2]
 
 Every person wears an above-knee prosthesis on the left, varies as people do and walks 23 strides, sensors left on.
-First two walks that do not differ: how often is one of the measures told as larger than its error, on either leg? Then
-a walk as built and one with a change that moves the bones' own measure by 1.7 times the median of its errors: how often
-is that found? The change is the one that needs the least share of what is plausible, its size that of each person: by
-`fitting_truth`, which knows nothing of the core.
+First two walks that do not differ: how often is one of the measures reported as larger than its error, on either leg?
+Then a walk as built and one with a change that moves the bones' own measure by 1.7 times the median of its errors: how
+often is that found? The change is the one that needs the least share of what is plausible, its size that of each
+person: by `fitting_truth`, which knows nothing of the core.
 """
 
 import argparse
@@ -93,10 +93,10 @@ def differences(walk: RecordingAnalysis, before: RecordingAnalysis, side: Side) 
     found = {}
     for name in MEASURES:
         means = [mean_of_strides(values_of(one, side, name)[one.gait[side].strides.is_used]) for one in (walk, before)]
-        said = tuple(assessment_of(one.verdicts, side, name) for one in (walk, before))
+        stated = tuple(assessment_of(one.verdicts, side, name) for one in (walk, before))
         speeds = [float(np.nanmean(values_of(one, side, "speed_m_s"))) for one in (walk, before)]
         found[name] = compare(
-            name, ComparisonKind.ATTACHED, means[0], means[1], said, speed_apart_m_s=speeds[0] - speeds[1]
+            name, ComparisonKind.ATTACHED, means[0], means[1], stated, speed_apart_m_s=speeds[0] - speeds[1]
         )
     return found
 
@@ -132,15 +132,15 @@ def sizes(errors: Mapping[str, float]) -> dict[str, tuple[str, float]]:
     by_seed = [true_changes(seed, walks)[1:] for seed in SEEDS_OF_SIZES]
     found: dict[str, tuple[str, float]] = {}
     for measure, error in errors.items():
-        wanted, best = FACTOR * error, math.inf
+        required, best = FACTOR * error, math.inf
         before = (0.0, 0.0)
         for k, (name, size) in enumerate(steps):
             moved = abs(float(np.median([one[k].get(measure, math.nan) for one in by_seed])))
             if k == 0 or steps[k - 1][0] != name or steps[k - 1][1] * size < 0:
                 before = (0.0, 0.0)
             end = CHANGES[name].most if size > 0 else CHANGES[name].least
-            if before[1] < wanted <= moved:
-                needed = before[0] + (size - before[0]) * (wanted - before[1]) / (moved - before[1])
+            if before[1] < required <= moved:
+                needed = before[0] + (size - before[0]) * (required - before[1]) / (moved - before[1])
                 share = abs(needed / end) + (0.0 if CHANGES[name].setting is not None else 1.0)
                 if share < best:
                     best, found[measure] = share, (name, needed)
@@ -149,18 +149,18 @@ def sizes(errors: Mapping[str, float]) -> dict[str, tuple[str, float]]:
 
 
 def changed(
-    tissue: Tissue, wanted: Mapping[str, tuple[str, float]], errors: Mapping[str, float], seed: int
+    tissue: Tissue, required: Mapping[str, tuple[str, float]], errors: Mapping[str, float], seed: int
 ) -> dict[str, tuple[float, float, Difference]]:
-    """By measure its change's size for this person, by how much it moved the bones, and what was told."""
+    """By measure its change's size for this person, by how much it moved the bones, and what was reported."""
 
     def walks(of: Mapping[str, float], strides: int) -> list[Walk]:
-        made = [CHANGES[wanted[measure][0]].walk(measure, size, strides) for measure, size in of.items()]
+        made = [CHANGES[required[measure][0]].walk(measure, size, strides) for measure, size in of.items()]
         return [Walk("as built", strides=strides), *made]
 
-    first = {measure: size for measure, (_, size) in wanted.items()}
+    first = {measure: size for measure, (_, size) in required.items()}
     own = {}
     for (measure, size), moved in zip(first.items(), true_changes(seed, walks(first, FEW_STRIDES))[1:], strict=True):
-        change = CHANGES[wanted[measure][0]]
+        change = CHANGES[required[measure][0]]
         share = FACTOR * errors[measure] / max(abs(moved[measure]), 1e-9)
         own[measure] = float(np.clip(size * float(np.clip(share, 0.5, 2.0)), change.least, change.most))
     moved_by = true_changes(seed, walks(own, FEW_STRIDES))[1:]
@@ -175,7 +175,7 @@ def changed(
 def tables(people: range, silent_people: range, tissue: Tissue, pool: Pool) -> Iterator[str]:
     nulls = list(pool.imap(partial(silent, tissue), silent_people))
     judged = (Judgement.EXCEEDS_ERROR, Judgement.INSIDE_ERROR)
-    errors, told = {}, {}
+    errors, reported = {}, {}
     for name in MEASURES:
         counts = []
         for side in Side:
@@ -185,20 +185,20 @@ def tables(people: range, silent_people: range, tissue: Tissue, pool: Pool) -> I
                 errors[name] = float(np.median([one.error for one in some]))
                 sd = float(np.std([one.difference for one in some]))
                 counts.append(f"{sd:.2f}")
-        told[name] = counts
-    wanted = sizes(errors)
-    powers = list(pool.imap(partial(changed, tissue, wanted, errors), people))
+        reported[name] = counts
+    required = sizes(errors)
+    powers = list(pool.imap(partial(changed, tissue, required, errors), people))
     for name in MEASURES:
-        sides = f"{told[name][0]} | {told[name][-1]}"
-        head = f"| {name} | {errors.get(name, math.nan):.2f} | {told[name][1]} | {sides} |"
-        if name not in wanted:
+        sides = f"{reported[name][0]} | {reported[name][-1]}"
+        head = f"| {name} | {errors.get(name, math.nan):.2f} | {reported[name][1]} | {sides} |"
+        if name not in required:
             yield f"{head} no change moves it so far | - | - |"
             continue
         of_name = [one[name] for one in powers]
         some = [difference for _, _, difference in of_name if difference.judgement in judged]
-        size = float(np.median([one for one, _, _ in of_name])) if of_name else wanted[name][1]
+        size = float(np.median([one for one, _, _ in of_name])) if of_name else required[name][1]
         moved = float(np.median([abs(one) for _, one, _ in of_name])) if of_name else math.nan
-        change = f"{wanted[name][0]} {size:+.2f}{CHANGES[wanted[name][0]].unit}"
+        change = f"{required[name][0]} {size:+.2f}{CHANGES[required[name][0]].unit}"
         not_judged = f", {len(of_name) - len(some)} not judged" if len(some) < len(of_name) else ""
         yield f"{head} {change} | {moved:.2f} | {sum(one.exceeds for one in some)} of {len(some)}{not_judged} |"
 
@@ -210,11 +210,11 @@ def main() -> None:
     parser.add_argument("--first", type=int, default=0)
     parser.add_argument("--tissue", type=Tissue, nargs="+", default=[Tissue.SOFT, Tissue.REAL])
     parser.add_argument("--processes", type=int, default=2)
-    wanted = parser.parse_args()
-    people = range(wanted.first + 10_000, wanted.first + 10_000 + wanted.people)
-    silent_people = range(wanted.first, wanted.first + wanted.silent)
-    with get_context("spawn").Pool(wanted.processes) as pool:
-        for tissue in wanted.tissue:
+    required = parser.parse_args()
+    people = range(required.first + 10_000, required.first + 10_000 + required.people)
+    silent_people = range(required.first, required.first + required.silent)
+    with get_context("spawn").Pool(required.processes) as pool:
+        for tissue in required.tissue:
             print(f"{tissue}: measure, E, sd of null, told of nothing (prosthetic, sound), change, moved, found")
             print(*tables(people, silent_people, tissue, pool), sep="\n", flush=True)
 

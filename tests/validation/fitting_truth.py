@@ -1,7 +1,7 @@
 """The measures for fitting as the simulated patient's bones have them, with numpy alone.
 
 Nothing of the core is used to compute them: poses and events of the walker are read, and each measure is worked out as
-its definition says.
+its definition states.
 """
 
 from collections.abc import Callable, Mapping
@@ -122,7 +122,7 @@ def _heading(leg: LegMotion) -> float:
 
 
 def _turn(leg: LegMotion, stood: LegMotion) -> float:
-    """By how much the foot stands in another compass direction than in `stood`."""
+    """By how much the foot is in another compass direction than in `stood`."""
     one, other = (m.rotations[2, 0, :2, 0] for m in (leg, stood))
     return float(np.arctan2(one[1], one[0]) - np.arctan2(other[1], other[0]))
 

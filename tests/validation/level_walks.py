@@ -249,14 +249,14 @@ def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("--walks", type=int, default=50, help="of each kind")
     parser.add_argument("--first", type=int, default=0, help="the first seed")
-    wanted = parser.parse_args()
+    required = parser.parse_args()
     print("| walks | how many | strides | called stairs, each by itself | by a run of steps |\n|---|---|---|---|---|")
     for kind in KINDS:
-        print(row(kind, simulated(kind, wanted.first, wanted.walks)), flush=True)
+        print(row(kind, simulated(kind, required.first, required.walks)), flush=True)
     data = os.environ.get("GAITWRIGHT_TEST_DATA")
     for name, read in RECORDED.items() if data else ():
         print(row(name, recorded(read(Path(data or "")))), flush=True)
-    there, found, level = on_stairs(wanted.first, max(1, 2 * wanted.walks // 5))
+    there, found, level = on_stairs(required.first, max(1, 2 * required.walks // 5))
     print(f"\nStairs that nobody declared: {found} of {there} strides found, {level} level ones called stairs.")
 
 

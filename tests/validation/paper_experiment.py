@@ -38,10 +38,10 @@ AS_STRAPPED = 4  # the walker's own stream of how a sensor rides on its strap
 
 
 def settings(seed: int, tissue: Tissue = Tissue.REAL, walks: int = WALKS) -> WalkerSettings:
-    wanted = (Walk(f"walk {k}", strides=STRIDES) for k in range(1, walks + 1))
+    required = (Walk(f"walk {k}", strides=STRIDES) for k in range(1, walks + 1))
     return WalkerSettings(
         seed=seed,
-        recordings=(Standing(), FreeMotion(duration_s=10.0, is_in_turn=True), *wanted),
+        recordings=(Standing(), FreeMotion(duration_s=10.0, is_in_turn=True), *required),
         tissue=tissue,
         prosthetic_side=PROSTHESIS,
         rate_hz=SENSORS_HZ,
@@ -50,13 +50,13 @@ def settings(seed: int, tissue: Tissue = Tissue.REAL, walks: int = WALKS) -> Wal
 
 def experiment(seed: int, folder: Path, tissue: Tissue = Tissue.REAL, walks: int = WALKS) -> tuple[Session, Path]:
     """Give the session and the optical system's file, which is written into `folder`."""
-    wanted = settings(seed, tissue, walks)
-    simulated = simulate(wanted)
+    required = settings(seed, tissue, walks)
+    simulated = simulate(required)
     clusters = {site: draw_ride(np.random.default_rng([seed, ON_SKIN, list(Site).index(site)])) for site in LEG_SITES}
     rows = []
     for number, moved in enumerate(simulated.moved):
         if moved.name.startswith("walk"):
-            at_s, angles = _seen(wanted, moved, number, clusters)
+            at_s, angles = _seen(required, moved, number, clusters)
             shown_s = at_s * (1.0 + FASTER) + LATER_S * number
             table = np.column_stack([shown_s, *(np.rad2deg(angles[joint]) for joint in LEG_JOINTS)])
             rows += [",".join([moved.name, *(f"{value:.6f}" for value in row)]) for row in table]
@@ -67,8 +67,8 @@ def experiment(seed: int, folder: Path, tissue: Tissue = Tissue.REAL, walks: int
 
 def against_bones(seed: int, tissue: Tissue, folder: Path, walks: int = WALKS) -> tuple[float, float, float]:
     """The sound knee, degrees RMSE, means removed: ours and the optics' against the bones, ours against the optics."""
-    wanted = settings(seed, tissue, walks)
-    simulated, joint = simulate(wanted), Joint(f"{PROSTHESIS.other}_knee")
+    required = settings(seed, tissue, walks)
+    simulated, joint = simulate(required), Joint(f"{PROSTHESIS.other}_knee")
     session, path = experiment(seed, folder, tissue, walks)
     optics = {trial.name: trial.angles[joint] for trial in read_reference(path).trials}
     found = []
@@ -87,7 +87,7 @@ def against_bones(seed: int, tissue: Tissue, folder: Path, walks: int = WALKS) -
 
 
 def _seen(
-    wanted: WalkerSettings, moved: MovedRecording, number: int, clusters: Mapping[Site, Ride]
+    required: WalkerSettings, moved: MovedRecording, number: int, clusters: Mapping[Site, Ride]
 ) -> tuple[FloatArray, dict[Joint, FloatArray]]:
     """Instants (n,) of the walk and the angles (n,) that the optical system makes of its clusters."""
     fine_s = moved.legs[Side.LEFT].time_s
@@ -95,30 +95,30 @@ def _seen(
     at_s = np.arange(fine_s[inside][0], fine_s[inside][-1], 1.0 / OPTICS_HZ)
     angles: dict[Joint, FloatArray] = {}
     for joint in LEG_JOINTS:
-        leg = make_leg(wanted, joint.side)
-        poses = [_cluster(wanted, moved, number, site, clusters) for site in (joint.proximal, joint.distal)]
+        leg = make_leg(required, joint.side)
+        poses = [_cluster(required, moved, number, site, clusters) for site in (joint.proximal, joint.distal)]
         relative = Rotation.from_matrix(np.swapaxes(poses[0], 1, 2) @ poses[1])
         axis = leg.knee_axis if joint.is_knee else leg.ankle_axis
         angle = np.interp(at_s, fine_s, np.unwrap(_turn_about(relative, axis)))
-        noise = np.random.default_rng([wanted.seed, OF_NOISE, number, list(Joint).index(joint)])
+        noise = np.random.default_rng([required.seed, OF_NOISE, number, list(Joint).index(joint)])
         angles[joint] = angle + noise.normal(0.0, np.sqrt(2.0) * MARKER_NOISE_RAD, len(at_s))
     return at_s, angles
 
 
 def _cluster(
-    wanted: WalkerSettings, moved: MovedRecording, number: int, site: Site, clusters: Mapping[Site, Ride]
+    required: WalkerSettings, moved: MovedRecording, number: int, site: Site, clusters: Mapping[Site, Ride]
 ) -> FloatArray:
     """Earth from segment (n, 3, 3) as a cluster of markers has it: on skin, or on the parts that hold the sensors."""
     is_rigid = site.side is PROSTHESIS
     bare = is_rigid and site.segment is not Segment.THIGH
-    tissue = Tissue.RIGID if bare else wanted.tissue
+    tissue = Tissue.RIGID if bare else required.tissue
     index = list(Site).index(site)
-    first = next(k for k, one in enumerate(wanted.recordings) if isinstance(one, Walk))
+    first = next(k for k, one in enumerate(required.recordings) if isinstance(one, Walk))
     # sensor and markers on one socket ride as one: drawn as the walker draws it, once for all walks, its wobble in each
-    strapped = np.random.default_rng([wanted.seed, AS_STRAPPED, index, number])
-    own = draw_ride(np.random.default_rng([wanted.seed, AS_STRAPPED, index, first]))
+    strapped = np.random.default_rng([required.seed, AS_STRAPPED, index, number])
+    own = draw_ride(np.random.default_rng([required.seed, AS_STRAPPED, index, first]))
     draw_ride(strapped)  # the walker draws one before each recording's wobble
-    chance = strapped if is_rigid else np.random.default_rng([wanted.seed, OF_MARKERS, index, number])
+    chance = strapped if is_rigid else np.random.default_rng([required.seed, OF_MARKERS, index, number])
     ride = own if is_rigid else clusters[site]
     at_joint = Mounting(np.eye(3), np.zeros(3))
     rotation, _ = sensor_poses(moved.legs[site.leg_side], site, at_joint, tissue, ride, chance)

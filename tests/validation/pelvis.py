@@ -2,7 +2,7 @@
 
 `python -m tests.validation.pelvis [SESSIONS] [WORKERS]` prints for rigid, soft and real tissue: flexion and abduction
 after removing the mean, the heading's error, its claimed sd, the clock's error where it was found, and what was
-withheld. Every session has a clock per leg, up to 100 ms apart, and a walk of 20 strides and more with a turn.
+not reported. Every session has a clock per leg, up to 100 ms apart, and a walk of 20 strides and more with a turn.
 """
 
 import sys
@@ -43,13 +43,13 @@ class HipScore:
     margin: float
     disagreement: float
     is_3d: bool
-    is_told: bool
+    is_reported: bool
     gates: tuple[str, ...]
 
 
 @dataclass(frozen=True, slots=True)
 class SessionScore:
-    """`clock_ms` is the error of the offset, NaN where it is withheld."""
+    """`clock_ms` is the error of the offset, NaN where it is not reported."""
 
     hips: tuple[HipScore, ...]
     clock_ms: float
@@ -92,21 +92,21 @@ def score(tissue: Tissue, seed: int) -> SessionScore:
             np.rad2deg(found - np.interp(walk.time_s, on_clock_s, true))
             for found, true in ((hip.angle_rad, known.flexion_rad), (hip.abduction_rad, known.abduction_rad))
         )
-        heard = np.isfinite(flexion)
-        about = np.abs(flexion - np.nanmean(flexion))[heard]
-        said = walk.verdicts.joint(hip_of(side)).shape
+        received = np.isfinite(flexion)
+        about = np.abs(flexion - np.nanmean(flexion))[received]
+        stated = walk.verdicts.joint(hip_of(side)).shape
         hips.append(
             HipScore(
                 flexion_deg=float(np.nanstd(flexion)),
                 abduction_deg=float(np.nanstd(abduction)) if np.isfinite(abduction).any() else float("nan"),
                 heading_deg=_heading_error_deg(made, side, hip.identification.lag_s),
                 heading_sd_deg=float(np.rad2deg(hip.identification.heading_sd_rad)),
-                held_share=float(np.mean(about < 2 * np.rad2deg(hip.sd_rad[heard]))),
+                held_share=float(np.mean(about < 2 * np.rad2deg(hip.sd_rad[received]))),
                 margin=hip.identification.margin,
                 disagreement=hip.identification.disagreement,
                 is_3d=hip.identification.is_3d,
-                is_told=said.is_told,
-                gates=tuple(reason.gate for reason in said.reasons),
+                is_reported=stated.is_reported,
+                gates=tuple(reason.gate for reason in stated.reasons),
             )
         )
     return SessionScore(tuple(hips), raw_ms if is_found else float("nan"), raw_ms)
@@ -162,9 +162,10 @@ def report(tissue: Tissue, scores: list[SessionScore]) -> None:
     print(f"  clock found in {len(found)}, error median {usual} worst {worst} ms")
     raw = np.abs([one.raw_clock_ms for one in scores])
     print(f"  offset whether told or not: median {np.nanmedian(raw):.2f} worst {np.nanmax(raw):.2f} ms")
-    told, by_angles = np.mean([hip.is_told for hip in hips]), np.mean([hip.is_3d for hip in hips])
+    reported, by_angles = np.mean([hip.is_reported for hip in hips]), np.mean([hip.is_3d for hip in hips])
     print(
-        f"  hips told {told:.2f}, by Cardan angles {by_angles:.2f}; gates { {g: gates.count(g) for g in set(gates)} }"
+        f"  hips reported {reported:.2f}, by Cardan angles {by_angles:.2f}; "
+        f"gates { {g: gates.count(g) for g in set(gates)} }"
     )
 
 

@@ -1,10 +1,10 @@
-"""Does a sensor on the pelvis tell rises and turns of timed tests more exactly than thighs and feet alone?
+"""Does a sensor on the pelvis report rises and turns of timed tests more exactly than thighs and feet alone?
 
     python -m tests.validation.pelvis_courses [COURSES]
 
 Of simulated courses with all seven sensors, on three kinds of tissue: by how much a rise's beginning and end are off by
 the thighs' own tilt (`core.timed.seat`), and by the pelvis (from its pitch passing 10 deg/s, until the thighs are under
-15 deg from standing); how many turns feet and pelvis tell, and how often they contradict each other.
+15 deg from standing); how many turns feet and pelvis report, and how often they contradict each other.
 """
 
 import sys

@@ -1,6 +1,6 @@
 """Public recordings with optical references, as session folders and reference files in a folder of their own.
 
-Nothing of them is kept: they are made anew from the shared data for every run.
+Nothing of them is kept: they are made again from the shared data for every run.
 """
 
 from collections.abc import Iterable, Iterator

@@ -19,7 +19,7 @@ RIGID, SOFT = 2.3, 3.0
 SOFT_AT_TOE_OFF = 6.0  # the knee bends by 35 deg there, and tissue lags behind
 
 
-LATE = {Site.LEFT_SHANK: 0.04, Site.LEFT_FOOT: -0.03}  # of the thigh's clock, on which everything is told
+LATE = {Site.LEFT_SHANK: 0.04, Site.LEFT_FOOT: -0.03}  # of the thigh's clock, on which everything is reported
 
 
 @pytest.mark.endurance

@@ -1,5 +1,5 @@
 """Is no level stride called stairs, on one simulated walk of every kind and on the recordings where a stride's own
-climb says that it is?
+climb states that it is?
 """
 
 from collections.abc import Callable

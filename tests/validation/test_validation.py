@@ -65,8 +65,8 @@ def test_without_skin_the_optical_system_sees_the_bones(tmp_path: Path) -> None:
     (trial,) = read_reference(path).trials
     for joint, (shown_s, angle_rad) in trial.angles.items():
         at_s = (shown_s - 2 * LATER_S) / (1 + FASTER)
-        told = truth.joints[joint]
-        error = angle_rad - np.interp(at_s, told.time_s, told.angle_rad)
+        reported = truth.joints[joint]
+        error = angle_rad - np.interp(at_s, reported.time_s, reported.angle_rad)
         assert np.rad2deg(np.abs(np.median(error))) < 0.5  # the ankle turns beside its axis, too
         assert np.rad2deg(np.std(error)) < (0.2 if joint.is_knee else 0.4)
 

@@ -1,4 +1,4 @@
-"""How well are timed tests told, on 220 simulated courses and on people's recordings?
+"""How well are timed tests reported, on 220 simulated courses and on people's recordings?
 
     python -m tests.validation.timed_courses [--scale 1.0]
 
@@ -106,13 +106,15 @@ class Score:
         """Every stride up and down with its height, by the foot; a foot's first swing ends no stride."""
         for side, climbs_m in truth.climbs_m.items():
             true_m = [float(one) for one in climbs_m[1:] if abs(one) > 0.01]
-            told_m = [one.climb_m for one in found.stairs if one.side is side]
+            reported_m = [one.climb_m for one in found.stairs if one.side is side]
             self.stairs += len(true_m)
             self.level += len(climbs_m) - 1 - len(true_m)
-            if [np.sign(one) for one in told_m] != [np.sign(one) for one in true_m]:
-                self.wrong.append(f"{seed}: {len(told_m)} strides on stairs of {len(true_m)}, or up for down, {side}")
+            if [np.sign(one) for one in reported_m] != [np.sign(one) for one in true_m]:
+                self.wrong.append(
+                    f"{seed}: {len(reported_m)} strides on stairs of {len(true_m)}, or up for down, {side}"
+                )
             else:
-                self.climb_m += [a - b for a, b in zip(told_m, true_m, strict=True)]
+                self.climb_m += [a - b for a, b in zip(reported_m, true_m, strict=True)]
         if not truth.climbs_m and found.stairs:
             self.wrong.append(f"{seed}: {len(found.stairs)} strides on stairs that are not there")
 
@@ -158,7 +160,7 @@ def spread(values: list[float], unit: str, digits: int = 2) -> str:
     return "median {}, p95 {}, worst {} ".format(*cells) + unit
 
 
-def told(kind: CourseKind, total: Score) -> Iterator[str]:
+def reported(kind: CourseKind, total: Score) -> Iterator[str]:
     """What is printed of one test."""
     yield f"{kind}: {len(total.time_s)} courses, {total.silent} with a silent sensor"
     yield f"  distance {spread(total.distance_percent, '%')}"
@@ -173,7 +175,7 @@ def told(kind: CourseKind, total: Score) -> Iterator[str]:
 
 
 def recordings(data: Path) -> Iterator[str]:
-    """What can be told of people's recordings."""
+    """What can be given of people's recordings."""
     with tempfile.TemporaryDirectory() as folder:
         session = read_session(feet(data, Path(folder)).session)
     tracks, recording = tracks_of(session)
@@ -200,10 +202,10 @@ def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("--first", type=int, default=0, help="the first seed")
     parser.add_argument("--scale", type=float, default=1.0, help="share of the 220 courses")
-    wanted = parser.parse_args()
-    scale, first = wanted.scale, wanted.first
+    required = parser.parse_args()
+    scale, first = required.scale, required.first
     for kind, count in COURSES.items():
-        for line in told(kind, score(kind, range(first, first + max(1, round(scale * count))))):
+        for line in reported(kind, score(kind, range(first, first + max(1, round(scale * count))))):
             print(line, flush=True)
     data = os.environ.get("GAITWRIGHT_TEST_DATA")
     for line in recordings(Path(data)) if data else ():

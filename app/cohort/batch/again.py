@@ -1,4 +1,4 @@
-"""Sessions of a library analysed anew by several processes, and what came of them kept in the library.
+"""Sessions of a library analysed again by several processes, and what came of them kept in the library.
 
 Samples are read here, one session after the other, since the library's key leaves this process for nobody; what the
 others are given is a session without names, and what they give back are the bytes that the library keeps.
@@ -24,7 +24,7 @@ Keep = Callable[[bytes], None]
 
 @dataclass(frozen=True, slots=True)
 class AgainTask:
-    """One session to be analysed, as it is told and as `bare` leaves it."""
+    """One session to be analysed, as it is reported and as `bare` leaves it."""
 
     session_id: UUID
     session: Session
@@ -55,7 +55,7 @@ def analyse_again(
     workers: Workers,
     report: Report,
 ) -> AgainResult:
-    """Analyse sessions that this version has not analysed as they are told now; each is kept once it is done.
+    """Analyse sessions that this version has not analysed as they are reported now; each is kept once it is done.
 
     Parameters
     ----------
@@ -66,7 +66,7 @@ def analyse_again(
     """
     result, keeps = AgainResult(len(session_ids)), dict[UUID, Keep]()
 
-    def told() -> None:
+    def reported() -> None:
         words = tr("{done} of {total} sessions").format(done=result.finished, total=result.total)
         report(result.finished / max(result.total, 1), words)
 
@@ -82,12 +82,12 @@ def analyse_again(
                 continue
             if found is None:
                 result.as_before += 1
-                told()
+                reported()
                 continue
             session, keeps[session_id] = found
             yield AgainTask(session_id, bare(session))
 
-    told()
+    reported()
     for task, outcome in finished(again_task, tasks(), workers):
         keep = keeps.pop(task.session_id)
         if isinstance(outcome, Exception):
@@ -95,5 +95,5 @@ def analyse_again(
         else:
             keep(outcome)
             result.analysed += 1
-        told()
+        reported()
     return result

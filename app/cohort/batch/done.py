@@ -1,7 +1,7 @@
 """What a batch has done already, kept beside its results: one small file for each session.
 
 They are in a folder of their own, since the folder of a session's results holds only what `analyse` writes. A record
-says of what the results were made and holds their rows of the table. It is written beside and renamed after the
+states of what the results were made and holds their rows of the table. It is written beside and renamed after the
 results were: whatever is killed in between is done again, and nothing else.
 """
 
@@ -53,8 +53,8 @@ class BatchFolder:
     def record(self, name: str) -> DoneRecord | None:
         """What is kept of a session; None where there is nothing, or nothing whole."""
         try:
-            told = json.loads(self._path(name).read_text(encoding="utf-8"))
-            return DoneRecord(told["key"], told["making"], told["summary_sha256"], tuple(told["rows"]))
+            reported = json.loads(self._path(name).read_text(encoding="utf-8"))
+            return DoneRecord(reported["key"], reported["making"], reported["summary_sha256"], tuple(reported["rows"]))
         except (OSError, ValueError, KeyError, TypeError):
             return None
 
@@ -66,7 +66,7 @@ class BatchFolder:
         OSError
             It cannot be written.
         """
-        told = {
+        reported = {
             "key": record.key,
             "making": record.making,
             "summary_sha256": record.summary_sha256,
@@ -74,7 +74,7 @@ class BatchFolder:
         }
         path = self._path(name)
         beside = path.with_suffix(".new")
-        beside.write_text(json.dumps(told, allow_nan=False), encoding="utf-8")
+        beside.write_text(json.dumps(reported, allow_nan=False), encoding="utf-8")
         beside.replace(path)
 
     def forget(self, name: str) -> None:
@@ -100,11 +100,11 @@ def read_mark(out: Path) -> str | None:
     try:
         if path.stat().st_size > MOST_BYTES:
             return None
-        told = json.loads(path.read_text(encoding="utf-8"))
+        reported = json.loads(path.read_text(encoding="utf-8"))
     except (OSError, ValueError, RecursionError):
         return None
-    is_ours = isinstance(told, dict) and told.get("format") == FORMAT and isinstance(told.get("mark"), str)
-    return told["mark"] if is_ours else None
+    is_ours = isinstance(reported, dict) and reported.get("format") == FORMAT and isinstance(reported.get("mark"), str)
+    return reported["mark"] if is_ours else None
 
 
 @contextmanager

@@ -11,8 +11,8 @@ from app.exports.result_folder import OWN_SESSION, SUMMARY
 from devices.files.refusal import FileRefusedError
 from devices.files.session_toml import FILE_NAME
 
-OURS = frozenset(("parameters.csv", "parameters.parquet", "failures.csv"))  # what stands beside the results
-LETTERS = 8  # of a name that nothing else tells apart
+OURS = frozenset(("parameters.csv", "parameters.parquet", "failures.csv"))  # what is beside the results
+LETTERS = 8  # of a name that nothing else distinguish
 
 
 @dataclass(frozen=True, slots=True)
@@ -28,7 +28,7 @@ def find_sessions(folder: Path, out: Path) -> tuple[FoundSession, ...]:
     """All session folders under `folder`, or itself, in the order of their names; nothing in `out` or hidden.
 
     A session's name is that of its folder. Recordings inside their results (`NAME/session`) are called as these. Where
-    several sessions have one name, each is told by its path.
+    several sessions have one name, each is given by its path.
 
     Raises
     ------
@@ -44,12 +44,12 @@ def find_sessions(folder: Path, out: Path) -> tuple[FoundSession, ...]:
         raise FileRefusedError(str(folder), "there is no session folder in it", remedy)
     by_name = defaultdict(list)
     for place, (name, _) in places.items():
-        by_name[name.casefold()].append(place)  # some disks do not tell large letters from small ones
+        by_name[name.casefold()].append(place)  # some disks do not report large letters from small ones
     found = []
     for place, (name, named_after) in places.items():
         shares_name = len(by_name[name.casefold()]) > 1
         found.append(FoundSession(_path_name(named_after, folder) if shares_name else name, place, shares_name))
-    return tuple(sorted(_told_apart(found, folder), key=lambda one: one.name))
+    return tuple(sorted(_reported_apart(found, folder), key=lambda one: one.name))
 
 
 def _session_folders(folder: Path, out: Path) -> Iterator[Path]:
@@ -78,7 +78,7 @@ def _path_name(named_after: Path, folder: Path) -> str:
     return "-".join(parts) or named_after.name
 
 
-def _told_apart(found: Sequence[FoundSession], folder: Path) -> Iterator[FoundSession]:
+def _reported_apart(found: Sequence[FoundSession], folder: Path) -> Iterator[FoundSession]:
     """Names that are still not one session's alone, or that stand for something else, with a digest of the path."""
     count: defaultdict[str, int] = defaultdict(int)
     for one in found:

@@ -1,14 +1,15 @@
 """The sessions of a library for a batch: read here one after the other, since its key leaves this process for nobody.
 
-A session's samples and words leave the library with its results, so the audit says it before they are read. Whether a
-session is as it was is told from the library's rows and the digests of its recordings, without opening any of them.
+A session's samples and words leave the library with its results, so the audit states it before they are read. Whether a
+session is as it was is distinguished from the library's rows and the digests of its recordings, without opening any of
+them.
 """
 
 import hashlib
 from collections.abc import Collection, Iterator, Sequence
 from uuid import UUID
 
-from app.cohort.batch.rows import ToldOf
+from app.cohort.batch.rows import ReportedOf
 from app.cohort.batch.task import GivenSession
 from app.storage.audit import about
 from app.storage.exchange import READ_BACK, session_with_samples
@@ -37,7 +38,7 @@ class LibrarySessions:
         return tuple(self._ids)
 
     def content(self, name: str) -> str:
-        """What the library says of a session, in one word.
+        """What the library states of a session, in one word.
 
         Raises
         ------
@@ -67,11 +68,11 @@ class LibrarySessions:
         if not session.recordings:
             raise FileRefusedError(name, "no recording of this session can be read", "Recover the library first")
         pseudonyms = Pseudonyms(opened.library.pseudonyms_key)
-        told = ToldOf(
+        reported = ReportedOf(
             pseudonyms.code(visit.patient_id, session.is_simulated),
             pseudonyms.shifted(visit.patient_id, session.started)[:10],
         )
-        return GivenSession(session, _content(visit), told)
+        return GivenSession(session, _content(visit), reported)
 
     def notes(self) -> Iterator[str]:
         if self._without:

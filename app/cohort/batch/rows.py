@@ -1,4 +1,4 @@
-"""The rows of a session in the table of a batch: one for each walk and side, figures and what may be said of each.
+"""The rows of a session in the table of a batch: one for each walk and side, figures and what may be stated about each.
 
 Figures, errors and verdicts are those of `summary.json` to the last bit; nothing is judged or rounded here. Nobody's
 name is in a row: a patient is a pseudonym, of notes and operators there is nothing, and an age of 90 or more is 90.
@@ -22,7 +22,7 @@ from core.verdicts.quantities import OF_BOTH, OF_HIPS, PARAMETERS
 Row = dict[str, str | float | int | bool | None]
 
 BOTH = "both"
-UNNUMBERED = "#"  # before what tells a batch's patients apart until the table numbers them
+UNNUMBERED = "#"  # before what reports a batch's patients apart until the table numbers them
 WALK_SPEED = "walk_speed_m_s"
 
 
@@ -90,23 +90,24 @@ HIP_COLUMNS: Mapping[str, CellKind] = {  # of a table with a session that had a 
 
 
 @dataclass(frozen=True, slots=True)
-class ToldOf:
-    """Whose session it is, and of when, as the table tells it: a pseudonym and a date."""
+class ReportedOf:
+    """Whose session it is, and of when, as the table reports it: a pseudonym and a date."""
 
     patient: str
     started: str
 
 
-def told_of_folder(session: Session, mark: str) -> ToldOf:
-    """What tells a batch's patients apart, keyed with its mark, until its table numbers them; and the session's day."""
+def reported_of_folder(session: Session, mark: str) -> ReportedOf:
+    """What reports a batch's patients apart, keyed with its mark, until its table numbers them; and the session's
+    day."""
     code = session.patient.code
     if not code:
-        return ToldOf("", session.started[:10])
+        return ReportedOf("", session.started[:10])
     digest = hmac.digest(mark.encode(), code.encode("utf-8", "surrogatepass"), "sha256").hex()
-    return ToldOf(f"{UNNUMBERED}{digest}", session.started[:10])
+    return ReportedOf(f"{UNNUMBERED}{digest}", session.started[:10])
 
 
-def rows_of(name: str, session: Session, analysis: Analysis, told: ToldOf) -> tuple[Row, ...]:
+def rows_of(name: str, session: Session, analysis: Analysis, reported: ReportedOf) -> tuple[Row, ...]:
     """The rows of a session: its walks in their order, left, right and both."""
     recordings = {recording.name: recording for recording in session.recordings}
     rows = []
@@ -116,17 +117,17 @@ def rows_of(name: str, session: Session, analysis: Analysis, told: ToldOf) -> tu
         of_walk = {WALK_SPEED: finite(speed.mean), f"{WALK_SPEED}_status": str(speed.assessment.verdict)}
         for side in Side:
             figures = _of_leg(found.legs[side]) if side in found.legs else ()
-            rows.append(_groups(name, session, recordings[walk.name], side, told) | of_walk | dict(figures))
-        rows.append(_groups(name, session, recordings[walk.name], BOTH, told) | of_walk | dict(_of_both(found)))
+            rows.append(_groups(name, session, recordings[walk.name], side, reported) | of_walk | dict(figures))
+        rows.append(_groups(name, session, recordings[walk.name], BOTH, reported) | of_walk | dict(_of_both(found)))
     return tuple(rows)
 
 
-def _groups(name: str, session: Session, recording: Recording, part: str, told: ToldOf) -> Row:
+def _groups(name: str, session: Session, recording: Recording, part: str, reported: ReportedOf) -> Row:
     patient, is_leg = session.patient, part != BOTH
     age = age_in_words(session)
     return {
         "session": text(name),
-        "patient": told.patient or None,
+        "patient": reported.patient or None,
         "walk": text(recording.name),
         "condition": text(recording.condition),
         "side": part,
@@ -138,7 +139,7 @@ def _groups(name: str, session: Session, recording: Recording, part: str, told: 
         "age_years": int(age.removesuffix("+")) if age else None,
         "height_m": patient.height_m,
         "mass_kg": patient.mass_kg,
-        "started": text(told.started),
+        "started": text(reported.started),
         "is_simulated": session.is_simulated,
         "software": version_of("gaitwright"),
     }
@@ -161,9 +162,9 @@ def _of_leg(found: LegAverages) -> Iterator[tuple[str, str | float | int | None]
         yield f"{name}_status", str(average.assessment.verdict)
 
 
-def _is_among(side: str, told: str) -> bool | None:
-    """Whether a side is meant by left, right, both or none; None where nothing was said."""
-    return told in (side, BOTH) if told else None
+def _is_among(side: str, reported: str) -> bool | None:
+    """Whether a side is meant by left, right, both or none; None where nothing was stated."""
+    return reported in (side, BOTH) if reported else None
 
 
 def text(typed: str) -> str | None:

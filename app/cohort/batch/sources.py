@@ -15,7 +15,7 @@ class SessionSource(Protocol):
     def names(self) -> Sequence[str]: ...
 
     def content(self, name: str) -> str:
-        """What is in a session, in one word; empty where only who reads it can tell.
+        """What is in a session, in one word; empty where only who reads it can report.
 
         Raises
         ------
@@ -27,7 +27,7 @@ class SessionSource(Protocol):
         """The session, for whoever analyses it; raises as `content`."""
 
     def notes(self) -> Iterator[str]:
-        """What is to be said of these sessions at the end, a line each."""
+        """What is to be stated about these sessions at the end, a line each."""
 
 
 class SessionFolders:

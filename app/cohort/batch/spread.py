@@ -23,7 +23,7 @@ LOOK_S = 5.0  # between two looks at how many workers there are
 
 
 class WorkerLostError(Exception):
-    """A worker ended before its task did; `how` says what is known of it."""
+    """A worker ended before its task did; `how` states what is known of it."""
 
     def __init__(self, how: str) -> None:
         super().__init__(how)
@@ -89,7 +89,7 @@ def work_group(work: Callable[[T], R], tasks: tuple[T, ...]) -> GroupResult[R]:
             break
         try:
             results.append(work(task))
-        except Exception as error:  # one task's fault is not its neighbours'
+        except Exception as error:  # one task's fault is not its adjacent ones'
             results.append(error)
     return GroupResult(tuple(results), perf_counter() - began_s)
 
@@ -160,10 +160,10 @@ def _result(workers: Workers, future: "Future[GroupResult[R]]") -> GroupResult[R
         return future.result()
     if not isinstance(error, Exception):
         raise error
-    told = workers.translate(error)
-    if isinstance(told, ClusterLostError):
-        raise told from error
-    return told
+    reported = workers.translate(error)
+    if isinstance(reported, ClusterLostError):
+        raise reported from error
+    return reported
 
 
 def _parts(group: TaskGroup[T]) -> tuple[TaskGroup[T], ...]:

@@ -17,7 +17,7 @@ from typing import Protocol
 
 from app.cohort.batch.analysed_folder import AnalysisChoices, write_analysed
 from app.cohort.batch.done import BatchFolder, DoneRecord, read_mark
-from app.cohort.batch.rows import ToldOf, rows_of, told_of_folder
+from app.cohort.batch.rows import ReportedOf, reported_of_folder, rows_of
 from app.cohort.batch.software import software
 from app.exports.result_folder import SUMMARY, check_place, written_beside
 from app.importing.untrusted_files import read_foreign_session
@@ -32,11 +32,11 @@ FULL = frozenset((errno.ENOSPC, errno.EDQUOT, errno.EROFS))  # what ends every f
 
 @dataclass(frozen=True, slots=True)
 class GivenSession:
-    """A session that the asking process has read, of which `content` says what is in it."""
+    """A session that the asking process has read, of which `content` states what is in it."""
 
     session: Session
     content: str
-    told: ToldOf
+    reported: ReportedOf
 
 
 @dataclass(frozen=True, slots=True)
@@ -104,15 +104,15 @@ def _analysed(task: BatchTask) -> SessionOutcome:
         return SessionOutcome(task.name, is_as_before=True)
     if isinstance(source, GivenSession):
         check_place(results, task.batch.work)  # the session is no folder that it could lie in
-        session, told = source.session, source.told
+        session, reported = source.session, source.reported
     else:
         check_place(results, source)
         session = read_foreign_session(source, _nobody_waits)
-        told = told_of_folder(session, task.batch.mark)
+        reported = reported_of_folder(session, task.batch.mark)
     with written_beside(results, within=task.batch.work) as folder:
         analysis = write_analysed(session, folder, task.choices, _nobody_asks)
         digest = summary_digest(folder)
-    rows = rows_of(task.name, session, analysis, told)
+    rows = rows_of(task.name, session, analysis, reported)
     return SessionOutcome(task.name, DoneRecord(key, making, digest, rows))
 
 
@@ -137,8 +137,8 @@ def _check_worker(task: BatchTask) -> None:
 
 def making_of(choices: AnalysisChoices, with_software: str) -> str:
     """What results are made with, in one word: the software and every choice that changes them."""
-    told = {one.name: getattr(choices, one.name) for one in fields(choices)}
-    return hashlib.sha256(json.dumps([told, with_software], sort_keys=True).encode()).hexdigest()
+    reported = {one.name: getattr(choices, one.name) for one in fields(choices)}
+    return hashlib.sha256(json.dumps([reported, with_software], sort_keys=True).encode()).hexdigest()
 
 
 def key_of(content: str, making: str) -> str:
@@ -172,7 +172,8 @@ def _files(folder: Path) -> Iterator[Path]:
 
 
 def _add(path: Path, digest: _Hash) -> None:
-    """What cannot be read is told as such: only some of these files are the session, and reading that refuses them."""
+    """What cannot be read is reported as such: only some of these files are the session, and reading that refuses
+    them."""
     try:
         if path.is_symlink():
             digest.update(b"link\0" + os.fsencode(path.readlink()) + b"\0")

@@ -5,7 +5,7 @@ side are averaged first, then its sides, and what is left is one value per sessi
 standard deviation (n - 1) and the 95 % interval of the mean, mean ± t(0.975, n - 1) sd / √n. Under three sessions there
 is a mean and nothing else. A value counts only if its status allows and it is a number; what is left out is counted.
 
-No group is said to differ from another here. Two sessions of one person count as two, which makes the interval too
+No group is stated to differ from another here. Two sessions of one person count as two, which makes the interval too
 narrow: so the people are counted beside them. A bias that all sessions share (knees read larger than in optical
 laboratories) is not in the interval.
 """
@@ -31,11 +31,11 @@ SIMULATED = "is_simulated"
 BOTH, LEG_SIDES = "both", ("left", "right")
 NOT_STATED = ""
 LEGS = ("prosthetic", "affected", "other", "neither")
-TOLD, TOLD_WITH_CARE = ("read",), ("read", "care")
+REPORTED, REPORTED_WITH_CARE = ("read",), ("read", "care")
 
 
 class Grouping(StrEnum):
-    """What sessions can be grouped by; never by session or walk, which would tell single people."""
+    """What sessions can be grouped by; never by session or walk, which would report single people."""
 
     CONDITION = "condition"
     DEVICE = "device"
@@ -77,13 +77,13 @@ class GroupRow:
         A condition or device as typed; `left`; `prosthetic`; a band by its lower edge ("18", "0.4", the first "0");
         empty: not stated, or a speed that cannot be read.
     sessions, patients, walks
-        Those with a value that counts; no patients where one of the sessions does not tell its own.
+        Those with a value that counts; no patients where one of the sessions does not report its own.
     mean, sd, standard_error, half_interval
         Of the sessions' values, in the unit that the measure's name ends with; sd, standard error and half of the 95 %
         interval are NaN under three sessions.
     value_error
         Median measurement error (95 %) of the mean of one walk and side.
-    withheld, with_care, not_measured
+    not reported, with_care, not_measured
         Walks of one side that are left out for this.
     sessions_without
         Sessions of the group without any value that counts.
@@ -98,7 +98,7 @@ class GroupRow:
     standard_error: float
     half_interval: float
     value_error: float
-    withheld: int
+    not_reported: int
     with_care: int
     not_measured: int
     sessions_without: int
@@ -123,7 +123,7 @@ class GroupRow:
 class GroupAnswer:
     """The groups in their order, those without a value too.
 
-    `sessions` and `patients` count each once, however many groups it is in (no patients where a session does not tell
+    `sessions` and `patients` count each once, however many groups it is in (no patients where a session does not report
     its own); `simulated` of them are simulated, and `simulated_left_out` sessions are not among them for being so.
     """
 
@@ -135,7 +135,7 @@ class GroupAnswer:
     simulated_left_out: int
 
     @property
-    def told(self) -> tuple[GroupRow, ...]:
+    def reported(self) -> tuple[GroupRow, ...]:
         """The groups with a mean."""
         return tuple(row for row in self.rows if row.sessions)
 
@@ -217,9 +217,9 @@ def table_of(found: GroupAnswer) -> tuple[list[str], Iterable[list[str | int | f
 
 
 def _sides(table: ParameterTable, measure: str) -> tuple[str, str]:
-    """Which rows tell this parameter: those of the legs, else those of both together, as of cadence."""
-    told = f"SELECT DISTINCT side FROM {VIEW} WHERE {quoted_name(measure)} IS NOT NULL"
-    found = {side for (side,) in table.found(told).rows}
+    """Which rows report this parameter: those of the legs, else those of both together, as of cadence."""
+    reported = f"SELECT DISTINCT side FROM {VIEW} WHERE {quoted_name(measure)} IS NOT NULL"
+    found = {side for (side,) in table.found(reported).rows}
     return (BOTH, BOTH) if found == {BOTH} else LEG_SIDES
 
 
@@ -276,7 +276,7 @@ def _sql(table: ParameterTable, question: GroupQuestion, sides: tuple[str, str])
 def _every_value(table: ParameterTable, question: GroupQuestion, sides: tuple[str, str]) -> str:
     """The rows that are asked about, by group, each with whether it counts."""
     measure, columns = question.measure, table.columns
-    counted = ", ".join(f"'{status}'" for status in (TOLD_WITH_CARE if question.has_care else TOLD))
+    counted = ", ".join(f"'{status}'" for status in (REPORTED_WITH_CARE if question.has_care else REPORTED))
     simulated = f"coalesce({SIMULATED}, false)" if SIMULATED in columns else "false"
     error = quoted_name(measure + ERROR) if measure + ERROR in columns else "NULL::DOUBLE"
     patient = "nullif(patient::VARCHAR, '')" if "patient" in columns else "NULL::VARCHAR"
@@ -305,8 +305,8 @@ def _group(grouping: Grouping) -> str:
         case Grouping.AGE:
             return _band("age_years::DOUBLE", AGE_EDGES)
         case Grouping.SPEED:
-            told = " OR ".join(f"{SPEED}{STATUS} = '{status}'" for status in TOLD_WITH_CARE)
-            return _band(f"(CASE WHEN {told} THEN {SPEED} END)", SPEED_EDGES)
+            reported = " OR ".join(f"{SPEED}{STATUS} = '{status}'" for status in REPORTED_WITH_CARE)
+            return _band(f"(CASE WHEN {reported} THEN {SPEED} END)", SPEED_EDGES)
         case Grouping.SIDE:
             return f"coalesce(side::VARCHAR, '{NOT_STATED}')"
         case Grouping.LEG:
@@ -324,12 +324,14 @@ def _band(value: str, edges: tuple[float, ...]) -> str:
 
 
 def _row(found: tuple[Any, ...]) -> GroupRow:
-    _, group, n, patients, walks, mean, sd, error, withheld, care, not_measured, without, *_ = found
+    _, group, n, patients, walks, mean, sd, error, not_reported, care, not_measured, without, *_ = found
     spread = _number(sd) if n >= LEAST_SESSIONS else math.nan
     standard_error = spread / math.sqrt(n) if n else math.nan
     half = float(stdtrit(n - 1, TWO_SIDED_95)) * standard_error if n >= LEAST_SESSIONS else math.nan
     figures = (_number(mean), spread, standard_error, half, _number(error))
-    return GroupRow(str(group), n, patients, int(walks), *figures, int(withheld), int(care), int(not_measured), without)
+    return GroupRow(
+        str(group), n, patients, int(walks), *figures, int(not_reported), int(care), int(not_measured), without
+    )
 
 
 def _number(value: object) -> float:

@@ -1,4 +1,4 @@
-"""What the parameters of a table are called, their units and how many decimals they are told with."""
+"""What the parameters of a table are called, their units and how many decimals they are reported with."""
 
 from dataclasses import dataclass
 
@@ -6,12 +6,12 @@ from app.wording.measures import NAMES, unit_symbol, with_unit
 from app.wording.translation import later, tr
 from core.parameters import SPEED, unit_of
 
-OF_TABLE = {"walk_speed_m_s": later("Walking speed"), SPEED: later("Walking speed, by leg")}  # a batch tells both
+OF_TABLE = {"walk_speed_m_s": later("Walking speed"), SPEED: later("Walking speed, by leg")}  # a batch reports both
 
 
 @dataclass(frozen=True, slots=True)
 class MeasureWords:
-    """`name` in words, its unit (empty: none), and the decimals that it is told with."""
+    """`name` in words, its unit (empty: none), and the decimals that it is reported with."""
 
     name: str
     unit: str

@@ -30,7 +30,8 @@ class FoundRows:
 class ParameterTable:
     """One row per session, walk and side, as the view `parameters`.
 
-    A number that is none (NaN) is empty there, as a withheld one is, so that no mean has to be told to pass over it.
+    A number that is none (NaN) is empty there, as a not reported one is, so that no mean has to be given to pass over
+    it.
     """
 
     def __init__(self, file: Path) -> None:

@@ -57,7 +57,7 @@ class TickCell(TableCell):
         return self.line.patient
 
     @property
-    def said(self) -> str:
+    def stated(self) -> str:
         return self.line.in_words
 
     @property

@@ -58,7 +58,7 @@ class AnalysingAgain(QObject):
         self._controller = controller
         self._dialog: QFileDialog | None = None
         self._failures: dict[UUID, str] = {}
-        self._wanted: UUID | None = None
+        self._required: UUID | None = None
         self._out = Path()
         self.is_working = False
         self.page = AnalyseAgainPage(look)
@@ -70,12 +70,12 @@ class AnalysingAgain(QObject):
         words = tr_n("Analyse {count} session", "Analyse {count} sessions", count).format(count=count)
         analyse = BarAction(words, self.analyse, icon=Icon.PLAY, is_enabled=bool(count))
         words = tr("Analyse to a folder, with table")
-        folder = BarAction(words, self._choose_folder, icon=Icon.FOLDER, is_wished=False, is_enabled=bool(count))
+        folder = BarAction(words, self._choose_folder, icon=Icon.FOLDER, is_requested=False, is_enabled=bool(count))
         return BarState(analyse, others=(folder,))
 
     def begin(self, patient_id: UUID | None) -> None:
         """Show all sessions, with those of this patient ticked, else those that this version has not analysed."""
-        self._wanted, self._failures = patient_id, {}
+        self._required, self._failures = patient_id, {}
         self.page.forget()
         self._read()
 
@@ -150,7 +150,7 @@ class AnalysingAgain(QObject):
             )
             for one in listed
         )
-        of_patient = [one.id for one in listed if one.patient_id == self._wanted]
+        of_patient = [one.id for one in listed if one.patient_id == self._required]
         return lines, tuple(of_patient or [line.id for line in lines if not line.is_current])
 
     def _on_read(self, found: tuple[Sequence[AgainLine], Sequence[UUID]]) -> None:
@@ -161,8 +161,8 @@ class AnalysingAgain(QObject):
         self.progressed.emit(share, what)
 
     def _on_analysed(self, result: AgainResult) -> None:
-        self._failures, self._wanted = dict(result.failures), None
-        said = tr_n(
+        self._failures, self._required = dict(result.failures), None
+        stated = tr_n(
             "{count} session was analysed with this version.",
             "{count} sessions were analysed with this version.",
             result.analysed,
@@ -175,12 +175,12 @@ class AnalysingAgain(QObject):
             then.append(before.format(count=result.as_before))
         if result.failures:
             then.append(_failed(len(result.failures)))
-        self._end(said, " ".join(then))
+        self._end(stated, " ".join(then))
         self._read()
 
     def _on_written(self, result: "BatchResult") -> None:
-        said = tr("Results and table saved in {folder}.").format(folder=self._out)
-        self._end(said, _failed(len(result.failures)) if result.failures else "")
+        stated = tr("Results and table saved in {folder}.").format(folder=self._out)
+        self._end(stated, _failed(len(result.failures)) if result.failures else "")
         self.table_made.emit(self._out / TABLE)
 
     def _on_refused(self, what: str, remedy: str) -> None:
@@ -198,9 +198,9 @@ def _proposed(place: Path) -> str:
 
 
 def _failed(count: int) -> str:
-    said = tr_n(  # alike in English only
+    stated = tr_n(  # alike in English only
         "{count} could not be analysed. The list shows why.",
         "{count} could not be analysed. The list shows why.",
         count,
     )
-    return said.format(count=count)
+    return stated.format(count=count)

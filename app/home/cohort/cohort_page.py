@@ -33,13 +33,13 @@ MOST_DRAWN = 16  # groups; those with most sessions
 class QuestionsPage(Themed):
     """Signals
     -------
-    table_wished
+    table_requested
         Another table is to be chosen.
     question_changed
         What is asked now, a `GroupQuestion`.
     """
 
-    table_wished = Signal()
+    table_requested = Signal()
     question_changed = Signal(object)
 
     def __init__(self, look: ThemeNotifier) -> None:
@@ -123,7 +123,7 @@ class QuestionsPage(Themed):
     def show_refused(self, what: str, remedy: str) -> None:
         """Say why there is no answer; without a table, above how one comes to be."""
         self.found = None
-        self.refusal.tell(Icon.WARNING, what, remedy, is_caution=True)
+        self.refusal.show_message(Icon.WARNING, what, remedy, is_caution=True)
         self._show_parts(self.refusal, self._controls if self.question is not None else self._empty)
 
     def show_table(self, name: str, measures: Sequence[str], groupings: Sequence[Grouping]) -> None:
@@ -157,13 +157,13 @@ class QuestionsPage(Themed):
         self.show_nothing()
 
     def show_answer(self, found: GroupAnswer) -> None:
-        """Show what was found; nothing is said of what it means."""
+        """Show what was found; nothing is stated about what it means."""
         self.found = found
         words, grouping = measure_words(found.question.measure), found.question.grouping
-        said = notes(found)
+        stated = notes(found)
         self.sentence.setText(sentence(found))
-        self.notes.setText(" ".join(said))
-        self.notes.setVisible(bool(said))
+        self.notes.setText(" ".join(stated))
+        self.notes.setVisible(bool(stated))
         drawn = _drawn(found)
         lines = [
             GroupLine(group_name(grouping, row.group), row.mean, row.half_interval, _sessions(row)) for row in drawn
@@ -239,8 +239,8 @@ class QuestionsPage(Themed):
         self._column.addStretch(1)
 
     def _connect(self) -> None:
-        self.choose_table.clicked.connect(self.table_wished)
-        self.first_table.clicked.connect(self.table_wished)
+        self.choose_table.clicked.connect(self.table_requested)
+        self.first_table.clicked.connect(self.table_requested)
         self.measure.currentIndexChanged.connect(self._on_changed)
         self.grouping.currentIndexChanged.connect(self._on_changed)
         self.included.chosen.connect(self._on_changed)
@@ -261,8 +261,8 @@ class QuestionsPage(Themed):
 
 def _drawn(found: GroupAnswer) -> list[GroupRow]:
     """The groups with most sessions, in their order."""
-    most = sorted(found.told, key=lambda row: -row.sessions)[:MOST_DRAWN]
-    return [row for row in found.told if row in most]
+    most = sorted(found.reported, key=lambda row: -row.sessions)[:MOST_DRAWN]
+    return [row for row in found.reported if row in most]
 
 
 def _sessions(row: GroupRow) -> str:
@@ -279,14 +279,14 @@ def _line_in_words(line: GroupLine, decimals: int, unit: str) -> str:
 
 def _more(found: GroupAnswer, drawn: int) -> str:
     """How many groups are not in sight, and where they are."""
-    said = []
-    if len(found.told) > drawn:
-        told = tr("The chart shows the {drawn} groups with the most sessions, of {count}.")
-        said.append(told.format(drawn=drawn, count=len(found.told)))
+    stated = []
+    if len(found.reported) > drawn:
+        reported = tr("The chart shows the {drawn} groups with the most sessions, of {count}.")
+        stated.append(reported.format(drawn=drawn, count=len(found.reported)))
     if len(found.rows) > MOST_ROWS:
-        said.append(
+        stated.append(
             tr("The table shows the first {shown} groups of {count}. The CSV has all groups.").format(
                 shown=MOST_ROWS, count=len(found.rows)
             )
         )
-    return " ".join(said)
+    return " ".join(stated)

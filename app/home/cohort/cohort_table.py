@@ -32,7 +32,7 @@ def groups_table(found: GroupAnswer, *, is_narrow: bool) -> tuple[list[TableColu
 
 def _row(found: GroupAnswer, row: GroupRow, words: MeasureWords, longest: int) -> TableRow:
     name, decimals = group_name(found.question.grouping, row.group), words.decimals
-    out = row.withheld + row.with_care + row.not_measured
+    out = row.not_reported + row.with_care + row.not_measured
     shown = name if len(name) <= longest else f"{name[: longest - 1]}…"
     cells = (
         (tr("Sessions"), str(row.sessions)),
@@ -43,13 +43,13 @@ def _row(found: GroupAnswer, row: GroupRow, words: MeasureWords, longest: int) -
         (tr("Measurement error"), figure(row.value_error, decimals)),
         (tr("Excluded"), str(out)),
     )
-    told = tr(
-        "{group}: excluded {withheld} not reported, {care} caution, {missing} not measured; sessions "
+    reported = tr(
+        "{group}: excluded {not_reported} not reported, {care} caution, {missing} not measured; sessions "
         "without a value: {sessions}."
     )
-    hint = told.format(
+    hint = reported.format(
         group=name,
-        withheld=row.withheld,
+        not_reported=row.not_reported,
         care=row.with_care,
         missing=row.not_measured,
         sessions=row.sessions_without,
@@ -59,8 +59,10 @@ def _row(found: GroupAnswer, row: GroupRow, words: MeasureWords, longest: int) -
 
 
 def _cell(value: str, whose: str) -> TableCell:
-    said = value or tr("no value")
-    return TextCell(value or "–", align=RIGHT, size=FIGURE, spoken=f"{whose}: {said}", tone="ink" if value else "ink3")
+    stated = value or tr("no value")
+    return TextCell(
+        value or "–", align=RIGHT, size=FIGURE, spoken=f"{whose}: {stated}", tone="ink" if value else "ink3"
+    )
 
 
 def _head(words: str, *, is_first: bool = False) -> TextCell:

@@ -1,4 +1,5 @@
-"""What the page of questions says: its groups, what is shown, what was left out, and what the intervals do not hold."""
+"""What the page of questions states: its groups, what is shown, what was left out, and what the intervals do not
+hold."""
 
 from app.cohort.study.groups import (
     AGE_EDGES,
@@ -56,65 +57,65 @@ def group_name(grouping: Grouping, group: str) -> str:
 def sentence(found: GroupAnswer) -> str:
     """What is shown, in one sentence; nothing of what it means."""
     measure = measure_words(found.question.measure).name
-    if not found.told:
+    if not found.reported:
         return tr("No session has an included value of this measure.")
     if found.question.grouping is Grouping.ALL:
-        said = tr_n("{measure}: {count} session.", "{measure}: mean of {count} sessions.", found.sessions)
-        return said.format(measure=measure, count=found.sessions)
-    said = tr_n(
+        stated = tr_n("{measure}: {count} session.", "{measure}: mean of {count} sessions.", found.sessions)
+        return stated.format(measure=measure, count=found.sessions)
+    stated = tr_n(
         "{measure}: {count} session, by {grouping}.",
         "{measure}: means of {count} sessions, by {grouping}.",
         found.sessions,
     )
-    return said.format(measure=measure, count=found.sessions, grouping=_in_sentence(found.question.grouping))
+    return stated.format(measure=measure, count=found.sessions, grouping=_in_sentence(found.question.grouping))
 
 
 def notes(found: GroupAnswer) -> list[str]:
     """What has to be known beside it, each a sentence that is there only where it is so."""
-    said = []
+    stated = []
     if found.simulated:
-        told = tr_n(
+        reported = tr_n(
             "SIMULATED: {count} session is simulated.", "SIMULATED: {count} sessions are simulated.", found.simulated
         )
-        said.append(told.format(count=found.simulated))
+        stated.append(reported.format(count=found.simulated))
     if 0 < found.patients < found.sessions:
-        told = tr_n(
+        reported = tr_n(
             "All sessions are from {count} person. The intervals are therefore too narrow.",
             "The sessions are from {count} people, and each session counts. The intervals are therefore too narrow.",
             found.patients,
         )
-        said.append(told.format(count=found.patients))
+        stated.append(reported.format(count=found.patients))
     if found.is_overlapping:
-        said.append(tr("Some sessions are in several groups."))
-    few = sum(row.sessions < LEAST_SESSIONS for row in found.told)
+        stated.append(tr("Some sessions are in several groups."))
+    few = sum(row.sessions < LEAST_SESSIONS for row in found.reported)
     if few:
-        told = tr_n(
+        reported = tr_n(
             "{count} group has fewer than {least} sessions: no interval.",
             "{count} groups have fewer than {least} sessions: no interval.",
             few,
         )
-        said.append(told.format(count=few, least=LEAST_SESSIONS))
+        stated.append(reported.format(count=few, least=LEAST_SESSIONS))
     if left := left_out(found):
-        said.append(left)
-    return said
+        stated.append(left)
+    return stated
 
 
 def left_out(found: GroupAnswer) -> str:
     """What does not count and why; empty where all does."""
-    withheld, care, missing = (
-        sum(getattr(row, name) for row in found.rows) for name in ("withheld", "with_care", "not_measured")
+    not_reported, care, missing = (
+        sum(getattr(row, name) for row in found.rows) for name in ("not_reported", "with_care", "not_measured")
     )
     parts = [
-        (withheld, tr("{count} not reported")),
+        (not_reported, tr("{count} not reported")),
         (care, tr("{count} rated caution")),
         (missing, tr("{count} not measured")),
     ]
-    told = [words.format(count=count) for count, words in parts if count]
-    said = [tr("Excluded (each one leg in one walk): {what}.").format(what=joined(told))] if told else []
+    reported = [words.format(count=count) for count, words in parts if count]
+    stated = [tr("Excluded (each one leg in one walk): {what}.").format(what=joined(reported))] if reported else []
     if count := found.simulated_left_out:
         simulated = tr_n("{count} simulated session is excluded.", "{count} simulated sessions are excluded.", count)
-        said.append(simulated.format(count=count))
-    return " ".join(said)
+        stated.append(simulated.format(count=count))
+    return " ".join(stated)
 
 
 def interval_in_words(row: GroupRow, decimals: int) -> str:

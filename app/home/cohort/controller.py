@@ -45,15 +45,15 @@ class Questions(QObject):
     -------
     changed
         The bar may show something else.
-    told
+    reported
         What came of it, and what to do.
-    again_wished
+    again_requested
         Sessions are to be analysed again.
     """
 
     changed = Signal()
-    again_wished = Signal()
-    told = Signal(str, str)
+    again_requested = Signal()
+    reported = Signal(str, str)
 
     def __init__(self, look: ThemeNotifier, settings: Settings, parent: QObject) -> None:
         super().__init__(parent)
@@ -67,16 +67,16 @@ class Questions(QObject):
         self._background.failed.connect(self._on_failed)
         self._writing.done.connect(self._on_written)
         self._writing.failed.connect(self._on_write_failed)
-        self.page.table_wished.connect(self.choose_table)
+        self.page.table_requested.connect(self.choose_table)
         self.page.question_changed.connect(self._on_question_changed)
 
     @property
     def bar(self) -> BarState:
         """What can be done with what is shown."""
-        again = (BarAction(tr("Analyse sessions again"), self.again_wished.emit, icon=Icon.PLAY),)
+        again = (BarAction(tr("Analyse sessions again"), self.again_requested.emit, icon=Icon.PLAY),)
         if self.page.found is None:
             return BarState(quiet=again)
-        save = BarAction(tr("Save as CSV"), self.save, tr("Ctrl S"), Icon.IMPORT, is_wished=False)
+        save = BarAction(tr("Save as CSV"), self.save, tr("Ctrl S"), Icon.IMPORT, is_requested=False)
         return BarState(save, quiet=again)
 
     def begin(self) -> None:
@@ -166,13 +166,13 @@ class Questions(QObject):
 
     def _on_written(self, written: object) -> None:
         assert isinstance(written, _Written)
-        self.told.emit(tr("Groups saved."), str(written.path))
+        self.reported.emit(tr("Groups saved."), str(written.path))
 
     def _on_write_failed(self, error: Exception) -> None:
         if not isinstance(error, OSError):
             _log.error("groups were not written", exc_info=error)
         why = getattr(error, "strerror", None) or type(error).__name__
-        self.told.emit(tr("The groups could not be saved ({why}).").format(why=why), tr("Choose another folder."))
+        self.reported.emit(tr("The groups could not be saved ({why}).").format(why=why), tr("Choose another folder."))
 
 
 def _reading(path: Path) -> Work:
@@ -202,5 +202,5 @@ def _writing(found: GroupAnswer, path: Path) -> Work:
 
 
 def _short(path: Path) -> str:
-    """A table as it is called on the page: its folder says more than its name."""
+    """A table as it is called on the page: its folder states more than its name."""
     return f"{path.parent.name}/{path.name}"

@@ -34,12 +34,12 @@ class GoalsOfPatient(QObject):
     -------
     kept
         A goal holds, or holds no longer.
-    told
+    reported
         What could not be done, and what to do.
     """
 
     kept = Signal()
-    told = Signal(str, str)
+    reported = Signal(str, str)
 
     def __init__(
         self,
@@ -106,15 +106,18 @@ class GoalsOfPatient(QObject):
         return state.operator.name if state is not None else ""
 
     def _save(self, key: GoalKey, change: Callable[[Sequence[Goal]], tuple[Goal, ...]]) -> None:
-        """Say what is to hold of one figure, upon what was shown of it."""
+        """Say what is to hold of one figure, on what was shown of it."""
         if self._patient is None or self._is_busy:
             return
-        patient_id, told, field = self._patient.id, self._patient.details, goal_field(key)
-        upon, said = patient_fields(told)[field], patient_fields(replace(told, goals=change(told.goals)))[field]
+        patient_id, reported, field = self._patient.id, self._patient.details, goal_field(key)
+        base, stated = (
+            patient_fields(reported)[field],
+            patient_fields(replace(reported, goals=change(reported.goals)))[field],
+        )
         self._is_busy = True
 
         def save(opened: "OpenedLibrary") -> "Edited[StoredPatient]":
-            return opened.library.edits.patient(patient_id, {field: upon}, {field: said})
+            return opened.library.edits.patient(patient_id, {field: base}, {field: stated})
 
         self._controller.run(save, self._on_saved, self._on_refused, self)
 
@@ -125,12 +128,12 @@ class GoalsOfPatient(QObject):
             contest = edited.contests[0]
             now = datetime.datetime.now().astimezone()
             what = tr("{who} changed {goal} in the meantime. That change stays.")
-            said = what.format(goal=field_word(contest.field), who=by_words(contest.by, contest.at, now))
-            self.told.emit(said, tr("Check the current value. Yours is in the history."))
+            stated = what.format(goal=field_word(contest.field), who=by_words(contest.by, contest.at, now))
+            self.reported.emit(stated, tr("Check the current value. Yours is in the history."))
         else:
             self.page.show_agreed()
         self.kept.emit()
 
     def _on_refused(self, what: str, remedy: str) -> None:
         self._is_busy = False
-        self.told.emit(what, remedy)
+        self.reported.emit(what, remedy)

@@ -16,19 +16,19 @@ from app.widgets.tall_page import TallPage
 from app.widgets.text import MEDIUM, SEMIBOLD, Text
 from app.widgets.themed import Themed
 from app.wording.dates import date
-from app.wording.measures import goal_in_words, measure_name, short_unit, wanted, whose_name
+from app.wording.measures import goal_in_words, measure_name, required, short_unit, whose_name
 from app.wording.translation import tr
 from core.goals import GOAL_COLUMNS, LEAST, MOST, MOST_NOTE, Goal, GoalKey, GoalOf, held, whose
 
 MARGIN, GAP = 24, 16
-NARROW_BELOW = 820  # px of the design: what was agreed stands below the form
+NARROW_BELOW = 820  # px of the design: what was agreed is below the form
 LONGEST_WEEKS = 104
 AT_LEAST, AT_MOST = "least", "most"
 
 
 @dataclass(frozen=True, slots=True)
 class GoalDraft:
-    """What is to be agreed; `weeks`: within how many, None where nothing was said of that."""
+    """What is to be agreed; `weeks`: within how many, None where nothing was stated about that."""
 
     column: str
     of: GoalOf
@@ -99,7 +99,7 @@ class GoalsPage(TallPage):
         self._columns.setDirection(way)
 
     def show_patient(self, code: str) -> None:
-        """Begin anew, for this patient."""
+        """Begin again, for this patient."""
         self._title.setText(tr("Goals of {code}").format(code=code) if code else tr("Goals"))
         self.show_goals(())
         self._clear()
@@ -125,7 +125,7 @@ class GoalsPage(TallPage):
         self.measure.setFocus()
 
     def submit(self) -> None:
-        """Tell what was typed, or say at its field what is missing."""
+        """Report what was typed, or say at its field what is missing."""
         if self.value.value is None:
             if not self.value.text.strip():
                 self.value.set_wrong(tr("Enter the target value."))
@@ -137,8 +137,8 @@ class GoalsPage(TallPage):
         of, weeks = self._of, self.weeks.value
         is_at_most = of is GoalOf.BETWEEN or self.sense.choice == AT_MOST
         note = self.note.text.strip()
-        said = GoalDraft(self._column, of, self.value.value, is_at_most, None if weeks is None else int(weeks), note)
-        self.agreed.emit(said)
+        stated = GoalDraft(self._column, of, self.value.value, is_at_most, None if weeks is None else int(weeks), note)
+        self.agreed.emit(stated)
 
     @property
     def _column(self) -> str:
@@ -222,7 +222,7 @@ class _GoalRow(Themed):
         self.words = Text(look, name, weight=SEMIBOLD if goal.is_held else MEDIUM, wraps=True)
         if not goal.is_held:
             self.words.set_tone("ink2")
-        self.limit = Text(look, wanted(goal), wraps=True, tone="ink" if goal.is_held else "ink2")
+        self.limit = Text(look, required(goal), wraps=True, tone="ink" if goal.is_held else "ink2")
         self.about = Text(look, about(goal), size=12, tone="ink2", wraps=True)
         self.take_back: Button | None = None
         column = QVBoxLayout()
@@ -249,10 +249,10 @@ class _GoalRow(Themed):
 def about(goal: Goal) -> str:
     """Who agreed on a goal and when, by when it is to be reached, when it ended, and what was typed of it."""
     by = f", {goal.by}" if goal.by else ""
-    said = [tr("agreed {day}").format(day=date(goal.agreed)) + by]
+    stated = [tr("agreed {day}").format(day=date(goal.agreed)) + by]
     if goal.until is not None:
-        said.append(tr("by {day}").format(day=date(goal.until)))
+        stated.append(tr("by {day}").format(day=date(goal.until)))
     if goal.ended is not None:
         by = f", {goal.ended_by}" if goal.ended_by else ""
-        said.append(tr("ended {day}").format(day=date(goal.ended)) + by)
-    return " · ".join([*said, *filter(None, [goal.note])])
+        stated.append(tr("ended {day}").format(day=date(goal.ended)) + by)
+    return " · ".join([*stated, *filter(None, [goal.note])])

@@ -53,7 +53,7 @@ class _Read:
 
 
 class Importing(QObject):
-    """What leads to the page that says what is in files, and on from it: one session after the other.
+    """What leads to the page that states what is in files, and on from it: one session after the other.
 
     Signals
     -------
@@ -66,8 +66,8 @@ class Importing(QObject):
     left
         There is nothing more to be done here.
     imported
-        The id of the patient, whose session is in the library now; None where only the list has to be read anew.
-    told
+        The id of the patient, whose session is in the library now; None where only the list has to be read again.
+    reported
         What came of it, and what to do.
     """
 
@@ -76,7 +76,7 @@ class Importing(QObject):
     asked = Signal()
     left = Signal()
     imported = Signal(object)
-    told = Signal(str, str)
+    reported = Signal(str, str)
 
     def __init__(self, look: ThemeNotifier, controller: LibraryController, parent: QObject) -> None:
         super().__init__(parent)
@@ -89,10 +89,10 @@ class Importing(QObject):
         self._dialog: QFileDialog | None = None
         self.page = ImportPage(look)
         self.page.code.line_edit.returnPressed.connect(self.take_in)
-        self.page.files_wished.connect(self._choose_files)
-        self.page.folder_wished.connect(self._choose_folder)
-        self.page.reading_wished.connect(self._on_reading_wished)
-        self.page.draft.placing_wished.connect(self._on_placing_wished)
+        self.page.files_requested.connect(self._choose_files)
+        self.page.folder_requested.connect(self._choose_folder)
+        self.page.reading_requested.connect(self._on_reading_requested)
+        self.page.draft.placing_requested.connect(self._on_placing_requested)
 
     @property
     def bar(self) -> BarState:
@@ -113,7 +113,7 @@ class Importing(QObject):
         self.asked.emit()
 
     def read(self, paths: Sequence[Path], rate_hz: float | None = None) -> None:
-        """Read files and folders, to be imported once it is said whose they are."""
+        """Read files and folders, to be imported once it is stated whose they are."""
 
         def work(_opened: "OpenedLibrary", report: Report) -> _Read:
             return _read(paths, rate_hz, report)
@@ -124,7 +124,7 @@ class Importing(QObject):
         self._controller.run_long(work, self._on_read, self._on_read_refused, self._on_progressed, self)
 
     def take_in(self) -> None:
-        """Put what is shown into the library, as a session of the patient with the code that stands on the page."""
+        """Put what is shown into the library, as a session of the patient with the code that is on the page."""
         code, shown = self.page.code.text.strip(), self._shown
         if shown is None or not code or (self._is_draft and not self._is_draft_ready):
             return
@@ -152,11 +152,11 @@ class Importing(QObject):
         if not self._is_importing:  # something was being read, and no more
             self._controller.stop_long()
             self.left.emit()
-            self.told.emit(tr("Stopped."), tr("Nothing was added to the library."))
+            self.reported.emit(tr("Stopped."), tr("Nothing was added to the library."))
         else:
             self._controller.stop_long(self._on_stopped)
             self.asked.emit()
-            self.told.emit(tr("The import is being stopped."), tr("Any part of it already added is removed."))
+            self.reported.emit(tr("The import is being stopped."), tr("Any part of it already added is removed."))
 
     def forget(self) -> None:
         """Import nothing of what was read."""
@@ -183,7 +183,7 @@ class Importing(QObject):
     def _on_folder_selected(self, folder: str) -> None:
         self.read([Path(folder)])
 
-    def _on_reading_wished(self, rate_hz: float) -> None:
+    def _on_reading_requested(self, rate_hz: float) -> None:
         self.read(self._again, rate_hz)
 
     def _on_progressed(self, share: float, what: str) -> None:
@@ -196,8 +196,8 @@ class Importing(QObject):
         sentences = [str(refusal) for refusal in read.refused]
         more = len(sentences) - MOST_SENTENCES
         if more > 0:
-            said = tr_n("And {count} more file.", "And {count} more files.", more)
-            sentences = [*sentences[:MOST_SENTENCES], said.format(count=more)]
+            stated = tr_n("And {count} more file.", "And {count} more files.", more)
+            sentences = [*sentences[:MOST_SENTENCES], stated.format(count=more)]
         self.page.show_unread(sentences, can_try_again=bool(read.again))
         self._waiting.extend(read.found)
         self._number, self._count = 0, len(read.found)
@@ -225,7 +225,7 @@ class Importing(QObject):
             self.page.show_draft(where, program, shown.draft)
         self.asked.emit()
 
-    def _on_placing_wished(self) -> None:
+    def _on_placing_requested(self) -> None:
         draft, worn = self._shown.draft if self._shown is not None else None, self.page.draft.worn
 
         def work(_opened: "OpenedLibrary") -> "Chains | None":
@@ -237,28 +237,28 @@ class Importing(QObject):
 
     def _on_placed(self, chains: "Chains | None") -> None:
         if chains is None:
-            self.told.emit(
+            self.reported.emit(
                 tr("Sensor positions could not be detected."),
                 tr("Use a recording in which all sensors move, or enter the positions."),
             )
         elif not self.page.draft.show_chains(chains):
-            self.told.emit(
+            self.reported.emit(
                 tr("The movement does not fit the entered sensor positions."),
                 tr("Two or four sensors on thighs and shanks are needed. Check the sensor positions."),
             )
 
     def _on_placing_refused(self, what: str, remedy: str) -> None:
-        self.told.emit(what, remedy)
+        self.reported.emit(what, remedy)
 
     def _on_read_refused(self, what: str, remedy: str) -> None:
         self.left.emit()
-        self.told.emit(what, remedy)
+        self.reported.emit(what, remedy)
 
     def _on_imported(self, imported: "Imported") -> None:
         self._is_importing = False
         self._show_next()
         if imported.differing:
-            self.told.emit(
+            self.reported.emit(
                 tr("{code}: the folder has other details ({what}).").format(
                     code=imported.patient.details.code, what=", ".join(_named(name) for name in imported.differing)
                 ),
@@ -269,15 +269,17 @@ class Importing(QObject):
     def _on_import_refused(self, what: str, remedy: str) -> None:
         self._is_importing = False
         self.asked.emit()
-        self.told.emit(what, remedy)
+        self.reported.emit(what, remedy)
 
     def _on_stopped(self, is_done: bool) -> None:
         self._is_importing = False
         if is_done:
             self._show_next()
-            self.told.emit(tr("The import finished before it could be stopped."), tr("The session is in the library."))
+            self.reported.emit(
+                tr("The import finished before it could be stopped."), tr("The session is in the library.")
+            )
         else:
-            self.told.emit(tr("The import was stopped."), tr("No session was added to the library."))
+            self.reported.emit(tr("The import was stopped."), tr("No session was added to the library."))
         self.imported.emit(None)
 
 
@@ -315,7 +317,7 @@ def _read(paths: Sequence[Path], rate_hz: float | None, report: Report) -> _Read
 
 
 def _named(name: str) -> str:
-    """What is told of a patient, by the name that it has in the library."""
+    """What is given of a patient, by the name that it has in the library."""
     return {
         "birth_year": tr("birth year"),
         "sex": tr("sex"),

@@ -39,12 +39,12 @@ class DraftCards(QWidget):
     -------
     changed
         A choice was made.
-    placing_wished
+    placing_requested
         The motion shall say where the sensors were.
     """
 
     changed = Signal()
-    placing_wished = Signal()
+    placing_requested = Signal()
 
     def __init__(self, look: ThemeNotifier, of_code: QWidget) -> None:
         super().__init__()
@@ -67,14 +67,14 @@ class DraftCards(QWidget):
     @property
     def kinds(self) -> list[RecordingKind | None]:
         """Of each recording; None: it is left out."""
-        said = [row.kind.currentData() for row in self._recordings]
-        return [RecordingKind(kind) if kind != OPEN else None for kind in said]
+        stated = [row.kind.currentData() for row in self._recordings]
+        return [RecordingKind(kind) if kind != OPEN else None for kind in stated]
 
     @property
     def sites(self) -> dict[str, Site | None]:
-        """Of each sensor by its key; None: not on a leg, or not said."""
-        said = {row.sensor.key: row.site.currentData() for row in self._sensors}
-        return {key: Site(site) if site not in (OPEN, ELSEWHERE) else None for key, site in said.items()}
+        """Of each sensor by its key; None: not on a leg, or not stated."""
+        stated = {row.sensor.key: row.site.currentData() for row in self._sensors}
+        return {key: Site(site) if site not in (OPEN, ELSEWHERE) else None for key, site in stated.items()}
 
     @property
     def worn(self) -> list[str]:
@@ -100,7 +100,7 @@ class DraftCards(QWidget):
         return [*kinds, *(row.site for row in self._sensors), self.place, self.is_left, self.is_right]
 
     def show_folder(self) -> None:
-        """Show nothing but the code: what a session folder says of its recordings and sensors holds."""
+        """Show nothing but the code: what a session folder states of its recordings and sensors holds."""
         self._of_recordings.hide()
         self._of_sensors.hide()
 
@@ -128,12 +128,13 @@ class DraftCards(QWidget):
         self._on_changed()
 
     def show_chains(self, chains: "Chains") -> bool:
-        """Take the legs that the motion tells: ask which of them is the left one, unless a site that was said tells it.
+        """Take the legs that the motion reports: ask which of them is the left one, unless a site that was stated
+        reports it.
 
-        Returns whether they fit the sites that were said.
+        Returns whether they fit the sites that were stated.
         """
-        said = {key: site for key, site in self.sites.items() if site is not None}
-        fitting = [side for side in Side if all(chains.sites(side).get(key) is site for key, site in said.items())]
+        stated = {key: site for key, site in self.sites.items() if site is not None}
+        fitting = [side for side in Side if all(chains.sites(side).get(key) is site for key, site in stated.items())]
         if not fitting:
             return False
         self._chains = chains
@@ -183,7 +184,7 @@ class DraftCards(QWidget):
         self.trouble.setText(self.what_is_wrong)
         self.trouble.setVisible(bool(self.what_is_wrong))
         for row in self._sensors:
-            row.tell()
+            row.show_message()
         self._show_question()
         self.changed.emit()
 
@@ -203,7 +204,7 @@ class DraftCards(QWidget):
 
     def _on_place(self) -> None:
         self._chains = None
-        self.placing_wished.emit()
+        self.placing_requested.emit()
 
     def _on_side(self, side: Side) -> None:
         from app.importing.import_drafts import (
@@ -236,8 +237,8 @@ class _RecordingRow:
         grid.addWidget(Text(look, breakable(recording.title), weight=SEMIBOLD, wraps=True), 0, 0)
         grid.addWidget(curve, 0, 1)
         grid.addWidget(self.kind, 0, 2, Qt.AlignmentFlag.AlignRight)
-        said = f"{facts(recording.trial)} · {kind_origin_words(recording.origin)}"
-        grid.addWidget(Text(look, said, size=12, tone="ink2", wraps=True), 1, 0, 1, 3)
+        stated = f"{facts(recording.trial)} · {kind_origin_words(recording.origin)}"
+        grid.addWidget(Text(look, stated, size=12, tone="ink2", wraps=True), 1, 0, 1, 3)
         for unread in recording.trial.unread:
             grid.addWidget(Text(look, str(unread.refusal), size=12, tone="ink2", wraps=True), grid.rowCount(), 0, 1, 3)
         column.addWidget(self._part)
@@ -266,25 +267,25 @@ class _SensorRow:
         self._words = Text(look, breakable(name), wraps=True)
         self._from = Text(look, size=12, tone="ink2")
         row = grid.rowCount()
-        self._said = QWidget()
-        said = QVBoxLayout(self._said)
-        said.setContentsMargins(0, 0, 0, 0)
-        said.setSpacing(0)
-        said.addWidget(self._words)
-        said.addWidget(self._from)
+        self._stated = QWidget()
+        stated = QVBoxLayout(self._stated)
+        stated.setContentsMargins(0, 0, 0, 0)
+        stated.setSpacing(0)
+        stated.addWidget(self._words)
+        stated.addWidget(self._from)
         for column, part in enumerate(self._parts):
             grid.addWidget(part, row, column)
 
     @property
     def _parts(self) -> tuple[QWidget, ...]:
-        return self._said, self._curve, self.site
+        return self._stated, self._curve, self.site
 
     def choose(self, site: Site, origin: "Origin") -> None:
-        """As something other than the person says."""
+        """As something other than the person states."""
         self._origin, self._proposed = origin, site
         self.site.setCurrentIndex(self.site.findData(site))
 
-    def tell(self) -> None:
+    def show_message(self) -> None:
         """Say where the site comes from, as long as it is the one that was proposed."""
         is_proposed = self._proposed is not None and self.site.currentData() == self._proposed
         self._from.setText(origin_words(self._origin) if is_proposed else "")

@@ -31,17 +31,17 @@ class ImportPage(Themed):
     -------
     code_changed, changed
         What was typed or chosen.
-    files_wished, folder_wished
+    files_requested, folder_requested
         Something is to be chosen.
-    reading_wished
+    reading_requested
         What could not be read is to be tried again at a rate, Hz.
     """
 
     code_changed = Signal(str)
     changed = Signal()
-    files_wished = Signal()
-    folder_wished = Signal()
-    reading_wished = Signal(float)
+    files_requested = Signal()
+    folder_requested = Signal()
+    reading_requested = Signal(float)
 
     def __init__(self, look: ThemeNotifier) -> None:
         super().__init__()
@@ -83,9 +83,9 @@ class ImportPage(Themed):
 
     @property
     def day(self) -> str | None:
-        """The day of the session, ISO 8601; empty where nobody says it, None where what was typed is none."""
+        """The day of the session, ISO 8601; empty where nobody states it, None where what was typed is none."""
         try:
-            return datetime.date.fromisoformat(said).isoformat() if (said := self.day_field.text.strip()) else ""
+            return datetime.date.fromisoformat(stated).isoformat() if (stated := self.day_field.text.strip()) else ""
         except ValueError:
             return None
 
@@ -154,8 +154,8 @@ class ImportPage(Themed):
         self.code.edited.connect(self.code_changed)
         self.day_field.edited.connect(self._on_day_edited)
         self.draft.changed.connect(self.changed)
-        self.choose_files.clicked.connect(self.files_wished)
-        self.choose_folder.clicked.connect(self.folder_wished)
+        self.choose_files.clicked.connect(self.files_requested)
+        self.choose_folder.clicked.connect(self.folder_requested)
         self.read_again.clicked.connect(self._on_read_again)
         self._show_parts(self._begin)
         self.show_unread((), can_try_again=False)
@@ -180,7 +180,7 @@ class ImportPage(Themed):
 
     def _on_read_again(self) -> None:
         if self.rate.value is not None:
-            self.reading_wished.emit(self.rate.value)
+            self.reading_requested.emit(self.rate.value)
         else:
             self.rate.setFocus()
 

@@ -1,4 +1,4 @@
-"""What is said of recordings of another program before they are taken in."""
+"""What is stated about recordings of another program before they are taken in."""
 
 import re
 from collections.abc import Sequence
@@ -31,7 +31,7 @@ SITE_WORDS = {
     Site.RIGHT_SHANK: later("Right shank"),
     Site.RIGHT_FOOT: later("Right foot"),
 }
-GRAVITY_WORDS = {  # by the finding that says so
+GRAVITY_WORDS = {  # by the finding that reports it
     "gravity_from_orientation": later("gravity added from orientation"),
     "gravity_for_acceleration": later("no acceleration: gravity used instead"),
 }
@@ -106,8 +106,8 @@ def _gaps(blocks: Sequence[ImuBlock]) -> str:
     count, lost_s = sum(map(len, gaps_s)), float(sum(gap.sum() for gap in gaps_s))
     if not count:
         return tr("no gaps")
-    said = tr_n("{count} gap of {lost} s", "{count} gaps of {lost} s in total", count)
-    return said.format(count=count, lost=figure_text(lost_s, ".1f"))
+    stated = tr_n("{count} gap of {lost} s", "{count} gaps of {lost} s in total", count)
+    return stated.format(count=count, lost=figure_text(lost_s, ".1f"))
 
 
 def _gravity(blocks: Sequence[ImuBlock]) -> str:

@@ -35,7 +35,7 @@ class Entry(QObject):
     entered = Signal(object)  # OpenedState
     uncovered = Signal()
     left = Signal()  # from the cover, for another operator
-    shown = Signal(object)  # the page that is wanted now
+    shown = Signal(object)  # the page that is required now
 
     def __init__(
         self, look: ThemeNotifier, controller: LibraryController, settings: Settings, folder: Path, parent: QObject
@@ -117,7 +117,7 @@ class Entry(QObject):
         self._show(self.log_in)
 
     def show_recording(self, is_recording: bool) -> None:
-        """Tell the cover whether a recording goes on."""
+        """Report the cover whether a recording goes on."""
         if self.is_covering:
             self.log_in.show_recording(is_recording)
 
@@ -131,9 +131,9 @@ class Entry(QObject):
         if isinstance(page, FirstStartPage | LogInPage | JoinPage):
             page.focus()
 
-    def tell(self, what: str, remedy: str) -> None:
+    def show_message(self, what: str, remedy: str) -> None:
         for page in (self.first_start, self.log_in, self.join):
-            page.banner.tell(what, remedy)
+            page.banner.show_message(what, remedy)
 
     def _show(self, page: QWidget) -> None:
         for one in (self.first_start, self.log_in, self.join):
@@ -143,21 +143,21 @@ class Entry(QObject):
     def _connect(self) -> None:
         first, log_in, controller = self.first_start, self.log_in, self._controller
         first.made.connect(self._on_made)
-        first.look_wished.connect(self._on_look_wished)
+        first.look_requested.connect(self._on_look_requested)
         first.done.connect(self._on_key_kept)
         first.typed_back.connect(self._confirm)
-        first.renew_wished.connect(self._on_renew_wished)
+        first.renew_requested.connect(self._on_renew_requested)
         first.put_off.connect(self._enter)
-        first.print_wished.connect(self._on_print_wished)
-        first.save_wished.connect(self._on_save_wished)
-        first.join_wished.connect(self._on_join_wished)
+        first.print_requested.connect(self._on_print_requested)
+        first.save_requested.connect(self._on_save_requested)
+        first.join_requested.connect(self._on_join_requested)
         self.join.joined.connect(self._on_server_named)
-        self.join.again_wished.connect(self._join_by_itself)
+        self.join.again_requested.connect(self._join_by_itself)
         self.join.left.connect(self.begin)
-        log_in.opened.connect(self._on_open_wished)
-        log_in.recovered.connect(self._on_recovery_wished)
-        log_in.remembered.connect(self._on_remembered_wished)
-        log_in.away_wished.connect(self._on_away_wished)
+        log_in.opened.connect(self._on_open_requested)
+        log_in.recovered.connect(self._on_recovery_requested)
+        log_in.remembered.connect(self._on_remembered_requested)
+        log_in.away_requested.connect(self._on_away_requested)
         log_in.own_chosen.connect(self._on_own_chosen)
         log_in.left.connect(self.left)
         controller.opened.connect(self._on_opened)
@@ -177,12 +177,12 @@ class Entry(QObject):
     def _on_look_failed(self, what: str, remedy: str) -> None:
         self.log_in.refuse(f"{what} {remedy}")
 
-    def _on_look_wished(self) -> None:
+    def _on_look_requested(self) -> None:
         self.look_again()
         if self.first_start.is_missing:
-            self.tell(tr("The library is still missing."), tr("Connect its disk, or restore its folder."))
+            self.show_message(tr("The library is still missing."), tr("Connect its disk, or restore its folder."))
 
-    def _on_join_wished(self) -> None:
+    def _on_join_requested(self) -> None:
         self.join.ask()
         self._show(self.join)
 
@@ -222,7 +222,7 @@ class Entry(QObject):
         self.first_start.show_busy(True)
         self._controller.create(self._folder, code, name, passphrase)
 
-    def _on_open_wished(self, code: str, passphrase: str, must_remember: bool) -> None:
+    def _on_open_requested(self, code: str, passphrase: str, must_remember: bool) -> None:
         self._tried = code
         if (left_s := self._left_s(code)) > 0:  # of another operator than the one that the page waited for
             self.log_in.refuse(_too_many(), left_s)
@@ -234,17 +234,17 @@ class Entry(QObject):
             return
         self._controller.unlock(code, passphrase, delay, self._on_checked, self._on_check_failed, self)
 
-    def _on_remembered_wished(self, code: str) -> None:
+    def _on_remembered_requested(self, code: str) -> None:
         self._tried = code
         self.log_in.show_busy(True)
         self._controller.open_remembered(self._folder, code)
 
-    def _on_away_wished(self, code: str, passphrase: str) -> None:
+    def _on_away_requested(self, code: str, passphrase: str) -> None:
         self._tried = code
         self.log_in.show_busy(True)
         self._controller.open_away(self._folder, passphrase, code, self._delay)
 
-    def _on_recovery_wished(self, code: str, recovery_key: str, passphrase: str) -> None:
+    def _on_recovery_requested(self, code: str, recovery_key: str, passphrase: str) -> None:
         self._tried = code
         self.log_in.show_busy(True)
         self._controller.open_recovered(self._folder, recovery_key, code, passphrase)
@@ -312,7 +312,7 @@ class Entry(QObject):
             self.log_in.refuse(f"{what} {remedy}", self._left_s(self._tried))
         elif (self._folder / KEYS).exists():
             self.begin()
-            self.tell(what, remedy)
+            self.show_message(what, remedy)
         else:
             self.first_start.refuse(f"{what} {remedy}")
             self._show(self.first_start)
@@ -332,7 +332,7 @@ class Entry(QObject):
         self.first_start.ask_for_recovery_key()
         self.first_start.show_typed_wrong(f"{what} {remedy}")
 
-    def _on_renew_wished(self) -> None:
+    def _on_renew_requested(self) -> None:
         def renew(opened: "OpenedLibrary") -> str:
             assert opened.data_key is not None  # the demonstration's is not asked for
             from app.storage.opened import slots_of
@@ -352,10 +352,10 @@ class Entry(QObject):
         if state is not None:
             self.entered.emit(state)
 
-    def _on_print_wished(self, key: str) -> None:
+    def _on_print_requested(self, key: str) -> None:
         self._key_sheet().print(key, self._folder)
 
-    def _on_save_wished(self, key: str) -> None:
+    def _on_save_requested(self, key: str) -> None:
         self._key_sheet().save(key, self._folder)
 
     def _key_sheet(self) -> "KeySheet":
@@ -363,7 +363,7 @@ class Entry(QObject):
             from app.home.login.recovery_key_sheet import KeySheet  # needed once in a library's life
 
             self._sheet = KeySheet(self.first_start)
-            self._sheet.told.connect(self.tell)
+            self._sheet.reported.connect(self.show_message)
         return self._sheet
 
     def _left_s(self, code: str) -> float:

@@ -1,7 +1,8 @@
 """The first start: whose library is it, what opens it, and what opens it when that is forgotten?
 
 All on one page. The recovery key is shown once; the way on opens when it has been typed back from the paper or file.
-Where a library was opened here before and is missing, the page says so, and makes a new one only if that is asked for.
+Where a library was opened here before and is missing, the page reports it, and makes a new one only if that is asked
+for.
 """
 
 from collections.abc import Callable
@@ -28,15 +29,15 @@ class FirstStartPage(EntryPage):
     """`is_same_key` compares the recovery key as it was typed back with the one that was shown."""
 
     made = Signal(str, str, str)  # code, name, passphrase
-    print_wished = Signal(str)  # the recovery key
-    save_wished = Signal(str)
+    print_requested = Signal(str)  # the recovery key
+    save_requested = Signal(str)
     done = Signal()  # the recovery key was typed back
     typed_back = Signal(str)  # a recovery key that is not shown here, to be compared with the library's
-    renew_wished = Signal()
+    renew_requested = Signal()
     put_off = Signal()
-    demonstration_wished = Signal()
-    join_wished = Signal()  # the library that a clinic's stations share
-    look_wished = Signal()  # whether the library that is missing is there now
+    demonstration_requested = Signal()
+    join_requested = Signal()  # the library that a clinic's stations share
+    look_requested = Signal()  # whether the library that is missing is there now
 
     def __init__(self, look: ThemeNotifier, shortest: int, is_same_key: Callable[[str, str], bool]) -> None:
         super().__init__(look)
@@ -103,7 +104,7 @@ class FirstStartPage(EntryPage):
 
     @property
     def is_missing(self) -> bool:
-        """Whether the page says that a library is missing."""
+        """Whether the page states that a library is missing."""
         return bool(self._missing)
 
     def show_missing(self, folder: str, waiting: int = 0) -> None:
@@ -112,16 +113,16 @@ class FirstStartPage(EntryPage):
         `waiting` recordings are on this computer until their library is back.
         """
         self._missing, self.recovery_key, self._is_asking = folder, "", False
-        told = [tr("It was in {folder} and is no longer there.").format(folder=folder)]
+        reported = [tr("It was in {folder} and is no longer there.").format(folder=folder)]
         if waiting:
             kept = tr_n(
                 "{count} recording stays on this computer until its library is back.",
                 "{count} recordings stay on this computer until their library is back.",
                 waiting,
             )
-            told.append(kept.format(count=waiting))
-        told.append(tr("Connect its disk, or restore its folder. It then opens automatically."))
-        self.missing_lead.setText(" ".join(told))
+            reported.append(kept.format(count=waiting))
+        reported.append(tr("Connect its disk, or restore its folder. It then opens automatically."))
+        self.missing_lead.setText(" ".join(reported))
         self._show()
 
     def show_recovery_key(self, key: str) -> None:
@@ -208,15 +209,15 @@ class FirstStartPage(EntryPage):
         self.column.addWidget(self._second)
 
     def _connect(self) -> None:
-        self.look_again.clicked.connect(self.look_wished)
+        self.look_again.clicked.connect(self.look_requested)
         self.make_another.clicked.connect(self._on_make_another)
         self.make.clicked.connect(self._on_make)
-        self.demonstration.clicked.connect(self.demonstration_wished)
-        self.join.clicked.connect(self.join_wished)
+        self.demonstration.clicked.connect(self.demonstration_requested)
+        self.join.clicked.connect(self.join_requested)
         self.print.clicked.connect(self._on_print)
         self.save.clicked.connect(self._on_save)
         self.go.clicked.connect(self._on_go)
-        self.renew.clicked.connect(self.renew_wished)
+        self.renew.clicked.connect(self.renew_requested)
         self.later.clicked.connect(self.put_off)
         self.typed.line_edit.returnPressed.connect(self._on_go)
         self.typed.edited.connect(self._on_typed)
@@ -274,10 +275,10 @@ class FirstStartPage(EntryPage):
             self.made.emit(code, self.name.text.strip(), self.passphrase.text)
 
     def _on_print(self) -> None:
-        self.print_wished.emit(self.recovery_key)
+        self.print_requested.emit(self.recovery_key)
 
     def _on_save(self) -> None:
-        self.save_wished.emit(self.recovery_key)
+        self.save_requested.emit(self.recovery_key)
 
     def _on_typed(self, _text: str) -> None:
         self.typed.set_wrong("")

@@ -1,6 +1,6 @@
 """This computer becomes a station of the clinic: its server is named here, or by the computer's environment.
 
-Named by the environment, nothing is typed: the page then only says why the library is not reached, and tries again.
+Named by the environment, nothing is typed: the page then only states why the library is not reached, and tries again.
 """
 
 from PySide6.QtCore import Signal
@@ -19,9 +19,9 @@ from app.wording.translation import tr
 
 class JoinPage(EntryPage):
     joined = Signal(str, str, str)  # address, password, place
-    again_wished = Signal()  # at the server that the environment names
+    again_requested = Signal()  # at the server that the environment names
     left = Signal()
-    demonstration_wished = Signal()
+    demonstration_requested = Signal()
 
     def __init__(self, look: ThemeNotifier) -> None:
         super().__init__(look)
@@ -101,9 +101,9 @@ class JoinPage(EntryPage):
     def _connect(self) -> None:
         self.join.clicked.connect(self._on_join)
         self.server.entered.connect(self._on_join)
-        self.again.clicked.connect(self.again_wished)
+        self.again.clicked.connect(self.again_requested)
         self.back.clicked.connect(self.left)
-        self.demonstration.clicked.connect(self.demonstration_wished)
+        self.demonstration.clicked.connect(self.demonstration_requested)
 
     def _show(self, *, is_asking: bool) -> None:
         self.show_busy(False)
@@ -114,7 +114,7 @@ class JoinPage(EntryPage):
 
     def _on_join(self) -> None:
         if self.join.isEnabled() and self.server.is_complete:
-            self.joined.emit(*self.server.told)
+            self.joined.emit(*self.server.reported)
 
     def _on_look_changed(self) -> None:
         super()._on_look_changed()

@@ -1,6 +1,6 @@
 """Who are you? The passphrase of a library, at the start and when nobody was here for a while.
 
-As a cover it stands alone in the window and shows nothing of a patient, and whether a recording goes on.
+As a cover it is alone in the window and shows nothing of a patient, and whether a recording goes on.
 """
 
 import math
@@ -29,10 +29,10 @@ class LogInPage(EntryPage):
     opened = Signal(str, str, bool)  # operator, passphrase, whether this computer is to remember it
     recovered = Signal(str, str, str)  # operator, recovery key, new passphrase
     remembered = Signal(str)  # operator, whom this computer remembers
-    away_wished = Signal(str, str)  # operator, passphrase: to work without the clinic's server
+    away_requested = Signal(str, str)  # operator, passphrase: to work without the clinic's server
     own_chosen = Signal(str)  # an own passphrase, by whom somebody else gave one
     left = Signal()  # another operator, from the cover or instead of choosing an own passphrase
-    demonstration_wished = Signal()
+    demonstration_requested = Signal()
 
     def __init__(self, look: ThemeNotifier, shortest: int) -> None:
         super().__init__(look)
@@ -216,7 +216,7 @@ class LogInPage(EntryPage):
         self.use_remembered.clicked.connect(self._on_remembered)
         self.use_recovery.clicked.connect(self._on_use_recovery)
         self.leave.clicked.connect(self.left)
-        self.demonstration.clicked.connect(self.demonstration_wished)
+        self.demonstration.clicked.connect(self.demonstration_requested)
         self.operator.currentIndexChanged.connect(self._on_operator_changed)
         self._second.timeout.connect(self._on_second)
 
@@ -299,7 +299,7 @@ class LogInPage(EntryPage):
 
     def _on_work_away(self) -> None:
         if not self._is_busy:
-            self.away_wished.emit(self.code, self.passphrase.text)
+            self.away_requested.emit(self.code, self.passphrase.text)
 
     def _on_remembered(self) -> None:
         self.remembered.emit(self.code)

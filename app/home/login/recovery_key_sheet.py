@@ -19,7 +19,7 @@ MARGIN_MM = 25
 class KeySheet(QObject):
     """Keeps the key, of the library in `folder`, no longer than its dialog is open."""
 
-    told = Signal(str, str)
+    reported = Signal(str, str)
 
     def __init__(self, window: QWidget) -> None:
         super().__init__(window)
@@ -45,7 +45,7 @@ class KeySheet(QObject):
             Path(path).write_text(sheet(key, self._folder, datetime.date.today()), encoding="utf-8")
         except OSError as problem:
             why = problem.strerror or type(problem).__name__
-            self.told.emit(
+            self.reported.emit(
                 tr("The recovery key was not saved ({why}).").format(why=why), tr("Choose another place, or print it.")
             )
 

@@ -26,18 +26,18 @@ if TYPE_CHECKING:
 class _Patients:
     """All patients, and which of them have a walk that was recovered and is not decided yet.
 
-    `wanted` is to be chosen now that they are read; None: who is chosen then. `deleted_by`: who deleted the patient
+    `required` is to be chosen now that they are read; None: who is chosen then. `deleted_by`: who deleted the patient
     that was in sight, if another did.
     """
 
     every: "tuple[stored.StoredPatient, ...]"
     undecided: frozenset[UUID]
-    wanted: UUID | None
+    required: UUID | None
     deleted_by: str = ""
 
 
 class PatientsAtHome(QObject):
-    """`is_awaited` tells of a patient's code whether sessions are still being made, as in the demonstration."""
+    """`is_awaited` reports a patient's code whether sessions are still being made, as in the demonstration."""
 
     chosen = Signal()  # who is in sight, or nobody
     refused = Signal(str, str)
@@ -67,10 +67,10 @@ class PatientsAtHome(QObject):
         """Those of the patient in sight."""
         return self._reading.visits(_now()) if self._reading is not None else ()
 
-    def read(self, wanted: UUID | None = None, *, is_deleted_here: bool = False) -> None:
-        """Read the patients anew, and choose one of them, else the one that was chosen.
+    def read(self, required: UUID | None = None, *, is_deleted_here: bool = False) -> None:
+        """Read the patients again, and choose one of them, else the one that was chosen.
 
-        Where that one was deleted, it is said by whom, but for `is_deleted_here`.
+        Where that one was deleted, it is stated by whom, but for `is_deleted_here`.
         """
         self._is_forgotten = False
         shown = None if is_deleted_here else self.patient
@@ -80,7 +80,7 @@ class PatientsAtHome(QObject):
             every = opened.library.patients.search()
             is_gone = shown is not None and all(one.id != shown.id for one in every)
             by = deleted_by(opened, shown.id) if shown is not None and is_gone else ""
-            return _Patients(every, undecided, wanted, by)
+            return _Patients(every, undecided, required, by)
 
         self._controller.run(read, self._on_read, self._on_refused, self)
 
@@ -101,7 +101,7 @@ class PatientsAtHome(QObject):
             self.refused.emit(*deletion_message(before.details.code, patients.deleted_by))
         self._patients = {patient.id: patient for patient in patients.every}
         lines = [patient_line(patient, _now(), patient.id in patients.undecided) for patient in patients.every]
-        self._page.show_patients(lines, patients.wanted)
+        self._page.show_patients(lines, patients.required)
         self._on_chosen(self._page.patient_id)
 
     def _on_chosen(self, patient_id: UUID | None) -> None:
@@ -112,10 +112,12 @@ class PatientsAtHome(QObject):
             self._page.show_patient("", "")
             self._page.forget_sessions()
             return
-        told = patient.details
-        self._page.show_patient(told.code, " · ".join(filter(None, [person(told), told.device, told.aids])))
+        reported = patient.details
+        self._page.show_patient(
+            reported.code, " · ".join(filter(None, [person(reported), reported.device, reported.aids]))
+        )
         own = patient.id
-        if own != self._sessions_of:  # what stands there is another patient's
+        if own != self._sessions_of:  # what is there is another patient's
             self._sessions_of, self._reading = own, None
             self._page.forget_sessions()
 
@@ -128,7 +130,7 @@ class PatientsAtHome(QObject):
         if self._is_forgotten or reading.patient_id != self._page.patient_id:
             return  # another was chosen meanwhile
         if reading == self._reading:
-            return  # somebody may be moving in what stands there
+            return  # somebody may be moving in what is there
         now = _now()
         self._reading = reading
         patient = self.patient

@@ -26,14 +26,14 @@ class ComputingCourses(QObject):
         How much of it is done, 0 to 1, and what is looked at.
     left
         It is over, however it ended.
-    told
+    reported
         What could not be done, and what to do.
     """
 
     working = Signal(str)
     progressed = Signal(float, str)
     left = Signal()
-    told = Signal(str, str)
+    reported = Signal(str, str)
 
     def __init__(self, controller: LibraryController, parent: QObject) -> None:
         super().__init__(parent)
@@ -51,7 +51,7 @@ class ComputingCourses(QObject):
     def stop(self) -> None:
         self._controller.stop_long()
         self._leave()
-        self.told.emit(tr("Stopped."), tr("Visits calculated so far stay in Progress."))
+        self.reported.emit(tr("Stopped."), tr("Visits calculated so far stay in Progress."))
 
     def _on_progressed(self, share: float, what: str) -> None:
         self.progressed.emit(share, what)
@@ -63,9 +63,9 @@ class ComputingCourses(QObject):
     def _on_computed(self, unread: int) -> None:
         self._leave()
         if unread:
-            said = tr_n("{count} visit could not be calculated.", "{count} visits could not be calculated.", unread)
-            self.told.emit(said.format(count=unread), tr("Open the visit to see why."))
+            stated = tr_n("{count} visit could not be calculated.", "{count} visits could not be calculated.", unread)
+            self.reported.emit(stated.format(count=unread), tr("Open the visit to see why."))
 
     def _on_refused(self, what: str, remedy: str) -> None:
         self._leave()
-        self.told.emit(what, remedy)
+        self.reported.emit(what, remedy)

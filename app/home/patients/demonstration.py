@@ -51,12 +51,12 @@ class FillingDemonstration(QObject):
     -------
     changed
         A visit is ready.
-    told
+    reported
         What could not be done, and what follows.
     """
 
     changed = Signal()
-    told = Signal(str, str)
+    reported = Signal(str, str)
     _answered = Signal(object)  # from the threads that wait for the processes
 
     def __init__(self, look: ThemeNotifier, controller: LibraryController, parent: QObject) -> None:
@@ -159,9 +159,9 @@ class FillingDemonstration(QObject):
         failed = self._failed
         self.stop()
         if failed:
-            said = tr_n("{count} visit could not be simulated.", "{count} visits could not be simulated.", failed)
-            self.told.emit(
-                said.format(count=failed), tr("The others are available. Reopen the demonstration to get all.")
+            stated = tr_n("{count} visit could not be simulated.", "{count} visits could not be simulated.", failed)
+            self.reported.emit(
+                stated.format(count=failed), tr("The others are available. Reopen the demonstration to get all.")
             )
 
     def _show(self) -> None:

@@ -38,11 +38,11 @@ class HomePage(Themed):
 
     patient_chosen = Signal(object)  # UUID or None
     session_opened = Signal(object)  # UUID
-    new_session_wished = Signal()  # Enter
-    new_patient_wished = Signal()
-    demonstration_wished = Signal()
-    import_wished = Signal()
-    computing_wished = Signal()  # of the visits that have no figures yet
+    new_session_requested = Signal()  # Enter
+    new_patient_requested = Signal()
+    demonstration_requested = Signal()
+    import_requested = Signal()
+    computing_requested = Signal()  # of the visits that have no figures yet
     patient_deleted = Signal(object)  # UUID: by key or menu
     session_deleted = Signal(object)
 
@@ -155,7 +155,7 @@ class HomePage(Themed):
                 self.patients.step(steps[key])
                 return True
             if watched is self.search and key in (Qt.Key.Key_Return, Qt.Key.Key_Enter):
-                self.new_session_wished.emit()
+                self.new_session_requested.emit()
                 return True
             if watched is self.search and key == Qt.Key.Key_Escape and self.search.text():
                 self.search.clear()
@@ -200,14 +200,14 @@ class HomePage(Themed):
         self.patients.clicked.connect(self._on_patient_clicked)
         self.view.chosen.connect(self._show_parts)
         self.sessions.opened.connect(self.session_opened)
-        self.panel.next_wished.connect(self.session_opened)
+        self.panel.next_requested.connect(self.session_opened)
         self.panel.course.visit_opened.connect(self.session_opened)
-        self.panel.course.computing_wished.connect(self.computing_wished)
-        self.panel.delete_patient_wished.connect(self._on_delete_patient)
-        self.panel.delete_session_wished.connect(self._on_delete_session)
-        self.empty.new_patient.clicked.connect(self.new_patient_wished)
-        self.empty.demonstration.clicked.connect(self.demonstration_wished)
-        self.empty.importing.clicked.connect(self.import_wished)
+        self.panel.course.computing_requested.connect(self.computing_requested)
+        self.panel.delete_patient_requested.connect(self._on_delete_patient)
+        self.panel.delete_session_requested.connect(self._on_delete_session)
+        self.empty.new_patient.clicked.connect(self.new_patient_requested)
+        self.empty.demonstration.clicked.connect(self.demonstration_requested)
+        self.empty.importing.clicked.connect(self.import_requested)
         for watched in (self.search, self.patients, self.sessions):
             watched.installEventFilter(self)
 
@@ -223,8 +223,8 @@ class HomePage(Themed):
         self.panel.setVisible(not is_single or self.view.choice == PATIENT)
 
     def _filter(self, chosen: UUID | None, *, stays: bool = False) -> None:
-        wanted = self.search.text().strip().casefold().split()
-        found: list[Line] = [line for line in self._patients or () if all(word in line.searched for word in wanted)]
+        required = self.search.text().strip().casefold().split()
+        found: list[Line] = [line for line in self._patients or () if all(word in line.searched for word in required)]
         ids = {line.id for line in found}
         before = self.patient_id
         if chosen not in ids:
@@ -250,7 +250,7 @@ class HomePage(Themed):
             self.view.choose(PATIENT)
 
     def _on_patient_opened(self, _patient_id: UUID) -> None:
-        self.new_session_wished.emit()
+        self.new_session_requested.emit()
 
     def _on_delete_patient(self) -> None:
         if self.patient_id is not None:

@@ -16,12 +16,12 @@ if TYPE_CHECKING:
 
 
 def patient_line(patient: "stored.StoredPatient", now: datetime.datetime, is_undecided: bool) -> PatientLine:
-    told = patient.details
-    who = person(told)
-    looked_into = " ".join([told.code, str(told.birth_year or ""), told.device, told.aids, who])
+    reported = patient.details
+    who = person(reported)
+    looked_into = " ".join([reported.code, str(reported.birth_year or ""), reported.device, reported.aids, who])
     return PatientLine(
         patient.id,
-        told.code,
+        reported.code,
         who,
         when(patient.last_session, now) if patient.last_session or patient.sessions else tr("no session yet"),
         tr_n("{count} session", "{count} sessions", patient.sessions).format(count=patient.sessions),
@@ -38,7 +38,7 @@ def session_line(
     *,
     is_reported: bool = False,
 ) -> SessionLine:
-    """One session in a list; `course` where it is known, which tells how many strides there are."""
+    """One session in a list; `course` where it is known, which gives how many strides there are."""
     is_undecided, has_walk = line.id in undecided, course is not None and bool(course.conditions)
     amount = tr_n("{count} recording", "{count} recordings", line.recordings).format(count=line.recordings)
     if course is not None and has_walk:

@@ -1,4 +1,4 @@
-"""What home says above its pages of the library that was opened: its age, and what was done without its server."""
+"""What home states above its pages of the library that was opened: its age, and what was done without its server."""
 
 from PySide6.QtCore import QObject, Signal
 
@@ -16,13 +16,13 @@ class LibraryNotices(QObject):
 
     Signals
     -------
-    log_in_wished
+    log_in_requested
         The clinic's server answers again.
     refused
         Why the older state could not be accepted.
     """
 
-    log_in_wished = Signal()
+    log_in_requested = Signal()
     refused = Signal(str, str)
 
     def __init__(self, look: ThemeNotifier, controller: LibraryController, parent: QObject) -> None:
@@ -31,7 +31,7 @@ class LibraryNotices(QObject):
         self._state: OpenedState | None = None
         self.rollback, self.away = Banner(look), Banner(look)
         self.rollback.acted.connect(self._on_accepted)
-        self.away.acted.connect(self.log_in_wished)
+        self.away.acted.connect(self.log_in_requested)
         controller.server_back.connect(self._on_server_back)
 
     def show(self, state: OpenedState) -> None:
@@ -55,7 +55,7 @@ class LibraryNotices(QObject):
         then = tr("If a backup was restored, accept this state. Otherwise someone put an older copy here.")
         if not is_administrator:
             then = tr("Inform an administrator, who can check this and accept it if a backup was restored.")
-        self.rollback.tell(
+        self.rollback.show_message(
             tr("This library is older than the one last opened on this computer."),
             f"{missing.format(first=rollback.first, last=rollback.last)} {then}",
             tr("Accept this state") if is_administrator else "",
@@ -75,7 +75,7 @@ class LibraryNotices(QObject):
         """Say that the clinic's server is not there, or what became of what was done when it was not."""
         self.away.hide()
         if state.is_away:
-            self.away.tell(
+            self.away.show_message(
                 tr("You are working offline, without the clinic's server."),
                 tr(
                     "New sessions stay on this computer. They move to the server at the first login after it "
@@ -83,17 +83,17 @@ class LibraryNotices(QObject):
                 ),
             )
         elif state.still_away is not None:
-            self.away.tell(*still_away_words(state.still_away))
+            self.away.show_message(*still_away_words(state.still_away))
         elif state.brought_from_away:
-            said = tr_n(
+            stated = tr_n(
                 "{count} offline session is now on the clinic's server.",
                 "{count} offline sessions are now on the clinic's server.",
                 state.brought_from_away,
             )
-            self.away.tell(said.format(count=state.brought_from_away))
+            self.away.show_message(stated.format(count=state.brought_from_away))
 
     def _on_server_back(self) -> None:
-        self.away.tell(
+        self.away.show_message(
             tr("The clinic's server responds again."),
             tr("Log in to make recordings from here available to all workstations."),
             tr("Log in to the server"),
@@ -101,7 +101,8 @@ class LibraryNotices(QObject):
 
 
 def still_away_words(why: Refusal) -> tuple[str, str]:
-    """What is said of sessions that the clinic's server did not take; the reason and what to do about it come last."""
+    """What is stated about sessions that the clinic's server did not take; the reason and what to do about it come
+    last."""
     what = tr("Offline sessions are still on this computer only.")
     then = tr("No data are lost. Each login tries again to send them to the server.")
     return what, f"{then} {why.what} {why.remedy}"

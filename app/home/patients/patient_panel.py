@@ -42,15 +42,15 @@ class PatientPanel(Themed):
 
     Signals
     -------
-    next_wished
+    next_requested
         The session that the next step is about.
     """
 
-    next_wished = Signal(object)
-    goals_wished = Signal()
-    analysing_wished = Signal()  # again, of this patient's sessions
-    delete_patient_wished = Signal()
-    delete_session_wished = Signal()
+    next_requested = Signal(object)
+    goals_requested = Signal()
+    analysing_requested = Signal()  # again, of this patient's sessions
+    delete_patient_requested = Signal()
+    delete_session_requested = Signal()
 
     def __init__(self, look: ThemeNotifier) -> None:
         super().__init__()
@@ -106,7 +106,7 @@ class PatientPanel(Themed):
         self._above.setVisible(bool(code))
 
     def show_sessions(self, lines: Sequence[SessionLine]) -> None:
-        line = self.sessions.line  # the same patient's, read anew, or none
+        line = self.sessions.line  # the same patient's, read again, or none
         self.sessions.show_lines(lines, line.id if line is not None else None, stays=line is not None)
         self.sessions.setVisible(bool(lines))
         self.none_yet.setVisible(not lines)
@@ -114,7 +114,7 @@ class PatientPanel(Themed):
         self._on_look_changed()
 
     def say_none_yet(self, *, is_awaited: bool) -> None:
-        """What stands where sessions would, where there are none; `is_awaited`: they come by themselves."""
+        """What is where sessions would, where there are none; `is_awaited`: they come by themselves."""
         words = (
             tr("Visits of this patient are being recorded and will appear here.")
             if is_awaited
@@ -182,10 +182,10 @@ class PatientPanel(Themed):
 
     def _connect(self) -> None:
         self.more.clicked.connect(self._on_more)
-        self.analyse_again.triggered.connect(self.analysing_wished)
-        self.delete_patient.triggered.connect(self.delete_patient_wished)
-        self.delete_session.triggered.connect(self.delete_session_wished)
-        self.goals.clicked.connect(self.goals_wished)
+        self.analyse_again.triggered.connect(self.analysing_requested)
+        self.delete_patient.triggered.connect(self.delete_patient_requested)
+        self.delete_session.triggered.connect(self.delete_session_requested)
+        self.goals.clicked.connect(self.goals_requested)
         self.condition.currentIndexChanged.connect(self._show_lanes)
         self.shown.chosen.connect(self._show_lanes)
         self.sessions.fitted.connect(self._fit_sessions)
@@ -211,9 +211,9 @@ class PatientPanel(Themed):
 
     def _on_next(self) -> None:
         if self._next is not None and self._next.session_id is not None:
-            self.next_wished.emit(self._next.session_id)
+            self.next_requested.emit(self._next.session_id)
         elif self._next is not None:
-            self.goals_wished.emit()
+            self.goals_requested.emit()
 
     def _on_look_changed(self) -> None:
         px = self._look.theme.px
@@ -233,7 +233,7 @@ class PatientPanel(Themed):
 
 def _counted(found: dict[str, int], visits: Sequence[CourseVisit], goals: Sequence[Goal]) -> str:
     """How many visits there are, and of each condition but the most frequent one; goals that are not seen below."""
-    said = [tr_n("{count} visit", "{count} visits", len(visits)).format(count=len(visits))] if visits else []
-    said += [f"{condition_in_words(name)}: {count}" for name, count in list(found.items())[1:]]
+    stated = [tr_n("{count} visit", "{count} visits", len(visits)).format(count=len(visits))] if visits else []
+    stated += [f"{condition_in_words(name)}: {count}" for name, count in list(found.items())[1:]]
     unseen = without_lane(goals) if any(visit.course is not None for visit in visits) else held(goals)
-    return " · ".join([*said, *map(goal_in_words, unseen)])
+    return " · ".join([*stated, *map(goal_in_words, unseen)])

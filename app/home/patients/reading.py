@@ -66,11 +66,11 @@ class PatientReading:
             return undecided
         last = visits[-1]
         conditions = last.course.conditions if last.course is not None else ()
-        withheld = dict.fromkeys(joint for one in conditions for joint in one.withheld)
+        not_reported = dict.fromkeys(joint for one in conditions for joint in one.not_reported)
         has_walk = last.course is not None and bool(conditions)
         before = [goal for goal in held(self.goals) if goal.is_chosen_before(last.day)]
         reached = reached_at(before, last.course) if last.course is not None else ()
-        latest = LatestVisit(last.id, last.day, tuple(withheld), has_walk, last.id in self.reported, reached)
+        latest = LatestVisit(last.id, last.day, tuple(not_reported), has_walk, last.id in self.reported, reached)
         return next_step(undecided, latest, now.date())
 
 
@@ -88,7 +88,7 @@ def read_patient(opened: "OpenedLibrary", patient_id: UUID) -> PatientReading:
 
 
 def compute_courses(opened: "OpenedLibrary", session_ids: Sequence[UUID], report: Report) -> int:
-    """Evaluate sessions, so that what of them stands in the course is kept.
+    """Evaluate sessions, so that what of them is in the course is kept.
 
     Returns
     -------
@@ -99,11 +99,11 @@ def compute_courses(opened: "OpenedLibrary", session_ids: Sequence[UUID], report
     for number, session_id in enumerate(session_ids):
         at = number / len(session_ids)
 
-        def told(share: float, what: str, at: float = at) -> None:
+        def known(share: float, what: str, at: float = at) -> None:
             report(at + share / len(session_ids), what)
 
         try:
-            read_analysed(opened, session_id, told)
+            read_analysed(opened, session_id, known)
         except (LibraryError, JournalRefusedError, OSError) as problem:
             _log.warning("a session could not be computed", exc_info=problem)
             unread += 1

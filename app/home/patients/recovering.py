@@ -1,6 +1,6 @@
-"""What was being recorded when the library was last in use, or while it did not answer: brought back, and said.
+"""What was being recorded when the library was last in use, or while it did not answer: brought back, and stated.
 
-What is not decided yet, recovered earlier or closed amid a walk, is said, too, at every start: the library knows it.
+What is not decided yet, recovered earlier or closed amid a walk, is stated, too, at every start: the library knows it.
 """
 
 from collections.abc import Mapping, Sequence
@@ -36,9 +36,9 @@ NO_NAMES: Mapping[UUID, str] = {}
 
 
 class _Outcome(NamedTuple):
-    """What was recovered, what was put into the session it says it is of, and what is left of either.
+    """What was recovered, what was put into the session it states it is of, and what is left of either.
 
-    `undecided`: walks of earlier starts of which nobody has said yet whether they are kept. `names`: what all
+    `undecided`: walks of earlier starts of which nobody has stated yet whether they are kept. `names`: what all
     are called in their sessions.
     """
 
@@ -57,7 +57,7 @@ class _Message(NamedTuple):
 
 
 class Recovering(QObject):
-    """Says one thing after the other, each until it is dismissed."""
+    """States one thing after the other, each until it is dismissed."""
 
     recovered = Signal()
 
@@ -72,17 +72,17 @@ class Recovering(QObject):
         banner.acted.connect(self._choose_folder)
 
     def begin(self, state: OpenedState) -> None:
-        """Bring back what `state` tells of, and say what is still to be decided; `recovered` follows where there was
+        """Bring back what `state` reports, and say what is still to be decided; `recovered` follows where there was
         anything to bring back."""
         self._waiting, self._lost, self._brought_home = [], [], state.brought_home
         interrupted = state.interrupted
         if not interrupted:
-            self._controller.run(_still_undecided, self._say_outcome, self._banner.tell, self)
+            self._controller.run(_still_undecided, self._say_outcome, self._banner.show_message, self)
             return
         self._controller.run_long(
             lambda opened, report: _recover(opened, interrupted, report),
             self._on_recovered,
-            self._banner.tell,
+            self._banner.show_message,
             None,
             self,
         )
@@ -93,7 +93,7 @@ class Recovering(QObject):
         def work(opened: "OpenedLibrary", report: Report) -> _Outcome:
             return _recover(opened, find_interrupted(opened), report)._replace(undecided=[])
 
-        self._controller.run_long(work, self._on_come_home, self._banner.tell, None, self)
+        self._controller.run_long(work, self._on_come_home, self._banner.show_message, None, self)
 
     def export(self, folder: Path) -> None:
         """Write what belongs to no session into `folder`, each recording into a folder of its own."""
@@ -105,7 +105,7 @@ class Recovering(QObject):
                 export_orphan(opened, one, folder / f"{number}{began}", DECODERS, report)
             return str(folder)
 
-        self._controller.run_long(work, self._on_exported, self._banner.tell, None, self)
+        self._controller.run_long(work, self._on_exported, self._banner.show_message, None, self)
 
     def _say(self, messages: Sequence[_Message]) -> None:
         self._waiting += messages
@@ -114,7 +114,7 @@ class Recovering(QObject):
 
     def _say_next(self) -> None:
         if self._waiting:
-            self._banner.tell(*self._waiting.pop(0))
+            self._banner.show_message(*self._waiting.pop(0))
 
     def _choose_folder(self) -> None:
         self._dialog = ask_for_folder(self._window, tr("Export recordings without a session"), self._on_folder_selected)
@@ -127,7 +127,7 @@ class Recovering(QObject):
         self._say_outcome(outcome)
 
     def _on_come_home(self, outcome: _Outcome) -> None:
-        """Of what is whole nothing more is to be said than that the library is back, and what is in it now."""
+        """Of what is whole nothing more is to be stated than that the library is back, and what is in it now."""
         self._brought_home |= {one.stored.id for one in [*outcome.recovered, *outcome.adopted]}
         recovered = [one for one in outcome.recovered if not self._is_home_and_whole(one)]
         adopted = [one for one in outcome.adopted if not self._is_home_and_whole(one)]
@@ -135,10 +135,10 @@ class Recovering(QObject):
 
     def _say_outcome(self, outcome: _Outcome) -> None:
         self._lost = outcome.lost
-        heard = [one for one in outcome.recovered if one.recorded_s > 0]
-        home = [one for one in [*heard, *outcome.adopted] if self._is_home_and_whole(one)]
+        received = [one for one in outcome.recovered if one.recorded_s > 0]
+        home = [one for one in [*received, *outcome.adopted] if self._is_home_and_whole(one)]
         messages = [
-            *_heard_messages([one for one in heard if one not in home], outcome.names),
+            *_received_messages([one for one in received if one not in home], outcome.names),
             *_adopted_messages([one for one in outcome.adopted if one not in home], outcome.names),
             *_home_messages(home),
             *_undecided_messages(outcome.undecided, outcome.names),
@@ -162,7 +162,7 @@ class Recovering(QObject):
     def _on_exported(self, folder: str) -> None:
         what = tr_n("{count} recording was exported.", "{count} recordings were exported.", len(self._lost))
         then = tr("Each sensor has its own file in {folder}.").format(folder=folder)
-        self._banner.tell(what.format(count=len(self._lost)), then)
+        self._banner.show_message(what.format(count=len(self._lost)), then)
 
 
 def _recover(opened: "OpenedLibrary", interrupted: "Sequence[Interrupted]", report: Report) -> _Outcome:
@@ -184,9 +184,9 @@ def _recover(opened: "OpenedLibrary", interrupted: "Sequence[Interrupted]", repo
             except LibraryError:  # its session is gone, or it does not say which that is
                 if not was_exported(opened, one):
                     outcome.lost.append(one)
-    told = [one.stored for one in [*outcome.recovered, *outcome.adopted]]
-    told += [one.recording for one in undecided]
-    return outcome._replace(undecided=list(undecided), names=_names(opened, told))
+    reported = [one.stored for one in [*outcome.recovered, *outcome.adopted]]
+    reported += [one.recording for one in undecided]
+    return outcome._replace(undecided=list(undecided), names=_names(opened, reported))
 
 
 def _still_undecided(opened: "OpenedLibrary") -> _Outcome:
@@ -211,36 +211,36 @@ def _name(recording: "StoredRecording", names: Mapping[UUID, str]) -> str:
     return names.get(recording.id, recording.details.name)
 
 
-def _heard_messages(heard: "Sequence[Recovered]", names: Mapping[UUID, str] = NO_NAMES) -> list[_Message]:
-    if not heard:
+def _received_messages(received: "Sequence[Recovered]", names: Mapping[UUID, str] = NO_NAMES) -> list[_Message]:
+    if not received:
         return []
-    is_whole = all(report.is_whole for one in heard for report in one.reports)
-    if len(heard) == 1:
+    is_whole = all(report.is_whole for one in received for report in one.reports)
+    if len(received) == 1:
         what = tr("The program closed during recording. {time} of {name} was recovered.").format(
-            time=length(heard[0].recorded_s), name=_name(heard[0].stored, names)
+            time=length(received[0].recorded_s), name=_name(received[0].stored, names)
         )
         whole, cut = tr("It is complete."), tr("It is complete up to the last record on disk.")
         look = tr("Review it, then include or exclude it.")
     else:
         several = tr("The program closed during recording. {count} recordings, {time} in total, were recovered.")
-        what = several.format(count=len(heard), time=length(sum(one.recorded_s for one in heard)))
+        what = several.format(count=len(received), time=length(sum(one.recorded_s for one in received)))
         whole, cut = tr("They are complete."), tr("They are complete up to the last record on disk.")
         look = tr("Review them, then include or exclude them.")
-    kept = [whole, look] if is_whole else [cut, _missing(heard), look, recovery_costs()]
+    kept = [whole, look] if is_whole else [cut, _missing(received), look, recovery_costs()]
     return [_Message(what, " ".join(filter(None, kept)))]
 
 
-def _missing(heard: "Sequence[Recovered]") -> str:
+def _missing(received: "Sequence[Recovered]") -> str:
     """Say how many records are missing before the last; empty where none is."""
-    reports = [report for one in heard for report in one.reports]
+    reports = [report for one in received for report in one.reports]
     missing = sum(report.missing_records for report in reports)
     if missing:
-        said = tr_n(
+        stated = tr_n(
             "{count} record before it is missing and leaves a gap.",
             "{count} records before it are missing and leave gaps.",
             missing,
         )
-        return said.format(count=missing)
+        return stated.format(count=missing)
     return ""
 
 

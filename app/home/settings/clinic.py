@@ -22,7 +22,7 @@ from app.workers.library_state import OpenedState
 if TYPE_CHECKING:
     from app.storage.clinic.moving import Moved
 
-MASKED = ":***@"  # where a password stands
+MASKED = ":***@"  # where a password is
 VIEWER = "viewer"  # as app.storage.stored has it
 
 
@@ -37,11 +37,11 @@ class ClinicSettings(QObject):
         self._is_station = False
         self._copied_to = Path()
         station, more = page.station, page.more_stations
-        station.copy_wished.connect(self._on_copy_wished)
-        station.stop_wished.connect(self._on_stop_wished)
-        station.back_wished.connect(self._on_back_wished)
-        more.move_wished.connect(self._on_move_wished)
-        more.place_wished.connect(self._on_place_wished)
+        station.copy_requested.connect(self._on_copy_requested)
+        station.stop_requested.connect(self._on_stop_requested)
+        station.back_requested.connect(self._on_back_requested)
+        more.move_requested.connect(self._on_move_requested)
+        more.place_requested.connect(self._on_place_requested)
 
     def show_library(self, state: OpenedState) -> None:
         """Show what the operator who is logged in may do with the library that was opened."""
@@ -76,9 +76,9 @@ class ClinicSettings(QObject):
             self._page.station.show_station(view)
 
     def _on_waiting_unknown(self, _what: str, _remedy: str) -> None:
-        """That the server does not answer is said already."""
+        """That the server does not answer is stated already."""
 
-    def _on_copy_wished(self) -> None:
+    def _on_copy_requested(self) -> None:
         ask_for_folder(self._page, tr("Choose where to save the copy"), self.copy_into)
 
     def _on_copy_progressed(self, share: float, _what: str) -> None:
@@ -86,13 +86,13 @@ class ClinicSettings(QObject):
         self._page.station.show_copy(sentence, is_running=True)
 
     def _on_copied(self, moved: "Moved") -> None:
-        said = tr("{what} are copied to {folder}. The same passphrases open the copy.")
-        self._page.station.show_copy(said.format(what=_counted(moved), folder=self._copied_to))
+        stated = tr("{what} are copied to {folder}. The same passphrases open the copy.")
+        self._page.station.show_copy(stated.format(what=_counted(moved), folder=self._copied_to))
 
     def _on_copy_refused(self, what: str, remedy: str) -> None:
         self._page.station.show_copy(f"{what} {remedy}")
 
-    def _on_stop_wished(self) -> None:
+    def _on_stop_requested(self) -> None:
         self._page.station.show_copy(tr("Stopping"))
         self._controller.stop_long(self._on_stopped)
 
@@ -100,7 +100,7 @@ class ClinicSettings(QObject):
         stopped, done = tr("Stopped. There is no copy."), tr("The copy finished before it could be stopped.")
         self._page.station.show_copy(done if is_done else stopped)
 
-    def _on_move_wished(self, address: str, password: str, place: str) -> None:
+    def _on_move_requested(self, address: str, password: str, place: str) -> None:
         if "://" not in place and not Path(place).is_absolute():
             sentence = tr("Enter the full folder path, or s3://bucket/folder.")
             self._page.more_stations.server.refuse(sentence, is_place=True)
@@ -110,7 +110,7 @@ class ClinicSettings(QObject):
             address, password, place, self._on_moved, self._on_move_refused, self._on_move_progressed, self
         )
 
-    def _on_place_wished(self) -> None:
+    def _on_place_requested(self) -> None:
         ask_for_folder(
             self._page, tr("Choose a folder that all workstations reach"), self._page.more_stations.show_place
         )
@@ -120,17 +120,17 @@ class ClinicSettings(QObject):
         self._page.more_stations.show_move(sentence, is_running=True)
 
     def _on_moved(self, moved: "Moved") -> None:
-        self._tell_moved()
-        said = tr(
+        self._show_moved()
+        stated = tr(
             "{what} are on the clinic's server, checked row by row. Other workstations can join now. The "
             "previous library is kept as {file}. Remove it once you are sure."
         )
-        self._page.station.show_copy(said.format(what=_counted(moved), file=BEFORE))
+        self._page.station.show_copy(stated.format(what=_counted(moved), file=BEFORE))
 
     def _on_move_refused(self, what: str, remedy: str) -> None:
         self._page.more_stations.refuse(f"{what} {remedy}")
 
-    def _on_back_wished(self) -> None:
+    def _on_back_requested(self) -> None:
         self._page.station.show_back(tr("Moving back"), is_running=True)
         self._controller.bring_back(self._on_back, self._on_back_refused, self._on_back_progressed, self)
 
@@ -139,17 +139,17 @@ class ClinicSettings(QObject):
         self._page.station.show_back(sentence, is_running=True)
 
     def _on_back(self, moved: "Moved") -> None:
-        self._tell_moved()
-        said = tr(
+        self._show_moved()
+        stated = tr(
             "{what} are on this computer again. The server library is closed to all workstations. Have "
             "its database and recordings removed once you are sure."
         )
-        self._page.more_stations.show_move(said.format(what=_counted(moved)))
+        self._page.more_stations.show_move(stated.format(what=_counted(moved)))
 
     def _on_back_refused(self, what: str, remedy: str) -> None:
         self._page.station.show_back(f"{what} {remedy}")
 
-    def _tell_moved(self) -> None:
+    def _show_moved(self) -> None:
         if (state := self._controller.state) is not None:
             self.moved.emit(state)
 

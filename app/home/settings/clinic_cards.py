@@ -28,11 +28,11 @@ class StationView:
 
 
 class StationCard(SettingsCard):
-    """`copy_wished` also while a copy is made: then `stop_wished` comes instead."""
+    """`copy_requested` also while a copy is made: then `stop_requested` comes instead."""
 
-    copy_wished = Signal()
-    stop_wished = Signal()
-    back_wished = Signal()
+    copy_requested = Signal()
+    stop_requested = Signal()
+    back_requested = Signal()
 
     def __init__(self, look: ThemeNotifier) -> None:
         super().__init__(look, tr("Clinic's server"))
@@ -50,7 +50,7 @@ class StationCard(SettingsCard):
             tone="ink2",
             wraps=True,
         )
-        self.copy_said = Text(look, weight=MEDIUM, wraps=True)
+        self.copy_stated = Text(look, weight=MEDIUM, wraps=True)
         self.copy = Button(look, tr("Copy to a folder"))
         self._back_hint = Text(
             look,
@@ -61,13 +61,13 @@ class StationCard(SettingsCard):
             tone="ink2",
             wraps=True,
         )
-        self.back_said = Text(look, weight=MEDIUM, wraps=True)
+        self.back_stated = Text(look, weight=MEDIUM, wraps=True)
         self.back = Button(look, tr("Move back to a folder"))
         self.sure = Button(look, tr("Move back and close it to all others"))
         self.keep = Button(look, tr("Cancel"), ButtonKind.QUIET)
-        self.fill(self.server, self.place, self.waiting, self._copy_hint, self.copy_said)
+        self.fill(self.server, self.place, self.waiting, self._copy_hint, self.copy_stated)
         self.add_left(self.copy)
-        self.fill(self._back_hint, self.back_said)
+        self.fill(self._back_hint, self.back_stated)
         self.add_left(self.back, self.sure, self.keep)
         self.copy.clicked.connect(self._on_copy)
         self.back.clicked.connect(self._on_back)
@@ -104,14 +104,14 @@ class StationCard(SettingsCard):
     def show_copy(self, sentence: str, *, is_running: bool = False) -> None:
         """Say how far the copy is, or how it went."""
         self._is_copying = is_running
-        _say(self.copy_said, sentence)
+        _say(self.copy_stated, sentence)
         self.copy.setText(tr("Stop") if is_running else tr("Copy to a folder"))
         self.copy.updateGeometry()
         self.back.setEnabled(not is_running)
 
     def show_back(self, sentence: str, *, is_running: bool = False) -> None:
         """Say how far bringing back is, or why it did not come to its end."""
-        _say(self.back_said, sentence)
+        _say(self.back_stated, sentence)
         self._ask(is_asking=False)
         self.setEnabled(not is_running)
 
@@ -121,14 +121,14 @@ class StationCard(SettingsCard):
         self.back.setVisible(not is_asking and self._may_bring_back)
 
     def _on_copy(self) -> None:
-        (self.stop_wished if self._is_copying else self.copy_wished).emit()
+        (self.stop_requested if self._is_copying else self.copy_requested).emit()
 
     def _on_back(self) -> None:
         self._ask(is_asking=True)
         self.keep.setFocus()
 
     def _on_sure(self) -> None:
-        self.back_wished.emit()
+        self.back_requested.emit()
 
     def _on_keep(self) -> None:
         self._ask(is_asking=False)
@@ -138,8 +138,8 @@ class StationCard(SettingsCard):
 class MoreStationsCard(SettingsCard):
     """How a library in a folder gets to the server of a clinic."""
 
-    move_wished = Signal(str, str, str)  # address, password, place
-    place_wished = Signal()
+    move_requested = Signal(str, str, str)  # address, password, place
+    place_requested = Signal()
 
     def __init__(self, look: ThemeNotifier) -> None:
         super().__init__(look, tr("Several workstations"))
@@ -157,13 +157,13 @@ class MoreStationsCard(SettingsCard):
         place = tr("Shared storage that all workstations can reach")
         self.server = ServerFields(look, place, self, is_place_optional=False)
         self.choose = Button(look, tr("Choose the folder"), ButtonKind.QUIET, Icon.FOLDER)
-        self.said = Text(look, weight=MEDIUM, wraps=True)
+        self.stated = Text(look, weight=MEDIUM, wraps=True)
         self.move_there = Button(look, tr("Move to the clinic's server"))
         self.fill(self._hint, *self.server.fields)
         self.add_left(self.choose)
-        self.fill(self.said)
+        self.fill(self.stated)
         self.add_left(self.move_there)
-        self.choose.clicked.connect(self.place_wished)
+        self.choose.clicked.connect(self.place_requested)
         self.move_there.clicked.connect(self._on_move)
         self.show_move("")
 
@@ -177,7 +177,7 @@ class MoreStationsCard(SettingsCard):
 
     def show_move(self, sentence: str, *, is_running: bool = False) -> None:
         """Say how far the move is."""
-        _say(self.said, sentence)
+        _say(self.stated, sentence)
         self.setEnabled(not is_running)
 
     def refuse(self, sentence: str) -> None:
@@ -187,7 +187,7 @@ class MoreStationsCard(SettingsCard):
 
     def _on_move(self) -> None:
         if self.server.is_complete:
-            self.move_wished.emit(*self.server.told)
+            self.move_requested.emit(*self.server.reported)
 
 
 def _say(text: Text, sentence: str) -> None:

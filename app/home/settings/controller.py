@@ -43,7 +43,7 @@ VIEWER, CLINICIAN = "viewer", "clinician"  # as app.storage.stored has them
 
 
 class SettingsController(QObject):
-    told = Signal(str, str)
+    reported = Signal(str, str)
     restored = Signal()  # something that was deleted
     moved = Signal(object)  # OpenedState: the library is at a clinic's server now, or no longer
 
@@ -56,9 +56,9 @@ class SettingsController(QObject):
         self._clinic = ClinicSettings(controller, self.page)
         self._clinic.moved.connect(self._on_moved)
         self._sheet = KeySheet(self.page)
-        self._sheet.told.connect(self.told)
+        self._sheet.reported.connect(self.reported)
         self._error_report = ErrorReport(self.page)
-        self._error_report.told.connect(self.told)
+        self._error_report.reported.connect(self.reported)
         self._error_report.written.connect(self.page.show_error_report)
         self._show_screen()
         self._connect()
@@ -106,7 +106,7 @@ class SettingsController(QObject):
         self.show_library(state)
         self.moved.emit(state)
 
-    def _on_restore_wished(self, row_id: UUID, is_patient: bool) -> None:
+    def _on_restore_requested(self, row_id: UUID, is_patient: bool) -> None:
         def restore(opened: "OpenedLibrary") -> None:
             if is_patient:
                 opened.library.patients.restore(opened.library.patients.get(row_id))
@@ -127,18 +127,18 @@ class SettingsController(QObject):
         page.side_chosen.connect(self._on_side_chosen)
         page.motion_chosen.connect(self._on_motion_chosen)
         page.sound_chosen.connect(self._on_sound_chosen)
-        page.passphrase_wished.connect(self._on_passphrase_wished)
-        page.recovery_key_wished.connect(self._on_recovery_key_wished)
-        page.print_wished.connect(self._on_print_wished)
-        page.save_wished.connect(self._on_save_wished)
-        page.backup_wished.connect(self._on_backup_wished)
-        page.backup_folder_wished.connect(self._on_backup_folder_wished)
-        page.stop_wished.connect(self._on_stop_wished)
-        page.error_report_wished.connect(self._error_report.save)
+        page.passphrase_requested.connect(self._on_passphrase_requested)
+        page.recovery_key_requested.connect(self._on_recovery_key_requested)
+        page.print_requested.connect(self._on_print_requested)
+        page.save_requested.connect(self._on_save_requested)
+        page.backup_requested.connect(self._on_backup_requested)
+        page.backup_folder_requested.connect(self._on_backup_folder_requested)
+        page.stop_requested.connect(self._on_stop_requested)
+        page.error_report_requested.connect(self._error_report.save)
         page.operators.added.connect(self._on_operator_added)
         page.operators.removed.connect(self._on_operator_removed)
         page.clinic_named.connect(self._on_clinic_named)
-        page.restore_wished.connect(self._on_restore_wished)
+        page.restore_requested.connect(self._on_restore_requested)
         self._settings.changed.connect(self._show_screen)
         self._look.changed.connect(self._show_screen)
 
@@ -171,7 +171,7 @@ class SettingsController(QObject):
     def _on_sound_chosen(self, has_sound: bool) -> None:
         self._settings.has_sound = has_sound
 
-    def _on_passphrase_wished(self, old: str, new: str) -> None:
+    def _on_passphrase_requested(self, old: str, new: str) -> None:
         def change(opened: "OpenedLibrary") -> None:
             slots, operator = _slots(opened), opened.library.operator
             assert operator is not None  # whoever opens a library is logged in
@@ -186,7 +186,7 @@ class SettingsController(QObject):
     def _on_passphrase_refused(self, what: str, remedy: str) -> None:
         self.page.refuse_passphrase(f"{what} {remedy}")
 
-    def _on_recovery_key_wished(self) -> None:
+    def _on_recovery_key_requested(self) -> None:
         def renew(opened: "OpenedLibrary") -> str:
             assert opened.data_key is not None  # hidden in the demonstration
             return _slots(opened).renew_recovery_key(opened.data_key)
@@ -197,7 +197,7 @@ class SettingsController(QObject):
         self._backup_folder = folder
         self.page.show_backup("", folder)
 
-    def _on_backup_folder_wished(self) -> None:
+    def _on_backup_folder_requested(self) -> None:
         ask_for_folder(self.page, tr("Choose the folder for backups"), self.set_backup_folder)
 
     def set_backup_folder(self, folder: str) -> None:
@@ -209,9 +209,9 @@ class SettingsController(QObject):
 
         self._controller.run(put, self._on_backup_folder_read, self._on_refused, self)
 
-    def _on_backup_wished(self) -> None:
+    def _on_backup_requested(self) -> None:
         if not self._backup_folder:
-            self._on_backup_folder_wished()
+            self._on_backup_folder_requested()
             return
         into = Path(self._backup_folder)
 
@@ -241,7 +241,7 @@ class SettingsController(QObject):
     def _on_backup_refused(self, what: str, remedy: str) -> None:
         self.page.show_backup(f"{what} {remedy}", self._backup_folder)
 
-    def _on_stop_wished(self) -> None:
+    def _on_stop_requested(self) -> None:
         self._controller.stop_long(self._on_backup_stopped)
         self.page.show_backup(tr("Stopping"), self._backup_folder)
 
@@ -273,11 +273,11 @@ class SettingsController(QObject):
             ]
         )
 
-    def _on_print_wished(self, key: str) -> None:
+    def _on_print_requested(self, key: str) -> None:
         if self._state is not None:
             self._sheet.print(key, self._state.library.folder)
 
-    def _on_save_wished(self, key: str) -> None:
+    def _on_save_requested(self, key: str) -> None:
         if self._state is not None:
             self._sheet.save(key, self._state.library.folder)
 
@@ -310,17 +310,17 @@ class SettingsController(QObject):
         self.page.operators.show_key_change(sentence, is_running=True)
 
     def _on_key_changed(self, changed: "ChangedKey") -> None:
-        said = [tr("The library has a new key. Earlier backups keep the old key. Make a new backup now.")]
+        stated = [tr("The library has a new key. Earlier backups keep the old key. Make a new backup now.")]
         if changed.left_out:
-            said.append(
+            stated.append(
                 tr(
                     "These users have not logged in for long and need a new passphrase. Add them below: {codes}."
                 ).format(codes=", ".join(changed.left_out))
             )
         if changed.recovery_key:
-            said.append(tr("The recovery key is new and shown above."))
+            stated.append(tr("The recovery key is new and shown above."))
             self.page.show_recovery_key(changed.recovery_key)
-        self.page.operators.show_key_change(" ".join(said), is_running=False)
+        self.page.operators.show_key_change(" ".join(stated), is_running=False)
         self._read_operators()
 
     def _on_key_refused(self, what: str, remedy: str) -> None:
@@ -335,7 +335,7 @@ class SettingsController(QObject):
         self.page.operators.refuse(f"{what} {remedy}")
 
     def _on_refused(self, what: str, remedy: str) -> None:
-        self.told.emit(what, remedy)
+        self.reported.emit(what, remedy)
 
 
 def _operators_of(opened: "OpenedLibrary") -> tuple[tuple[Operator, ...], tuple[str, ...]]:

@@ -15,7 +15,7 @@ FILE_NAME = "gaitwright-error-report.txt"
 class ErrorReport(QObject):
     """Asks where to, and writes it there. Nothing is sent."""
 
-    told = Signal(str, str)
+    reported = Signal(str, str)
     written = Signal(str)  # the file
 
     def __init__(self, window: QWidget) -> None:
@@ -31,6 +31,8 @@ class ErrorReport(QObject):
             Path(path).write_text(error_report(log_folder()), encoding="utf-8")
         except OSError as problem:
             why = problem.strerror or type(problem).__name__
-            self.told.emit(tr("The error report was not saved ({why}).").format(why=why), tr("Choose another place."))
+            self.reported.emit(
+                tr("The error report was not saved ({why}).").format(why=why), tr("Choose another place.")
+            )
         else:
             self.written.emit(path)

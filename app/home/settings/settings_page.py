@@ -49,16 +49,16 @@ class SettingsPage(TallPage):
     side_chosen = Signal(bool)  # from behind
     motion_chosen = Signal(bool)  # less
     sound_chosen = Signal(bool)
-    passphrase_wished = Signal(str, str)  # old, new
-    recovery_key_wished = Signal()
-    print_wished = Signal(str)
-    save_wished = Signal(str)
-    backup_wished = Signal()
-    backup_folder_wished = Signal()
-    stop_wished = Signal()
-    error_report_wished = Signal()
+    passphrase_requested = Signal(str, str)  # old, new
+    recovery_key_requested = Signal()
+    print_requested = Signal(str)
+    save_requested = Signal(str)
+    backup_requested = Signal()
+    backup_folder_requested = Signal()
+    stop_requested = Signal()
+    error_report_requested = Signal()
     clinic_named = Signal(str)
-    restore_wished = Signal(object, bool)  # id, whether it is a patient's
+    restore_requested = Signal(object, bool)  # id, whether it is a patient's
 
     def __init__(self, look: ThemeNotifier, shortest: int, roles: Sequence[tuple[str, str]]) -> None:
         super().__init__()
@@ -144,12 +144,12 @@ class SettingsPage(TallPage):
             field.set_wrong("")
         self.operators.forget_typed()
         self.more_stations.server.forget_typed()
-        self._said.setText("")
+        self._stated.setText("")
         self._strength.setText(strength_in_words("", self._shortest))
 
     def show_passphrase_changed(self) -> None:
         self.forget_typed()
-        self._said.setText(tr("Passphrase changed. The old passphrase opens only earlier backups."))
+        self._stated.setText(tr("Passphrase changed. The old passphrase opens only earlier backups."))
 
     def refuse_passphrase(self, sentence: str) -> None:
         self.old.set_wrong(sentence)
@@ -173,7 +173,7 @@ class SettingsPage(TallPage):
                 widget.deleteLater()
         for line in lines:
             row = _DeletedRow(self._look, line)
-            row.restored.connect(self.restore_wished)
+            row.restored.connect(self.restore_requested)
             self.deleted_rows.addWidget(row)
         self.none_deleted.setVisible(not lines)
 
@@ -217,7 +217,7 @@ class SettingsPage(TallPage):
         self._strength = Text(look, strength_in_words("", self._shortest), tone="ink2", wraps=True)
         self.again = Field(look, tr("Repeat new passphrase"), is_secret=True)
         self.change = Button(look, tr("Change passphrase"))
-        self._said = Text(look, tone="ink2", wraps=True)
+        self._stated = Text(look, tone="ink2", wraps=True)
         self.renew = Button(look, tr("Create a new recovery key"))
         self._key_words = Text(look, size=20, weight=SEMIBOLD, is_code=True, wraps=True)
         self._key_hint = Text(
@@ -236,7 +236,7 @@ class SettingsPage(TallPage):
         self.access_card.fill(self._strength)
         self.access_card.fill(self.again)
         self.access_card.add_left(self.change)
-        self.access_card.fill(self._said)
+        self.access_card.fill(self._stated)
         self.access_card.add_left(self.renew)
         self.access_card.fill(self._key_words)
         self.access_card.fill(self._key_hint)
@@ -252,12 +252,12 @@ class SettingsPage(TallPage):
             "data stay in older copies for up to 90 days."
         )
         self.backup_folder = Text(look, tone="ink2", wraps=True)
-        self.backup_said = Text(look, weight=MEDIUM, wraps=True)
+        self.backup_stated = Text(look, weight=MEDIUM, wraps=True)
         self.back_up = Button(look, tr("Back up now"))
         self.choose_folder = Button(look, tr("Choose the folder"), ButtonKind.QUIET, Icon.FOLDER)
         self.backup_card.fill(Text(look, hint, tone="ink2", wraps=True))
         self.backup_card.fill(self.backup_folder)
-        self.backup_card.fill(self.backup_said)
+        self.backup_card.fill(self.backup_stated)
         self.backup_card.add_left(self.back_up, self.choose_folder)
         self.show_backup("", "")
 
@@ -287,18 +287,18 @@ class SettingsPage(TallPage):
         self.trouble_card.fill(Text(look, hint, tone="ink2", wraps=True))
         self.report_error = Button(look, tr("Save an error report"), ButtonKind.SECONDARY, Icon.IMPORT)
         self.trouble_card.add_left(self.report_error)
-        self._trouble_said = Text(look, tone="ink2", wraps=True)
-        self.trouble_card.fill(self._trouble_said)
-        self._trouble_said.hide()
+        self._trouble_stated = Text(look, tone="ink2", wraps=True)
+        self.trouble_card.fill(self._trouble_stated)
+        self._trouble_stated.hide()
 
     @property
-    def trouble_said(self) -> str:
-        return self._trouble_said.text()
+    def trouble_stated(self) -> str:
+        return self._trouble_stated.text()
 
     def show_error_report(self, path: str) -> None:
         """Say where the report is that was just saved."""
-        self._trouble_said.setText(tr("Saved as {path}.").format(path=path))
-        self._trouble_said.show()
+        self._trouble_stated.setText(tr("Saved as {path}.").format(path=path))
+        self._trouble_stated.show()
 
     def _connect(self) -> None:
         self.language.chosen.connect(self.language_chosen)
@@ -308,20 +308,20 @@ class SettingsPage(TallPage):
         self.motion.chosen.connect(self._on_motion_chosen)
         self.sound.toggled.connect(self.sound_chosen)
         self.change.clicked.connect(self._on_change)
-        self.renew.clicked.connect(self.recovery_key_wished)
+        self.renew.clicked.connect(self.recovery_key_requested)
         self.print.clicked.connect(self._on_print)
         self.save.clicked.connect(self._on_save)
         self.back_up.clicked.connect(self._on_back_up)
-        self.choose_folder.clicked.connect(self.backup_folder_wished)
+        self.choose_folder.clicked.connect(self.backup_folder_requested)
         self.clinic.committed.connect(self._on_clinic_named)
-        self.report_error.clicked.connect(self.error_report_wished)
+        self.report_error.clicked.connect(self.error_report_requested)
         for field in self._fields:
             field.edited.connect(self._on_edited)
 
     def show_backup(self, sentence: str, folder: str, *, is_running: bool = False) -> None:
         """Say how the latest backup went, and where backups go."""
-        self.backup_said.setText(sentence)
-        self.backup_said.setVisible(bool(sentence))
+        self.backup_stated.setText(sentence)
+        self.backup_stated.setVisible(bool(sentence))
         self.backup_folder.setText(
             tr("Backup folder: {folder}.").format(folder=folder) if folder else tr("No backup folder chosen yet.")
         )
@@ -357,19 +357,19 @@ class SettingsPage(TallPage):
         elif self.new.text != self.again.text:
             self.again.set_wrong(tr("The two passphrases do not match. Enter the second one again."))
         else:
-            self.passphrase_wished.emit(self.old.text, self.new.text)
+            self.passphrase_requested.emit(self.old.text, self.new.text)
 
     def _on_clinic_named(self) -> None:
         self.clinic_named.emit(self.clinic.text.strip())
 
     def _on_print(self) -> None:
-        self.print_wished.emit(self.recovery_key)
+        self.print_requested.emit(self.recovery_key)
 
     def _on_save(self) -> None:
-        self.save_wished.emit(self.recovery_key)
+        self.save_requested.emit(self.recovery_key)
 
     def _on_back_up(self) -> None:
-        (self.stop_wished if self._is_backing_up else self.backup_wished).emit()
+        (self.stop_requested if self._is_backing_up else self.backup_requested).emit()
 
     @property
     def _fields(self) -> tuple[Field, ...]:

@@ -112,8 +112,8 @@ def _pages(study: AgreementStudy, patient: Patient, pictures: Mapping[str, Pictu
             first += [_phases(study, patient)]
     if events_together(study) or len(lengths_together(study)):
         first += [heading(tr("Events and strides"), 2), bullets(_of_events(study))]
-    if withheld := verdict_words(study):
-        first += [bullets([typed(said, SENTENCE_LENGTH) for said in withheld])]
+    if not_reported := verdict_words(study):
+        first += [bullets([typed(stated, SENTENCE_LENGTH) for stated in not_reported])]
     if study.with_angles:
         clocks = [typed(clock_words(walk), SENTENCE_LENGTH) for walk in study.with_angles]
         first += [heading(tr("Time offsets and signs"), 2), bullets(clocks)]
@@ -132,14 +132,14 @@ def _pages(study: AgreementStudy, patient: Patient, pictures: Mapping[str, Pictu
 
 def _what_was_compared(study: AgreementStudy) -> str:
     names = dict.fromkeys(walk.reference.file for walk in study.walks if walk.reference is not None)
-    said = tr("Measured minus reference. Reference: {files}. Walks, numbered as below: {walks}.").format(
+    stated = tr("Measured minus reference. Reference: {files}. Walks, numbered as below: {walks}.").format(
         files=", ".join(typed(name, NAME_LENGTH) for name in names),
         walks=", ".join(f"{k} {typed(w.recording.name, NAME_LENGTH)}" for k, w in enumerate(study.walks, 1)),
     )
     if study.left_over:
         left = ", ".join(typed(name, NAME_LENGTH) for name in study.left_over)
-        said += " " + tr("Not compared, no matching recording: {names}.").format(names=left)
-    return said
+        stated += " " + tr("Not compared, no matching recording: {names}.").format(names=left)
+    return stated
 
 
 def _table_1(study: AgreementStudy, patient: Patient, of_walk: Any, of_all: Any) -> Block:
@@ -219,7 +219,7 @@ def _phases(study: AgreementStudy, patient: Patient) -> Block:
 
 
 def _of_events(study: AgreementStudy) -> list[str]:
-    said = [
+    stated = [
         tr("{event}: {found} of {count} found, {more} extra; {bias} ms late, SD {sd} ms.").format(
             event=event_name(kind),
             found=found.found,
@@ -234,12 +234,12 @@ def _of_events(study: AgreementStudy) -> list[str]:
     if len(lengths) > 1:
         error = lengths[:, 0] - lengths[:, 1]
         bias = 100 * float(error.mean()) / float(lengths[:, 1].mean())
-        said.append(
+        stated.append(
             tr("Stride length: {count} strides, bias {bias} %, SD {sd} cm.").format(
                 count=len(lengths), bias=signed(bias, 2), sd=fixed(100 * float(error.std(ddof=1)), 2)
             )
         )
-    return said
+    return stated
 
 
 def _what_is_not_shown() -> str:

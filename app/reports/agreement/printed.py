@@ -81,14 +81,14 @@ def printed(study: AgreementStudy, patient: Patient) -> Iterator[str]:
             assert over is not None  # as above
             yield _more(joint, role, over.whole)
         yield ""
-        yield from (f"  {said}" for said in other_angles_words(study))
-        yield from (f"  {said}" for said in used_words(study))
+        yield from (f"  {stated}" for stated in other_angles_words(study))
+        yield from (f"  {stated}" for stated in used_words(study))
         for number, walk in enumerate(walks, 1):
             yield f"  {number}: {clock_words(walk)}"
     yield from _events(study)
     for one in study.left_over:
         yield f"- {tr('{name}: no walk and trial match, so it was not compared.').format(name=one_line(one))}"
-    yield from (f"- {said}" for said in verdict_words(study))
+    yield from (f"- {stated}" for stated in verdict_words(study))
     if walks:
         yield ""
         yield optical_words()
@@ -105,7 +105,7 @@ def clock_words(walk: ComparedWalk) -> str:
     """How the reference was brought to a walk."""
     found = walk.alignment
     assert found is not None  # only walks with angles are reported
-    said = [
+    stated = [
         tr(
             "{walk}: the reference's clock shows {offset_s:+.4f} s (SD {offset_sd_ms:.1f} ms) and runs {rate:+.0f} ppm "
             "(SD {rate_sd:.0f})"
@@ -119,21 +119,21 @@ def clock_words(walk: ComparedWalk) -> str:
     ]
     turned = [name_of(joint) for joint, sign in found.sign.items() if sign < 0]
     if turned:
-        said.append(tr("sign reversed: {joints}").format(joints=", ".join(turned)))
+        stated.append(tr("sign reversed: {joints}").format(joints=", ".join(turned)))
     if not found.is_offset_certain:
-        said.append(tr("another offset fits nearly as well, so it may be off by a stride"))
+        stated.append(tr("another offset fits nearly as well, so it may be off by a stride"))
     for trial, other in walk.more:
         name = ", ".join(filter(None, [trial.file, trial.trial.name]))
         more = tr("offset of {name}: {offset_s:+.4f} s (SD {offset_sd_ms:.1f} ms)")
-        said.append(
+        stated.append(
             more.format(name=one_line(name), offset_s=other.clock.offset_s, offset_sd_ms=1e3 * other.offset_sd_s)
         )
-    return f"{'; '.join(said)}."
+    return f"{'; '.join(stated)}."
 
 
 def used_words(study: AgreementStudy) -> list[str]:
     """Of each joint, how many samples of the walks are compared, and where the others are."""
-    said = []
+    stated = []
     for joint in study.joints:
         walks = [walk.used[joint] for walk in study.with_angles if (joint, AngleKind.RESULT) in walk.figures]
         where = {
@@ -146,16 +146,16 @@ def used_words(study: AgreementStudy) -> list[str]:
         words = tr("{joint}: {used} of {recorded} samples are used").format(
             joint=capitalised(name_of(joint)), used=used, recorded=recorded
         )
-        said.append(f"{words}; {others}." if others else f"{words}.")
-    return said
+        stated.append(f"{words}; {others}." if others else f"{words}.")
+    return stated
 
 
 def verdict_words(study: AgreementStudy) -> list[str]:
     """What keeps the figures from being taken at their word: sides exchanged, joints that the program withholds."""
     exchanged = [one_line(walk.recording.name) for walk in study.with_angles if walk.is_exchanged]
-    said = []
+    stated = []
     if exchanged:
-        said.append(
+        stated.append(
             tr("Left and right look swapped in the reference of {walks}: swapping them gives a better fit.").format(
                 walks=joined(exchanged)
             )
@@ -165,15 +165,15 @@ def verdict_words(study: AgreementStudy) -> list[str]:
             one_line(walk.recording.name)
             for walk in study.with_angles
             if (joint, AngleKind.RESULT) in walk.figures
-            and walk.recording.verdicts.joint(joint).shape.verdict is Verdict.WITHHELD
+            and walk.recording.verdicts.joint(joint).shape.verdict is Verdict.NOT_REPORTED
         ]
         if names:
-            said.append(
+            stated.append(
                 tr("{joint}: not reported in {walks}. Its values are shown here as evidence.").format(
                     joint=capitalised(name_of(joint)), walks=joined(names)
                 )
             )
-    return said
+    return stated
 
 
 def other_angles_words(study: AgreementStudy) -> list[str]:
@@ -182,13 +182,13 @@ def other_angles_words(study: AgreementStudy) -> list[str]:
         AngleKind.PUBLISHED: tr("Published fusion (eq 15), same axes, M: {figures}."),
         AngleKind.ORIENTATION: tr("Sensor orientations (eq 10), same axes, M: {figures}."),
     }
-    said = []
+    stated = []
     for kind, sentence in names.items():
         found = [(joint, over) for joint in study.joints if (over := study.over_walks(joint, kind)) is not None]
         figures = ", ".join(f"{name_of(joint)} {math.degrees(over.whole.m_rad):.2f}°" for joint, over in found)
         if figures:
-            said.append(sentence.format(figures=figures))
-    return said
+            stated.append(sentence.format(figures=figures))
+    return stated
 
 
 def _more(joint: Joint, role: str, found: Agreement) -> str:
@@ -205,18 +205,18 @@ def _more(joint: Joint, role: str, found: Agreement) -> str:
 
 def _events(study: AgreementStudy) -> Iterator[str]:
     for kind, found in events_together(study).items():
-        said = tr("{event}: {found} of {count} found, {more} extra; {bias} ms late, SD {sd} ms.")
+        stated = tr("{event}: {found} of {count} found, {more} extra; {bias} ms late, SD {sd} ms.")
         bias, sd = _short(1e3 * found.bias_s), _short(1e3 * found.sd_s)
-        yield said.format(
+        yield stated.format(
             event=event_name(kind), found=found.found, count=found.count, more=found.more, bias=bias, sd=sd
         )
     lengths = lengths_together(study)
     if len(lengths) > 1:
         error = lengths[:, 0] - lengths[:, 1]
         percent = 100 * float(error.mean()) / float(lengths[:, 1].mean())
-        said = tr("Stride length: {count} strides, bias {bias} %, SD {sd} cm.")
+        stated = tr("Stride length: {count} strides, bias {bias} %, SD {sd} cm.")
         spread = f"{100 * float(error.std(ddof=1)):.2f}"
-        yield said.format(count=len(lengths), bias=f"{percent:+.2f}", sd=spread)
+        yield stated.format(count=len(lengths), bias=f"{percent:+.2f}", sd=spread)
 
 
 def _of(walk: ComparedWalk, joint: Joint, of_walk: Callable[[Agreement], float]) -> float:

@@ -303,11 +303,11 @@ def _meanings() -> Iterator[tuple[str, str, str]]:
     for name in agreement_header():
         phase = next((p for p in (*NAMED_PHASES, "stance") if name.startswith(f"{p}_") and name not in MEANING), None)
         what = "root mean square" if name.endswith("rmse_deg") else "mean"
-        said = MEANING.get(name, f"{what} of the errors in {_phase_words(phase)}, the walk's mean removed")
-        yield TABLE, name, said
+        stated = MEANING.get(name, f"{what} of the errors in {_phase_words(phase)}, the walk's mean removed")
+        yield TABLE, name, stated
     for file, columns in OF_TABLES.items():
-        for name, said in columns.items():
-            yield file, name, said
+        for name, stated in columns.items():
+            yield file, name, stated
 
 
 def _phase_words(phase: Phase | str | None) -> str:

@@ -47,7 +47,7 @@ WITH_HIP_WIDTH = 44 * MM  # of three beside each other
 def comparison_of(request: ReportRequest) -> Comparison | None:
     """What the report compares: with an earlier visit, else the conditions chosen; None where neither is.
 
-    A walk stands for all walks of its condition, as on the screen, unless another of them was chosen beside it. Of an
+    A walk represents all walks of its condition, as on the screen, unless another of them was chosen beside it. Of an
     earlier visit the same condition counts, as it was walked last; where it has no such, nothing is compared.
     """
     visit, is_simulated = request.visit, request.visit.analysis.is_simulated
@@ -75,12 +75,12 @@ def not_compared_page(request: ReportRequest) -> list[Block]:
     if earlier is None or comparison_of(request) is not None:
         return []
     before = list(by_condition(earlier.analysis, earlier.session.recordings))
-    said = tr("The visit on {day} has no walk that can be compared.")
+    stated = tr("The visit on {day} has no walk that can be compared.")
     if before:
-        said = tr(
+        stated = tr(
             "The visit on {day} has no walk in this condition ({condition}), so it is not compared. It has: {others}."
         )
-    words = said.format(
+    words = stated.format(
         day=_day_of(earlier.session.started),
         condition=_condition_typed(visit.recording(request.shown).condition),
         others=", ".join(map(_condition_typed, before)),
@@ -197,14 +197,14 @@ def _title(shown: Facts, kind: str, side: Side, *, is_about_mean: bool) -> str:
     """Short, as the panels are narrow: the table below them takes the page."""
     if is_about_mean or shown.has_no_zero(kind):
         return panels.title_with_side(shown, kind, side, is_about_mean=is_about_mean)
-    said = tr("Left: {title}") if side is Side.LEFT else tr("Right: {title}")
+    stated = tr("Left: {title}") if side is Side.LEFT else tr("Right: {title}")
     titles = {
         JointKind.HIP: tr("hip, degrees (flexion +)"),
         JointKind.KNEE: tr("knee, degrees (flexion +)"),
         JointKind.ANKLE: tr("ankle, degrees (dorsiflexion +)"),
     }
     title = titles[JointKind(kind)]
-    return said.format(title=title)
+    return stated.format(title=title)
 
 
 def _alt(part: Part, side: Side, kind: str) -> str:
@@ -256,21 +256,21 @@ def _row(comparison: Comparison, side: Side, measure: Measure) -> list[Cell | st
         figures = marked(spread(value, measure.decimals), verdict)
         is_no_peak = not measure.is_of_walk and part.is_no_peak(side, measure.column)
         shown = tr("no peak") if is_no_peak else figures
-        if verdict is Verdict.WITHHELD:
+        if verdict is Verdict.NOT_REPORTED:
             shown = verdict_word(verdict)
         cells.append(Cell(shown, is_grey=not is_spread_enough(value.n)))
     for part in comparison.others:
         compared = _compared(comparison, measure, side, part)
-        found, is_told = compared.difference, compared.is_told
-        words = Cell(judged_in_words(found), is_bold=found.exceeds) if is_told else _why_not(compared)
+        found, is_reported = compared.difference, compared.is_reported
+        words = Cell(judged_in_words(found), is_bold=found.exceeds) if is_reported else _why_not(compared)
         decimals = measure.decimals
-        error = [fixed(found.error, decimals) if is_told else NOTHING] if comparison.kind is Contrast.VISITS else []
-        cells += [signed(found.difference, decimals) if is_told else NOTHING, *error, words]
+        error = [fixed(found.error, decimals) if is_reported else NOTHING] if comparison.kind is Contrast.VISITS else []
+        cells += [signed(found.difference, decimals) if is_reported else NOTHING, *error, words]
     return cells
 
 
 def _compared(comparison: Comparison, measure: Measure, side: Side, part: Part) -> Compared:
-    """A measure of a part and of the one that it is told against."""
+    """A measure of a part and of the one that it is reported against."""
     base = comparison.base_of(part)
     if measure.is_of_walk:
         return comparison.compare_walks(measure, part, base)
@@ -284,28 +284,28 @@ def _measure(column: str) -> str:
 def _what_else_changed(comparison: Comparison) -> str:
     """Open with what besides the condition may make a difference: the straps, the zero, the speed."""
     if comparison.kind is Contrast.VISITS:
-        said = [tr("Two visits, sensors reattached.")]
+        stated = [tr("Two visits, sensors reattached.")]
     elif comparison.is_one_attachment:
-        said = [tr("One session, sensors left in place between walks.")]
+        stated = [tr("One session, sensors left in place between walks.")]
     else:
-        said = [tr("One session, sensors reattached between walks.")]
+        stated = [tr("One session, sensors reattached between walks.")]
     if comparison.has_one_zero_throughout:
-        said.append(tr("Same kind of standing reference in each."))
+        stated.append(tr("Same kind of standing reference in each."))
     else:
-        said.append(
+        stated.append(
             tr("The standing reference is missing or of another kind: only range of motion and timing are compared.")
         )
     speeds = {part.letter: part.of_both("speed_m_s") for part in comparison.parts}
     if all(map(math.isfinite, speeds.values())):
         each = ", ".join(f"{letter}: {fixed(speed, 2)}" for letter, speed in speeds.items())
-        said.append(tr("Speed {speeds} m/s: part of a difference may be due to speed.").format(speeds=each))
+        stated.append(tr("Speed {speeds} m/s: part of a difference may be due to speed.").format(speeds=each))
     else:
-        said.append(tr("Not all walking speeds are known: part of a difference may be due to speed."))
-    return " ".join(said)
+        stated.append(tr("Not all walking speeds are known: part of a difference may be due to speed."))
+    return " ".join(stated)
 
 
 def _why_not(compared: Compared) -> Cell | str:
-    return tr("not reported") if compared.reservation in (Reservation.WITHHELD, Reservation.OTHER_ZERO) else NOTHING
+    return tr("not reported") if compared.reservation in (Reservation.NOT_REPORTED, Reservation.OTHER_ZERO) else NOTHING
 
 
 def _how_judged(comparison: Comparison) -> str:
@@ -314,16 +314,16 @@ def _how_judged(comparison: Comparison) -> str:
     kind = max(kinds, key=list(ComparisonKind).index)
     knee, stance = (signed_error(sigma_of(name, kind)) for name in (KNEE_RANGE, STANCE))
     rows = [_compared(comparison, row.measure, row.side, row.part) for row in comparison.rows]
-    told = [row.difference for row in rows if row.is_told and row.difference.error > 0]
-    said = tr(
+    reported = [row.difference for row in rows if row.is_reported and row.difference.error > 0]
+    stated = tr(
         "Measurement error: 1.96 times the standard deviation of the difference. It includes "
         "{sources}. Differences between walks alone account for {knee}° of knee range of motion and "
         "{stance} percentage points of stance."
     )
     lines = tr("Vertical lines: toe\u2011off of each. {letters} mark the curves; the first is thin and pale.")
     parts = [
-        *([said.format(sources=sources_in_words(told), knee=knee, stance=stance)] if told else []),
-        *([dagger_note()] if any(found.is_unverified for found in told) else []),
+        *([stated.format(sources=sources_in_words(reported), knee=knee, stance=stance)] if reported else []),
+        *([dagger_note()] if any(found.is_unverified for found in reported) else []),
         *([tr("{mark}: caution.").format(mark=CARE)] if _has_care(comparison) else []),
         lines.format(letters=joined([p.letter for p in comparison.parts])),
     ]

@@ -17,7 +17,7 @@ PLOT_WIDTH, WITH_HIP_WIDTH = 72 * MM, 44 * MM  # two beside each other, or three
 def curves_page(facts: Facts) -> list[Block]:
     kinds = [kind for kind in facts.kinds if facts.has_joint(kind)]
     missing = [panels.why_no_joint(facts, kind) for kind in facts.kinds if kind not in kinds]
-    said = " ".join(
+    stated = " ".join(
         [
             tr(
                 "As measured, with absolute angles; each leg over its own gait cycle. Axes are the same in "
@@ -31,7 +31,7 @@ def curves_page(facts: Facts) -> list[Block]:
     drawn = [_overlay(facts, kind, width) for kind in kinds]
     return [
         heading(tr("All curves and peaks")),
-        note(said.strip()),
+        note(stated.strip()),
         *([figures(drawn, columns=max(2, len(drawn)))] if drawn else []),
         *(paragraph(words) for words in missing),
         *peaks_table(facts),
@@ -48,14 +48,14 @@ def _overlay(facts: Facts, kind: JointKind, width: float) -> Picture:
         band=panels.band_of(facts, kind, sides),
         is_simulated=facts.is_simulated,
         alt=panels.curve_alt(facts, kind, sides),
-        withheld=_withheld(facts, kind, sides),
+        not_reported=_not_reported(facts, kind, sides),
     )
     return draw(chart, width)
 
 
-def _withheld(facts: Facts, kind: JointKind, sides: list[Side]) -> str:
+def _not_reported(facts: Facts, kind: JointKind, sides: list[Side]) -> str:
     """Why nothing is drawn, where no leg has a curve or a stride that may be."""
-    whys = [panels.why_withheld(facts, joint_of(kind, side)) for side in sides]
+    whys = [panels.why_not_reported(facts, joint_of(kind, side)) for side in sides]
     return " ".join(dict.fromkeys(whys)) if all(whys) else ""
 
 

@@ -21,7 +21,7 @@ TOE_OFF_PERCENT = 61  # of the schematic walk
 
 @dataclass(frozen=True, slots=True)
 class _Place:
-    """Where in the picture a bracket stands, percent of its width, and its words beside it."""
+    """Where in the picture a bracket is, percent of its width, and its words beside it."""
 
     percent: float
     anchor: str

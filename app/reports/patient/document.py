@@ -57,7 +57,7 @@ def set_pages(template: bytes, data: dict[str, Any], made_at: datetime) -> bytes
 
 def draw_pages(template: bytes, data: dict[str, Any], made_at: datetime, ppi: float) -> list[bytes]:
     """The same pages as PNG, of so many px an inch."""
-    pages: Any = typst.compile(  # said to be bytes; of PNG, it is a list with one for each page
+    pages: Any = typst.compile(  # stated to be bytes; of PNG, it is a list with one for each page
         template,
         format="png",
         ppi=ppi,
@@ -81,7 +81,7 @@ class ReportPreview:
     def pages(self, request: ReportRequest, ppi: float) -> list[bytes]:
         """Give the report's pages as PNG, as they will print; errors as in `make_report`."""
         with self._lock:
-            pages: Any = self._compiler.compile(  # said to be bytes; of PNG, it is a list with one for each page
+            pages: Any = self._compiler.compile(  # stated to be bytes; of PNG, it is a list with one for each page
                 self._template,
                 format="png",
                 ppi=ppi,
@@ -162,7 +162,7 @@ def report_data(request: ReportRequest) -> dict[str, Any]:
 
 
 def pages_of_walk(facts: Facts) -> list[list[Block]]:
-    """All figures of the walk, as far as there are some: of one without a stride page one says why."""
+    """All figures of the walk, as far as there are some: of one without a stride page one states why."""
     has_joint = any(map(facts.has_joint, JointKind))
     return [*([curves_page(facts)] if has_joint else []), *([time_page(facts)] if facts.gait else [])]
 
@@ -172,12 +172,12 @@ def facts_of(request: ReportRequest) -> Facts:
 
 
 def _subject(facts: Facts) -> str:
-    said = (
+    stated = (
         tr("Hip, knee and ankle angles during walking, from inertial sensors. Research use. Not a medical device.")
         if facts.has_joint(JointKind.HIP)
         else tr("Knee and ankle angles during walking, from inertial sensors. Research use. Not a medical device.")
     )
-    return " ".join([tr("SIMULATED DATA, not a person.")] * facts.is_simulated + [said])
+    return " ".join([tr("SIMULATED DATA, not a person.")] * facts.is_simulated + [stated])
 
 
 _font_book: typst.Fonts | None = None

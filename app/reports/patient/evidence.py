@@ -24,7 +24,7 @@ from core.verdicts.model import NOT_MEASURED, GateReason, JointVerdicts
 from core.verdicts.quantities import assessment_of, raw_values
 
 JOINT_WIDTH = "23mm"  # takes a verdict; a joint's longer name, as German has them, breaks before its side
-MARGIN_BEYOND = 100.0  # how many times better says no more from here on
+MARGIN_BEYOND = 100.0  # how many times better states no more from here on
 
 
 def evidence(facts: Facts) -> list[Block]:
@@ -109,12 +109,12 @@ def evidence_table(facts: Facts) -> list[Block]:
         [
             label,
             *(
-                Cell(said(joint, facts.calibrated[joint]), is_bold=_has_failed(facts.verdicts.joint(joint), gate))
+                Cell(stated(joint, facts.calibrated[joint]), is_bold=_has_failed(facts.verdicts.joint(joint), gate))
                 for joint in joints
             ),
             limit,
         ]
-        for gate, label, said, limit in gates
+        for gate, label, stated, limit in gates
     ]
     for label, part in ((tr("ROM, shape"), "shape"), (tr("Absolute angle"), "height")):
         words = [verdict_alone(getattr(facts.verdicts.joint(joint), part).verdict) for joint in joints]
@@ -183,18 +183,18 @@ def hips_table(facts: Facts) -> list[Block]:
         [
             label,
             *(
-                Cell(said(joint, hip.identification), is_bold=_has_failed_hip(facts, joint, gate))
+                Cell(stated(joint, hip.identification), is_bold=_has_failed_hip(facts, joint, gate))
                 for joint, hip in hips.items()
             ),
             limit,
         ]
-        for gate, label, said, limit in gates
+        for gate, label, stated, limit in gates
     ]
-    said = facts.verdicts
+    stated = facts.verdicts
     verdicts = [
-        (tr("ROM, shape"), [said.joint(joint).shape for joint in hips]),
-        (tr("Absolute angle"), [said.joint(joint).height for joint in hips]),
-        (tr("Abduction"), [assessment_of(said, joint.side, "hip_abduction_peak_deg") for joint in hips]),
+        (tr("ROM, shape"), [stated.joint(joint).shape for joint in hips]),
+        (tr("Absolute angle"), [stated.joint(joint).height for joint in hips]),
+        (tr("Abduction"), [assessment_of(stated, joint.side, "hip_abduction_peak_deg") for joint in hips]),
     ]
     for label, found in verdicts:
         words = [Cell(verdict_alone(one.verdict), is_bold=True) for one in found]
@@ -204,13 +204,13 @@ def hips_table(facts: Facts) -> list[Block]:
 
 
 def clocks_in_words(facts: Facts) -> str:
-    """How the clocks of both legs are tied, and by how much they are apart where the hips tell it."""
+    """How the clocks of both legs are tied, and by how much they are apart where the hips report it."""
     clock = facts.walk.leg_clock
     if clock is None:
         return ""
     if clock.status is ClockStatus.PROVEN:
         return tr("Left and right sensors: synchronised, confirmed.")
-    if clock.status is ClockStatus.WITHHELD:
+    if clock.status is ClockStatus.NOT_REPORTED:
         return tr("Left and right sensors: hip movement does not show their time offset.")
     side = Side.RIGHT if clock.offset_s > 0 else Side.LEFT
     pattern = (
@@ -236,7 +236,7 @@ def error_table() -> list[Block]:
         Column(tr("Ankle ROM, °")),
         Column(tr("Stance (% gait cycle)"), "31mm"),
     ]
-    told = (
+    reported = (
         (
             ComparisonKind.ATTACHED,
             tr("Two walks, same attachment"),
@@ -247,13 +247,13 @@ def error_table() -> list[Block]:
         (ComparisonKind.VISITS, tr("Two visits"), tr("the same; attachment, another day")),
     )
     rows: list[Row] = []
-    for kind, name, contains in told:
+    for kind, name, contains in reported:
         cells = []
         for column in (KNEE_RANGE, ANKLE_RANGE, STANCE):
             sigma = sigma_of(column, kind)
             cells.append(signed_error(sigma) + (DAGGER if sigma is not None and not sigma.is_verified else ""))
         rows.append([name, contains, *cells])
-    said = tr(
+    stated = tr(
         "Minimum values: variation between strides is added (1.96 standard deviations of the "
         "difference). A sentence on page 1 needs 1.5 times as much, unless the error is a published "
         "upper limit."
@@ -261,7 +261,7 @@ def error_table() -> list[Block]:
     return [
         heading(tr("Measurement error by comparison")),
         table(columns, rows, is_dense=True),
-        note(f"{said} {dagger_note()}"),
+        note(f"{stated} {dagger_note()}"),
     ]
 
 
@@ -282,7 +282,7 @@ def thirds_apart(values: FloatArray) -> float:
 
 
 def _ranges_of_walks(facts: Facts, joint: Joint) -> list[FloatArray]:
-    """Of every stride used of each walk, as evidence: whatever may be said of the joint."""
+    """Of every stride used of each walk, as evidence: whatever may be stated about the joint."""
     gaits = [walk.gait[joint.side] for walk in facts.part.walks if joint.side in walk.gait]
     found = [raw_values(gait, f"{joint.kind}_range_deg")[gait.strides.is_used] for gait in gaits]
     return [one[np.isfinite(one)] for one in found]
@@ -299,8 +299,8 @@ def _farthest(apart: Callable[[FloatArray], float], facts: Facts, joint: Joint) 
 
 
 def _degrees(value: float, *, is_signed: bool = False) -> str:
-    said = signed(value, 1) if is_signed else fixed(value, 1)
-    return said if said == NOTHING else f"{said}°"
+    stated = signed(value, 1) if is_signed else fixed(value, 1)
+    return stated if stated == NOTHING else f"{stated}°"
 
 
 def _axis(_: Joint, found: JointCalibration) -> str:
@@ -323,7 +323,7 @@ def _cm(centre_m: FloatArray) -> str:
 
 def _has_failed_hip(facts: Facts, joint: Joint, gate: str) -> bool:
     heading = facts.verdicts.abduction.get(joint.side, NOT_MEASURED)
-    is_heading = gate == "hip_heading" and not heading.is_told
+    is_heading = gate == "hip_heading" and not heading.is_reported
     return is_heading or _has_failed(facts.verdicts.joint(joint), gate)
 
 

@@ -1,4 +1,4 @@
-"""The page that stands alone: who, what differs, what may be read, every joint's curve, a few numbers, how sure."""
+"""The page that is alone: who, what differs, what may be read, every joint's curve, a few numbers, how sure."""
 
 import math
 
@@ -80,11 +80,11 @@ def what(request: ReportRequest, facts: Facts, comparison: Comparison | None) ->
         tr("by {operator}").format(operator=typed(operator, CONDITION_LENGTH)) if operator else "",
         typed(clinic, CONDITION_LENGTH) if clinic else "",
     ]
-    said = [" · ".join(filter(None, parts))]
+    stated = [" · ".join(filter(None, parts))]
     if comparison is not None:
         names = " · ".join(f"{part.letter}\u00a0{typed(part.name, CONDITION_LENGTH)}" for part in comparison.parts)
-        said.append(tr("Compared ({last} shown here): {parts}").format(parts=names, last=comparison.parts[-1].letter))
-    return ". ".join(said)
+        stated.append(tr("Compared ({last} shown here): {parts}").format(parts=names, last=comparison.parts[-1].letter))
+    return ". ".join(stated)
 
 
 def measured(facts: Facts) -> str:
@@ -106,11 +106,11 @@ def measured(facts: Facts) -> str:
 def answer(facts: Facts, comparison: Comparison | None) -> dict[str, object]:
     """At most three numbered findings and one caveat; without any, that there is none."""
     found = printed_findings(facts, comparison)
-    sentences = [[str(number), one.said, one.evidence] for number, one in enumerate(found, start=1)]
+    sentences = [[str(number), one.stated, one.evidence] for number, one in enumerate(found, start=1)]
     if not found:
         first, *others = nothing_found(facts, comparison)
         sentences = [["", first, " ".join(others)]]
-    goals = [said for one in facts.told_goals if (said := goal_sentence(one))][:1]  # as on the screen
+    goals = [stated for one in facts.reported_goals if (stated := goal_sentence(one))][:1]  # as on the screen
     grey = " ".join([*caveat(facts, comparison), *goals])
     return {"heading": tr("Summary"), "sentences": sentences, "caveats": [grey] if grey else []}
 
@@ -151,8 +151,8 @@ def readable(facts: Facts) -> dict[str, object]:
 
 
 def _dotted(found: Assessment) -> dict[str, object]:
-    picture, said = _dot_and_word(found.verdict)
-    return {"said": said, "dot": picture}
+    picture, stated = _dot_and_word(found.verdict)
+    return {"said": stated, "dot": picture}
 
 
 def _dot_and_word(verdict: Verdict) -> tuple[dict[str, object], str]:
@@ -162,7 +162,7 @@ def _dot_and_word(verdict: Verdict) -> tuple[dict[str, object], str]:
 def curves(facts: Facts, comparison: Comparison | None) -> dict[str, object]:
     """A panel for each joint that was measured, the band laid at the height of its curve, with its figures beside."""
     counts = {side.letter: facts.strides(side) for side in facts.gait}
-    said = [
+    stated = [
         tr("Mean of strides, {counts}; each leg over its own gait cycle, 0 and 100 % initial contact.").format(
             counts=", ".join(f"{letter} n = {n}" for letter, n in counts.items())
         )
@@ -190,15 +190,15 @@ def curves(facts: Facts, comparison: Comparison | None) -> dict[str, object]:
         "heading": tr("Hip, knee and ankle over the gait cycle")
         if has_hips
         else tr("Knee and ankle over the gait cycle"),
-        "note": " ".join(filter(None, said)),
+        "note": " ".join(filter(None, stated)),
         "columns": 2 if len(legs) > 1 else 1,
         "panels": drawn,
         "missing": [] if shown else [tr("No joint angle was measured.")],
     }
 
 
-def _line(said: str, style: str = "small", picture: Picture | None = None) -> dict[str, object]:
-    return {"said": said, "style": style, "picture": picture.as_data() if picture is not None else None}
+def _line(stated: str, style: str = "small", picture: Picture | None = None) -> dict[str, object]:
+    return {"said": stated, "style": style, "picture": picture.as_data() if picture is not None else None}
 
 
 def _beside(facts: Facts, joint: Joint) -> list[dict[str, object]]:
@@ -206,14 +206,14 @@ def _beside(facts: Facts, joint: Joint) -> list[dict[str, object]]:
     side, kind = joint.side, joint.kind
     column, verdicts = _headline(facts, joint), facts.verdicts.joint(joint)
     found = facts.value(side, column)
-    if not verdicts.shape.is_told or not is_mean_enough(found.n):
-        return [_line(said) for said in quality.to_do(facts, joint)]
+    if not verdicts.shape.is_reported or not is_mean_enough(found.n):
+        return [_line(stated) for stated in quality.to_do(facts, joint)]
     name = capitalised(panels.excursion_name(column)) if column in EXCURSIONS_BY_COLUMN else tr("Range of motion")
     lines = [_line(name, "label"), _line(f"{fixed(found.mean, 1)}°", "value")]
     if is_spread_enough(found.n):
         lines.append(_line(tr("SD {sd}°").format(sd=fixed(found.sd, 1)), "grey"))
     lines.append(_line(verdict_alone(verdicts.shape.verdict), "small", dot(verdicts.shape.verdict)))
-    lines += [_line(said) for said in _against_band(facts, joint)]
+    lines += [_line(stated) for stated in _against_band(facts, joint)]
     lines.append(_line(tr("Absolute angle"), "label"))
     offset_deg = facts.offset_deg(side, kind)
     if math.isfinite(offset_deg):

@@ -1,8 +1,8 @@
 """How was this walk measured? Sensors, calibration, filter, angles, events and accuracy, so that others can repeat it.
 
 What the ISB recommends to report of joint angles by inertial sensors (Cereatti et al. 2024, doi
-10.1016/j.jbiomech.2024.112225), as far as it could be read: `packaging/safety/reporting.md` says where each item is.
-What no sensor and no file tells is said to be unknown, never filled in.
+10.1016/j.jbiomech.2024.112225), as far as it could be read: `packaging/safety/reporting.md` states where each item is.
+What no sensor and no file reports is stated to be unknown, never filled in.
 """
 
 import math
@@ -23,7 +23,7 @@ from core.signal.tracks import MAX_REPORTED_GAP_S, nominal_step_s
 from core.verdicts.measurement_error import ComparisonKind, sigma_of
 from core.verdicts.norms import KNEE_OVERREAD
 
-MOST_MODELS = 2  # of more, their number is told
+MOST_MODELS = 2  # of more, their number is reported
 MODEL_LENGTH = 32
 
 Titled = tuple[str, str]
@@ -38,13 +38,13 @@ def how_measured(facts: Facts, software_version: str) -> tuple[list[Titled], lis
         (tr("Angles"), _angles(facts)),
         (tr("Events and strides"), _strides(facts)),
     ]
-    said = [
+    stated = [
         (tr("Accuracy"), _accuracy()),
         *([(tr("Hips and pelvis"), _hips())] if facts.has_joint(JointKind.HIP) else []),
         (tr("Terms"), _words()),
         (tr("Software"), _software(facts, software_version)),
     ]
-    return done, said
+    return done, stated
 
 
 def _worn(facts: Facts) -> dict[Site, ImuBlock]:
@@ -62,43 +62,43 @@ def _findings(facts: Facts, key: str) -> list[Finding]:
 
 def _sensors(facts: Facts) -> str:
     worn = _worn(facts)
-    told = [facts.visit.session.sensors.get(site, SensorInfo()) for site in worn]
-    said = tr(
+    reported = [facts.visit.session.sensors.get(site, SensorInfo()) for site in worn]
+    stated = tr(
         "{models}, {rates}, on {segments}, strapped in any orientation. The measuring range is not in "
         "the recording; {end}."
     )
     is_reached = bool(_findings(facts, "clipped"))
-    return said.format(
-        models=_models(told),
-        rates=_rates(told, list(worn.values())),
+    return stated.format(
+        models=_models(reported),
+        rates=_rates(reported, list(worn.values())),
         segments=_segments(set(worn)),
         end=tr("some samples reach its limit (see findings)") if is_reached else tr("no samples reach its limit"),
     )
 
 
-def _models(told: list[SensorInfo]) -> str:
-    """Which sensors, as they or their files tell: "6 × MTi, firmware 4.2"."""
-    named = Counter((_foreign(tr(one.model)), _foreign(one.firmware)) for one in told)
+def _models(reported: list[SensorInfo]) -> str:
+    """Which sensors, as they or their files report: "6 × MTi, firmware 4.2"."""
+    named = Counter((_foreign(tr(one.model)), _foreign(one.firmware)) for one in reported)
     if len(named) > MOST_MODELS:
-        return tr("{count} sensors of {kinds} models").format(count=len(told), kinds=len(named))
+        return tr("{count} sensors of {kinds} models").format(count=len(reported), kinds=len(named))
     each = []
     for (model, firmware), count in named.most_common():
-        said = model or tr("sensor of unknown model")
-        said = tr("{model}, firmware {firmware}").format(model=said, firmware=firmware) if firmware else said
-        each.append(f"{count} × {said}")
+        stated = model or tr("sensor of unknown model")
+        stated = tr("{model}, firmware {firmware}").format(model=stated, firmware=firmware) if firmware else stated
+        each.append(f"{count} × {stated}")
     return joined(each)
 
 
 def _foreign(text: str) -> str:
-    """What a sensor or a file says of itself may be anything, and of any length."""
+    """What a sensor or a file states of itself may be anything, and of any length."""
     return isolated(breakable(shortened(plain(text).strip(), MODEL_LENGTH)))
 
 
-def _rates(told: list[SensorInfo], blocks: list[ImuBlock]) -> str:
-    """At which rate, as the sensors or their files tell it, and as the stamps show it."""
+def _rates(reported: list[SensorInfo], blocks: list[ImuBlock]) -> str:
+    """At which rate, as the sensors or their files report it, and as the stamps show it."""
     found = [1.0 / nominal_step_s(block.time_s) for block in blocks if len(block) > 1]
     shown = tr("{rate} Hz by time stamps").format(rate=_span(found, 1)) if found else tr("rate not known")
-    set_to = [one.rate_hz for one in told if one.rate_hz]
+    set_to = [one.rate_hz for one in reported if one.rate_hz]
     return ", ".join([tr("set to {rate} Hz").format(rate=_span(set_to, 0)), shown]) if set_to else shown
 
 
@@ -174,10 +174,10 @@ def _hips() -> str:
 
 
 def _kind(facts: Facts) -> RateKind | None:
-    """What one sample of an angular rate stands for, as the sensors tell it or the data showed; None: neither."""
-    told = {info.rate_kind for site, info in facts.visit.session.sensors.items() if site in _worn(facts)}
+    """What one sample of an angular rate represents, as the sensors report it or the data showed; None: neither."""
+    reported = {info.rate_kind for site, info in facts.visit.session.sensors.items() if site in _worn(facts)}
     found = {RateKind(str(one.numbers["kind"])) for one in _findings(facts, "rate_kind_found")}
-    known = (told - {None}) | found
+    known = (reported - {None}) | found
     return known.pop() if len(known) == 1 else None
 
 

@@ -1,4 +1,4 @@
-"""Which few figures of both legs stand on page one? Those that the findings tell first, then always the same."""
+"""Which few figures of both legs stand on page one? Those that the findings report first, then always the same."""
 
 from app.charts.cycles import is_spread_enough
 from app.reports.blocks import Block, Cell, Column, Row, heading, note, table
@@ -29,7 +29,7 @@ ALWAYS = (KNEE, PUSH_OFF, STANCE, STEP_TIME, KNEE_RANGE)
 
 
 def key_numbers(facts: Facts, comparison: Comparison | None) -> list[Block]:
-    """A table of up to five measures that were worn and are not withheld on both legs; nothing without any."""
+    """A table of up to five measures that were worn and are not not reported on both legs; nothing without any."""
     rows = key_rows(facts, comparison)
     if not rows:
         return []
@@ -43,20 +43,20 @@ def key_numbers(facts: Facts, comparison: Comparison | None) -> list[Block]:
         Column(tr("L above, R below, ± half the error"), "48mm", is_number=False),
     ]
     cells: list[Row] = [_cells(row) for row in rows]
-    said = []
+    stated = []
     if any(row.is_judged for row in rows):
-        said.append(tr("Bold: difference between the legs beyond measurement error (95 %)."))
+        stated.append(tr("Bold: difference between the legs beyond measurement error (95 %)."))
     if any(row.is_judged and row.difference.is_unverified for row in rows):
-        said.append(dagger_note())
-    notes = [note(" ".join(said))] if said else []
+        stated.append(dagger_note())
+    notes = [note(" ".join(stated))] if stated else []
     return [heading(tr("Key values")), table(columns, cells), *notes]
 
 
 def key_rows(facts: Facts, comparison: Comparison | None) -> list[LegsRow]:
-    """What the findings tell, what goals are of, then what always stands there."""
+    """What the findings report, what goals are of, then what always is there."""
     rows = {row.column: row for row in what_differs(facts) if row.values}
-    told = [one.column for one in ranked_findings(facts, comparison, BANDS_ON_PAPER)]
-    columns = dict.fromkeys([*told, *(column for column, row in rows.items() if row.goals), *ALWAYS])
+    reported = [one.column for one in ranked_findings(facts, comparison, BANDS_ON_PAPER)]
+    columns = dict.fromkeys([*reported, *(column for column, row in rows.items() if row.goals), *ALWAYS])
     return [rows[column] for column in columns if column in rows][:MOST_ROWS]
 
 
@@ -68,7 +68,7 @@ def _cells(row: LegsRow) -> list[Cell | str]:
     return [
         "; ".join([with_unit(row.name, unit), *map(goal_mark, row.goals)]),
         *values,
-        Cell(signed(found.difference, row.decimals) if found.is_told else NOTHING, is_bold=found.exceeds),
+        Cell(signed(found.difference, row.decimals) if found.is_reported else NOTHING, is_bold=found.exceeds),
         f"{fixed(found.error, row.decimals)}{dagger}" if row.is_judged else NOTHING,
         _band(row),
         Cell("", picture=strip(row)),

@@ -51,8 +51,8 @@ def strip(row: LegsRow) -> Picture:
         parts.append(marker(x(value), y, side, COLOURS[side] if side is Side.LEFT else PAPER.paper, 5.6))
         if side is Side.RIGHT:
             parts.append(box(x(value) - 2.5, y - 2.5, 5, 5, PAPER.paper, COLOURS[side], 1.2))
-    said = ", ".join(f"{side_name(side)} {fixed(value, row.decimals)}" for side, value in values.items())
-    return picture(parts, STRIP_WIDTH, STRIP_HEIGHT, f"{row.name}: {said}.")
+    stated = ", ".join(f"{side_name(side)} {fixed(value, row.decimals)}" for side, value in values.items())
+    return picture(parts, STRIP_WIDTH, STRIP_HEIGHT, f"{row.name}: {stated}.")
 
 
 def height_scale(offset_deg: float, side: Side) -> Picture:

@@ -20,8 +20,8 @@ from core.findings import Finding, Severity
 from core.verdicts.norms import PUBLISHED
 
 LONG = 14  # lines of words that may not fit into what is left of the page
-# what was corrected by hand, and what changes how a number is read: told, however mild
-TOLD = {
+# what was corrected by hand, and what changes how a number is read: reported, however mild
+REPORTED = {
     "sign_turned",
     "sign_confirmed",
     "zero_from_goniometer",
@@ -33,7 +33,7 @@ TOLD = {
 
 
 def words_page(request: ReportRequest, facts: Facts) -> list[Block]:
-    """How sure, how measured, and what the clinician says, whose box takes what is left of the page."""
+    """How sure, how measured, and what the clinician states, whose box takes what is left of the page."""
     comment = plain_lines(request.comment)
     return [
         heading(tr("Method and accuracy")),
@@ -53,23 +53,23 @@ def words_page(request: ReportRequest, facts: Facts) -> list[Block]:
 
 
 def _remarks(request: ReportRequest, facts: Facts) -> list[Block]:
-    """Every finding that touches these walks and is more than information, and those of `TOLD`."""
+    """Every finding that touches these walks and is more than information, and those of `REPORTED`."""
     others = {r.name for r in request.visit.session.recordings if r.name not in request.walks}
-    told = [
+    reported = [
         finding
         for finding in request.visit.analysis.findings
-        if (finding.severity is not Severity.INFO or finding.key in TOLD)
+        if (finding.severity is not Severity.INFO or finding.key in REPORTED)
         and not others.intersection(finding.where.split(", "))
     ]
     causes = quality.caveats(facts)
     names = request.visit.shown_names
-    noticed = [plain(sentence(with_shown_names(finding, names))) for finding in _joined(told)]
-    said = [*(causes if len(causes) > 1 else []), *noticed]
-    return [heading(tr("Data quality findings")), bullets(said)] if said else []
+    noticed = [plain(sentence(with_shown_names(finding, names))) for finding in _joined(reported)]
+    stated = [*(causes if len(causes) > 1 else []), *noticed]
+    return [heading(tr("Data quality findings")), bullets(stated)] if stated else []
 
 
 def _joined(findings: Sequence[Finding]) -> list[Finding]:
-    """Tell what holds alike of several places once, of all of them."""
+    """Report what holds alike of several places once, of all of them."""
     places: dict[tuple[object, ...], dict[str, None]] = {}
     first: dict[tuple[object, ...], Finding] = {}
     for finding in findings:
@@ -81,20 +81,22 @@ def _joined(findings: Sequence[Finding]) -> list[Finding]:
 
 def _sources(facts: Facts) -> list[str]:
     curves, values = facts.curves_group, facts.values_group
-    said = []
+    stated = []
     if curves is not None:
         pattern = tr(
             "[1] Curves, peaks, GVS: {n} {group}, {speed} m/s, optical markers. {source}. Values and SD "
             "are taken from the mean curve, which has no SD of the range of motion."
         )
         speed = fixed(curves.speed_m_s, 2)
-        said.append(pattern.format(n=curves.n, group=tr(curves.group), speed=speed, source=_derived(curves.derivation)))
+        stated.append(
+            pattern.format(n=curves.n, group=tr(curves.group), speed=speed, source=_derived(curves.derivation))
+        )
     if values is not None:
         pattern = tr(
             "[2] Time and distance: {group}, optical markers and force plates; class “{speed_class}” of the Froude "
             "number ({speed} m/s, n = {n}). {source}."
         )
-        said.append(
+        stated.append(
             pattern.format(
                 group=tr(values.group),
                 speed_class=speed_class_in_words(values.speed_class),
@@ -103,7 +105,7 @@ def _sources(facts: Facts) -> list[str]:
                 source=_derived(values.derivation),
             )
         )
-    return said or [why_no_band(facts, facts.bands.why_no_values)]
+    return stated or [why_no_band(facts, facts.bands.why_no_values)]
 
 
 def _derived(derivation: str) -> str:

@@ -1,6 +1,6 @@
 """A page that the patient takes home: one number in plain words, in the patient's language, and what was agreed.
 
-Sentences are short, and only what can be read without care is told.
+Sentences are short, and only what can be read without care is reported.
 """
 
 import math
@@ -142,11 +142,11 @@ def _first_visit(request: ReportRequest, side: Side) -> _First | None:
             or walked is None
             or figure is None
             or figure.verdict is not Verdict.READ
-            or not figure.is_told
+            or not figure.is_reported
         ):
             continue
         since = change(current, walked, KNEE, side)
-        if since is not None and since.is_told and since.error > 0:
+        if since is not None and since.is_reported and since.error > 0:
             return _First(visit, walked, figure.found.mean, since)
     return None
 
@@ -154,8 +154,8 @@ def _first_visit(request: ReportRequest, side: Side) -> _First | None:
 def _answer(side: Side, now_deg: float, first: _First | None, say: Say) -> str:
     if first is None:
         return say(LEFT_ALONE if side is Side.LEFT else RIGHT_ALONE).format(now=round(now_deg))
-    said = say(LEFT_NOW if side is Side.LEFT else RIGHT_NOW)
-    return said.format(now=round(now_deg), first=round(first.knee_deg))
+    stated = say(LEFT_NOW if side is Side.LEFT else RIGHT_NOW)
+    return stated.format(now=round(now_deg), first=round(first.knee_deg))
 
 
 def _figures(
@@ -186,14 +186,14 @@ def _texts(
     texts = [[say(later("What this means")), " ".join(meaning)]]
     other_deg = _knee_deg(facts, other)
     between = compare_legs(facts.part, KNEE, (side, other)) if math.isfinite(other_deg) else None
-    if between is not None and between.is_told and between.error > 0:
+    if between is not None and between.is_reported and between.error > 0:
         apart = abs(round(now_deg) - round(other_deg))
-        said = [
+        stated = [
             say(LEFT_OTHER if other is Side.LEFT else RIGHT_OTHER).format(other=round(other_deg)),
             say(APART).format(change=apart, error=math.ceil(between.error)),
             say(DIFFERENT if between.exceeds else ALIKE),
         ]
-        texts.append([say(later("Your other leg")), " ".join(said)])
+        texts.append([say(later("Your other leg")), " ".join(stated)])
     if speed := _speed(facts, first, say, language):
         texts.append([say(later("How fast you walk")), speed])
     texts.append([say(later("What we cannot say")), say(LIMITS)])
@@ -201,12 +201,12 @@ def _texts(
 
 
 def _changed(now_deg: float, first: _First, say: Say) -> list[str]:
-    """What is said is the difference of what is printed, so that who subtracts finds the same."""
+    """What is stated is the difference of what is printed, so that who subtracts finds the same."""
     apart, error = round(now_deg) - round(first.knee_deg), math.ceil(first.since.error)
-    said = say(MORE if apart > 0 else LESS).format(change=abs(apart)) if apart else say(SAME)
+    stated = say(MORE if apart > 0 else LESS).format(change=abs(apart)) if apart else say(SAME)
     is_real = first.since.exceeds and abs(apart) > error
     verdict = say(REAL).format(change=abs(apart)) if is_real else say(UNSURE)
-    return [said, say(OFF_BY).format(error=error), verdict]
+    return [stated, say(OFF_BY).format(error=error), verdict]
 
 
 def _speed(facts: Facts, first: _First | None, say: Say, language: str) -> str:
@@ -214,17 +214,17 @@ def _speed(facts: Facts, first: _First | None, say: Say, language: str) -> str:
     if not math.isfinite(now) or assessment_of_both(facts.verdicts, "speed_m_s").verdict is not Verdict.READ:
         return ""
     before = first.walked.figure(SPEED) if first is not None else None
-    if before is None or before.verdict is not Verdict.READ or not before.is_told:
+    if before is None or before.verdict is not Verdict.READ or not before.is_reported:
         return say(SPEED_ALONE).format(now=figure_text(now, ".1f", language))
-    said = say(SPEED_NOW).format(
+    stated = say(SPEED_NOW).format(
         now=figure_text(now, ".1f", language), first=figure_text(before.found.mean, ".1f", language)
     )
-    return f"{said} {say(BY_ITSELF)}" if now - before.found.mean > FASTER_M_S else said
+    return f"{stated} {say(BY_ITSELF)}" if now - before.found.mean > FASTER_M_S else stated
 
 
 def _goals(facts: Facts, say: Say, language: str) -> list[str]:
-    """What was agreed of the measures that this page tells of; that it is reached only of what is read without care."""
-    said = []
+    """What was agreed of the measures that this page reports; that it is reached only of what is read without care."""
+    stated = []
     for found in facts.goals:
         goal = found.goal
         what = GOALS_OF.get(goal.key)
@@ -237,9 +237,9 @@ def _goals(facts: Facts, say: Say, language: str) -> list[str]:
             value=say(DEGREES if is_angle else METRES).format(value=value),
             day=day_and_month(goal.agreed, say),
         )
-        is_read = found.verdict is Verdict.READ and found in facts.told_goals
-        said.append(f"{words} {say(REACHED)}" if is_read and found.standing is GoalStanding.REACHED else words)
-    return said
+        is_read = found.verdict is Verdict.READ and found in facts.reported_goals
+        stated.append(f"{words} {say(REACHED)}" if is_read and found.standing is GoalStanding.REACHED else words)
+    return stated
 
 
 def _questions(request: ReportRequest, say: Say) -> str:

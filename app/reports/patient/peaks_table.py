@@ -66,10 +66,10 @@ def peaks_table(facts: Facts) -> list[Block]:
     for kind in kinds:
         rows.append(tr(HOW_FAR[kind]))
         rows += [
-            _row(facts, column) for column in (*MOVEMENTS[kind], *TIMES[kind]) if _is_any_told(facts, kind, column)
+            _row(facts, column) for column in (*MOVEMENTS[kind], *TIMES[kind]) if _is_any_reported(facts, kind, column)
         ]
         rows.append(_head_of_heights(facts, kind))
-        rows += [_row(facts, column) for column in HEIGHTS[kind] if _is_any_told(facts, kind, column)]
+        rows += [_row(facts, column) for column in HEIGHTS[kind] if _is_any_reported(facts, kind, column)]
     return [table(columns, rows, is_dense=True), note(" ".join(_notes(facts, kinds)))]
 
 
@@ -83,8 +83,8 @@ def _head_of_heights(facts: Facts, kind: JointKind) -> str:
     ]
     if not offsets:
         return title
-    said = tr("{title}; whole curve vs reference: {offsets}; laboratories differ by 7°")
-    return said.format(title=title, offsets=", ".join(offsets))
+    stated = tr("{title}; whole curve vs reference: {offsets}; laboratories differ by 7°")
+    return stated.format(title=title, offsets=", ".join(offsets))
 
 
 def hips_note() -> str:
@@ -96,32 +96,32 @@ def hips_note() -> str:
 
 
 def _notes(facts: Facts, kinds: Sequence[JointKind]) -> list[str]:
-    said = [
+    stated = [
         tr("Mean ± SD of strides; each value is found stride by stride. Windows in brackets are % of the gait cycle."),
         _movements(kinds),
-        *quality.caveats(facts, (Verdict.WITHHELD,), is_of_joints=True)[: quality.MAX_SENTENCES],
+        *quality.caveats(facts, (Verdict.NOT_REPORTED,), is_of_joints=True)[: quality.MAX_SENTENCES],
     ]
     if len(facts.gait) == len(Side):
         judged = tr("Beyond, within: the measurement error between legs, at least {error}°.")
-        said.append(judged.format(error=signed_error(sigma_of(KNEE_RANGE, ComparisonKind.LEGS))))
-        said.append(tr("The ankle uses the knee's error figure.") + " " + dagger_note())
+        stated.append(judged.format(error=signed_error(sigma_of(KNEE_RANGE, ComparisonKind.LEGS))))
+        stated.append(tr("The ankle uses the knee's error figure.") + " " + dagger_note())
     if JointKind.HIP in kinds:
-        said.append(hips_note())
+        stated.append(hips_note())
     shown = [
         (side, column) for side in facts.gait for kind in facts.kinds for column in (*MOVEMENTS[kind], *HEIGHTS[kind])
     ]
     if any(math.isfinite(facts.away_sd(side, column)) for side, column in shown):
         judged = tr("Against reference: shifted to the level of each curve; knees as measured and divided by {by}.")
-        said.append(judged.format(by=fixed(KNEE_OVERREAD, 2)))
+        stated.append(judged.format(by=fixed(KNEE_OVERREAD, 2)))
     if any(_verdict(facts, side, column) is Verdict.CARE for side, column in shown):
-        said.append(care_note())
-    return [*said, by_hand_in_words(*facts.part.walks)]
+        stated.append(care_note())
+    return [*stated, by_hand_in_words(*facts.part.walks)]
 
 
 def _side_column(facts: Facts, side: Side) -> Column:
-    said = tr("Left") if side is Side.LEFT else tr("Right")
+    stated = tr("Left") if side is Side.LEFT else tr("Right")
     count = f"n = {facts.strides(side)}" if side in facts.gait else ""
-    return Column(f"{said}\n{count}".strip())
+    return Column(f"{stated}\n{count}".strip())
 
 
 def measure(column: str) -> str:
@@ -151,8 +151,10 @@ def _movements(kinds: Sequence[JointKind]) -> str:
         each.append(
             tr("{movement} ({high} minus {low})").format(movement=excursion_name(column), high=ends[0], low=ends[1])
         )
-    said = tr("Movement range: highest angle in one part of the gait cycle minus the lowest in another, in %: {each}.")
-    return said.format(each=", ".join(each))
+    stated = tr(
+        "Movement range: highest angle in one part of the gait cycle minus the lowest in another, in %: {each}."
+    )
+    return stated.format(each=", ".join(each))
 
 
 def _verdict(facts: Facts, side: Side, column: str) -> Verdict:
@@ -161,8 +163,9 @@ def _verdict(facts: Facts, side: Side, column: str) -> Verdict:
     return facts.assessment(side, column).verdict
 
 
-def _is_any_told(facts: Facts, kind: JointKind, column: str) -> bool:
-    """Whether a row has anything to tell: at initial contact, and of a hip outwards, there is nothing but a height."""
+def _is_any_reported(facts: Facts, kind: JointKind, column: str) -> bool:
+    """Whether a row has anything to report: at initial contact, and of a hip outwards, there is nothing but a
+    height."""
     return ("initial_contact" not in column and not column.startswith(ABDUCTION)) or any(
         _verdict(facts, side, column) in (Verdict.READ, Verdict.CARE) for side in Side
     )
@@ -187,7 +190,7 @@ def _row(facts: Facts, column: str) -> list[Cell | str]:
 def value_cell(facts: Facts, side: Side, column: str) -> Cell | str:
     """Give mean ± SD, or why there is none."""
     verdict = _verdict(facts, side, column)
-    if verdict in (Verdict.WITHHELD, Verdict.NOT_MEASURED):
+    if verdict in (Verdict.NOT_REPORTED, Verdict.NOT_MEASURED):
         return verdict_word(verdict)
     if facts.is_no_peak(side, column):
         return NOTHING if column in EXCURSIONS_BY_COLUMN else tr("no peak")
@@ -196,11 +199,11 @@ def value_cell(facts: Facts, side: Side, column: str) -> Cell | str:
 
 
 def _difference_cells(facts: Facts, column: str) -> list[Cell | str]:
-    """The difference, its error, and both in words. Of what is withheld on either leg there is none."""
+    """The difference, its error, and both in words. Of what is not reported on either leg there is none."""
     if not all(facts.value(side, column).n for side in Side):
         return [NOTHING] * 3
     found = compare_legs(facts.part, column, facts.first_and_second)
-    if not found.is_told:
+    if not found.is_reported:
         return [NOTHING] * 3
     dagger = DAGGER if found.is_unverified else ""
     error = f"{fixed(found.error, 1)}{dagger}" if found.error > 0 else NOTHING

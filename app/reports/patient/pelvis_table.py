@@ -11,7 +11,7 @@ from core.verdicts.model import Verdict
 
 
 def pelvis_table(facts: Facts) -> list[Block]:
-    """A row per figure of the pelvis, told once for the strides of each leg."""
+    """A row per figure of the pelvis, reported once for the strides of each leg."""
     if not facts.part.has_pelvis:
         return []
     columns = [
@@ -19,13 +19,13 @@ def pelvis_table(facts: Facts) -> list[Block]:
         *(Column(_over_strides(side)) for side in Side),
     ]
     rows: list[Row] = [[tr(name), *(value_cell(facts, side, column) for side in Side)] for column, name in PELVIS_ROWS]
-    said = [
+    stated = [
         tr("Drop: how far the side of the swinging leg drops below the other. Values over the strides of one leg."),
         *pelvis_in_words(facts.part),
     ]
     if any(facts.assessment(side, column).verdict is Verdict.CARE for side in facts.gait for column, _ in PELVIS_ROWS):
-        said.append(tr("{mark}: caution.").format(mark=CARE))
-    return [heading(tr("Pelvis"), level=2), table(columns, rows, is_dense=True), note(" ".join(said))]
+        stated.append(tr("{mark}: caution.").format(mark=CARE))
+    return [heading(tr("Pelvis"), level=2), table(columns, rows, is_dense=True), note(" ".join(stated))]
 
 
 def _over_strides(side: Side) -> str:

@@ -34,7 +34,7 @@ class Phases:
 
 
 def phases_of(facts: Facts, side: Side) -> Phases | None:
-    """The means over the strides used; None where timing may not be told or a foot sensor did not tell them."""
+    """The means over the strides used; None where timing may not be reported or a foot sensor did not report them."""
     stance = facts.value(side, "stance_percent")
     if not is_mean_enough(stance.n):
         return None
@@ -63,7 +63,7 @@ def phase_bars(phases: Mapping[Side, Phases]) -> Picture:
     for name, percent in zip(events, (0.0, first.foot_flat, first.heel_rise, first.toe_off), strict=True):
         at, anchor = (x(percent) - 2, "end") if percent == 0 else (x(percent), "middle")
         parts.append(text(max(at, 24 if percent == 0 else at), TOP - 4, name, 6.6, anchor=anchor, fill=PAPER.note))
-    said = []
+    stated = []
     for row, (side, found) in enumerate(phases.items()):
         y, at = TOP + ROW * row, 0.0
         parts.append(badge(6, y + BAR / 2, side.letter, side, COLOURS[side]))
@@ -79,7 +79,7 @@ def phase_bars(phases: Mapping[Side, Phases]) -> Picture:
                 parts.append(text(middle, y + BAR / 2 + 2.4, words, 6.8, anchor="middle", weight=600))
             at += lasts
         pattern = tr("{side}: foot flat at {flat} %, heel rise at {rise} %, toe\u2011off at {off} % of the gait cycle.")
-        said.append(
+        stated.append(
             pattern.format(
                 side=capitalised(side_name(side)),
                 flat=fixed(found.foot_flat, 1),
@@ -91,7 +91,7 @@ def phase_bars(phases: Mapping[Side, Phases]) -> Picture:
     for percent in range(0, 101, 20):
         parts.append(line(x(percent), bottom, x(percent), bottom + 3, PAPER.ink, 0.5))
         parts.append(text(x(percent), bottom + 10, f"{percent}{' %' if percent == 100 else ''}", 6.6, anchor="middle"))
-    return picture(parts, WIDTH, bottom + 13, " ".join(said))
+    return picture(parts, WIDTH, bottom + 13, " ".join(stated))
 
 
 def _bar(left: float, top: float, width: float, number: int, side: Side) -> list[str]:

@@ -49,7 +49,7 @@ def write_visits(request: ReportRequest, folder: Path) -> None:
         describe_tables(request.visit.analysis, folder)
 
 
-def chosen_walks(visit: AnalysedVisit, wanted: list[str], session: str) -> tuple[str, ...]:
+def chosen_walks(visit: AnalysedVisit, required: list[str], session: str) -> tuple[str, ...]:
     """Give the walks that were asked for, or those a report shows when none was.
 
     Raises
@@ -58,11 +58,11 @@ def chosen_walks(visit: AnalysedVisit, wanted: list[str], session: str) -> tuple
         There is no such walk, or none at all.
     """
     names = visit.walk_names()
-    for name in wanted:
+    for name in required:
         if name not in names:
             what = f"there is no kept walk named {name}"
             raise FileRefusedError(session, what, f"Choose of: {', '.join(names) or 'none'}")
-    walks = tuple(wanted) or default_walks(visit)
+    walks = tuple(required) or default_walks(visit)
     if not walks:
         raise FileRefusedError(
             session, "this contains no included walk, so there is nothing to report", "Record a walk first"

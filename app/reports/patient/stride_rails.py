@@ -17,7 +17,7 @@ from core.verdicts.quantities import values_of
 WIDTH, HEIGHT = 175 * MM, 33 * MM
 LEFT_EDGE, RIGHT_EDGE, TOP, FOOT = 24.0, 78.0, 14.0, 22.0  # points around the plot
 LEAST_SPAN_DEG, TICK_DEG = 20.0, 10.0
-LETTERS = {  # on the rail; each is told in words under the heading
+LETTERS = {  # on the rail; each is reported in words under the heading
     Reason.TURN: "t",
     Reason.START: "b",
     Reason.STOP: "s",
@@ -74,7 +74,7 @@ def stride_rail(facts: Facts, kind: str) -> Picture:
         parts.append(text(LEFT_EDGE - 5, y(value) + 2.4, fixed(float(value), 0), 6.8, anchor="end"))
     parts.append(text(LEFT_EDGE - 5, bottom + 10.5, tr("excl."), 6.6, anchor="end", fill=PAPER.note))
     parts.append(text(right, bottom + 19, f"{fixed(last_s - first_s, 0)} s", 6.6, anchor="end", fill=PAPER.note))
-    said, ends = [], []
+    stated, ends = [], []
     for side, each in values.items():
         strides = facts.gait[side].strides
         for at_s, value, is_used, reason in zip(strides.start_s, each, used[side], strides.reason, strict=True):
@@ -98,7 +98,7 @@ def stride_rail(facts: Facts, kind: str) -> Picture:
         if not count:
             continue
         words = tr("{side}: {count} strides, {low}° to {high}°.")
-        said.append(
+        stated.append(
             words.format(
                 side=capitalised(side_name(side)),
                 count=count,
@@ -118,7 +118,7 @@ def stride_rail(facts: Facts, kind: str) -> Picture:
         parts.append(text(right + 18, height + 2.4, words, 6.8))
     if facts.is_simulated:
         parts.append(text(right, 8, tr("SIMULATED"), 6.6, anchor="end", weight=600))
-    alt = " ".join([tr("SIMULATED.")] * facts.is_simulated + [f"{title}.", *(said or [tr("No strides used.")])])
+    alt = " ".join([tr("SIMULATED.")] * facts.is_simulated + [f"{title}.", *(stated or [tr("No strides used.")])])
     return picture(parts, WIDTH, HEIGHT, alt)
 
 

@@ -40,7 +40,7 @@ from core.verdicts.model import Verdict
 PLOT_WIDTH, ALONE_WIDTH = 31 * MM, 66 * MM  # of single strides, below the rails or where there are none
 WITH_HIP_WIDTH = 21.5 * MM  # of three joints of each leg
 DOUBLE_SUPPORT = "double_support_percent"
-TOLD = ("stride_time_s", "stride_length_m", "step_time_s")  # of these kinds is the table: timing, distance, between
+REPORTED = ("stride_time_s", "stride_length_m", "step_time_s")  # of these kinds is the table: timing, distance, between
 ROCKERS = ("ankle_heel_rocker_deg", "ankle_rocker_deg", "ankle_push_off_deg")
 
 
@@ -91,22 +91,22 @@ def time_distance_table(facts: Facts) -> list[Block]:
         if group is not None
         else " ".join([tr("Mean ± SD of strides."), panels.why_no_band(facts, facts.bands.why_no_values)])
     )
-    said = [band]
+    stated = [band]
     if group is not None or facts.curves_group is not None:
-        said.append(tr("Reference groups: see last page."))
+        stated.append(tr("Reference groups: see last page."))
     if facts.time_distance[DOUBLE_SUPPORT].unknown_both:
-        said.append(tr("Single and double support need reliable timing of both legs."))
+        stated.append(tr("Single and double support need reliable timing of both legs."))
     if len(facts.gait) == len(Side):
-        said.append(tr("Bold: difference between the legs beyond measurement error."))
-        said.append(
+        stated.append(tr("Bold: difference between the legs beyond measurement error."))
+        stated.append(
             tr("Step time needs synchronised left and right sensors; the distance between the feet is not known.")
         )
-    said.append(tr("Foot clearance is that of the sensor, not of the toes."))
+    stated.append(tr("Foot clearance is that of the sensor, not of the toes."))
     if any(DAGGER in cell for row in rows for cell in row if isinstance(cell, str)):
-        said.append(dagger_note())
-    if any(facts.assessment(side, column).verdict is Verdict.CARE for side in facts.gait for column in TOLD):
-        said.append(tr("{mark}: caution.").format(mark=CARE))
-    return [table(columns, rows, is_dense=True), note(" ".join(said))]
+        stated.append(dagger_note())
+    if any(facts.assessment(side, column).verdict is Verdict.CARE for side in facts.gait for column in REPORTED):
+        stated.append(tr("{mark}: caution.").format(mark=CARE))
+    return [table(columns, rows, is_dense=True), note(" ".join(stated))]
 
 
 def _both_row(facts: Facts, column: str, label: str) -> list[Cell | str]:
@@ -148,11 +148,11 @@ def _mean_cell(facts: Facts, side: Side, column: str, value: MeanAndSd, decimals
 
 
 def _between(facts: Facts, column: str) -> Difference | None:
-    """What the legs differ by in a column of strides.csv; None where that is not told of both."""
+    """What the legs differ by in a column of strides.csv; None where that is not reported of both."""
     if not all(facts.value(side, column).n for side in Side):
         return None
     found = compare_legs(facts.part, column, facts.first_and_second)
-    return found if found.is_told else None
+    return found if found.is_reported else None
 
 
 def difference_cells(found: Difference | None, decimals: int) -> list[Cell | str]:
@@ -165,16 +165,16 @@ def difference_cells(found: Difference | None, decimals: int) -> list[Cell | str
 
 
 def _single_support_row(facts: Facts) -> list[Cell | str]:
-    """A leg stands alone while the other swings; each in % of the swinging leg's stride.
+    """A leg is alone while the other swings; each in % of the swinging leg's stride.
 
     As with double support, both legs' timing has to be beyond doubt.
     """
-    is_withheld = bool(facts.time_distance[DOUBLE_SUPPORT].unknown_both)
+    is_not_reported = bool(facts.time_distance[DOUBLE_SUPPORT].unknown_both)
     cells: list[Cell | str] = []
     for other in (Side.RIGHT, Side.LEFT):
         value = facts.value(other, "swing_percent")
-        is_known = is_mean_enough(value.n) and len(facts.gait) == len(Side) and not is_withheld
-        shown = verdict_word(Verdict.WITHHELD) if is_withheld else fixed(value.mean, 1) if is_known else NOTHING
+        is_known = is_mean_enough(value.n) and len(facts.gait) == len(Side) and not is_not_reported
+        shown = verdict_word(Verdict.NOT_REPORTED) if is_not_reported else fixed(value.mean, 1) if is_known else NOTHING
         cells.append(Cell(shown, is_grey=not is_spread_enough(value.n)))
     return [tr("Single support (% gait cycle)"), *cells, NOTHING, NOTHING, NOTHING, NOTHING]
 
@@ -233,19 +233,19 @@ def _turn(facts: Facts, side: Side, column: str) -> Cell | str:
     if not facts.is_worn(side, column):
         return NOTHING
     found, verdict = facts.value(side, column), facts.assessment(side, column).verdict
-    if verdict is Verdict.WITHHELD:
+    if verdict is Verdict.NOT_REPORTED:
         return verdict_word(verdict)
     return Cell(marked(spread(found, 1), verdict), is_grey=not is_spread_enough(found.n))
 
 
 def _every_stride(facts: Facts) -> list[Block]:
     kinds = [kind for kind in facts.kinds if facts.has_joint(kind)]
-    told = [kind for kind in kinds if any(facts.value(side, f"{kind}_range_deg").n for side in facts.gait)]
-    rails = [figures([stride_rail(facts, kind)]) for kind in told]
+    reported = [kind for kind in kinds if any(facts.value(side, f"{kind}_range_deg").n for side in facts.gait)]
+    rails = [figures([stride_rail(facts, kind)]) for kind in reported]
     if not kinds or is_evidence_beside_time(facts):
         return []
     walk = typed(str(facts.visit.shown_names.get(facts.walk.name, facts.walk.name)), CONDITION_LENGTH)
-    said = [
+    stated = [
         tr("Strides of {walk}.").format(walk=walk) if rails and len(facts.part.walks) > 1 else "",
         tr("In order of time. Lines: means of the first and of the second half of the walk."),
         reasons_in_words(facts),
@@ -257,7 +257,7 @@ def _every_stride(facts: Facts) -> list[Block]:
     small = [_strides(facts, side, kind, width) for kind in kinds for side in Side if _has_strides(facts, side, kind)]
     return [
         heading(tr("Every stride"), level=2),
-        *([note(" ".join(filter(None, said)))] if rails else []),
+        *([note(" ".join(filter(None, stated)))] if rails else []),
         *rails,
         *([figures(small, columns=columns)] if small else []),
     ]

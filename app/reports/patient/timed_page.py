@@ -41,15 +41,15 @@ def timed_page(request: ReportRequest, facts: Facts) -> list[Block]:
     protocols = list(dict.fromkeys(test.protocol for _, test in tests))
     blocks: list[Block] = [heading(tr("Timed tests")), _figures(request, tests)]
     for walk, test in tests:
-        said = [
+        wording = [
             why_sentence(test),
             tape_sentence(test),
             stairs_sentence(test),
             course_sentence(test),
             pauses_sentence(test),
         ]
-        told = " ".join(filter(None, [result_sentence(test), *said]))
-        blocks.append(paragraph(f"{_name(request, walk)}: {told}"))
+        reported = " ".join(filter(None, [result_sentence(test), *wording]))
+        blocks.append(paragraph(f"{_name(request, walk)}: {reported}"))
     longest = [test for _, test in tests if test.definition.duration_s is not None and test.thirds]
     if longest:
         blocks += [heading(tr("During the test: {test}").format(test=name_of_test(longest[-1].protocol)), 2)]
@@ -70,20 +70,20 @@ def _course(request: ReportRequest, facts: Facts) -> tuple[list[Block], bool]:
     if not charts:
         return [], False
     stated = typed(condition, CONDITION_LENGTH) if condition else condition_in_words("")
-    said = [tr("Condition: {condition}. Several attempts: mean shown.").format(condition=stated)]
+    wording = [tr("Condition: {condition}. Several attempts: mean shown.").format(condition=stated)]
     error = error_between_visits(COLUMNS[TimedProtocol.TEN_METRES])
     if TimedProtocol.TEN_METRES in charts:
         whisker = tr("Whisker: half the error of a speed change, {error} m/s {dagger}.")
-        said.append(whisker.format(error=fixed(error, 2), dagger=DAGGER))
+        wording.append(whisker.format(error=fixed(error, 2), dagger=DAGGER))
     if set(charts) - {TimedProtocol.TEN_METRES}:
-        said.append(
+        wording.append(
             tr(
                 "For distances in a set time and for chair tests the measurement error is not known: they are "
                 "not judged."
             )
         )
     drawn = figures(list(charts.values()), columns=2)
-    return [heading(tr("Over the visits"), 2), note(" ".join(said)), drawn], TimedProtocol.TEN_METRES in charts
+    return [heading(tr("Over the visits"), 2), note(" ".join(wording)), drawn], TimedProtocol.TEN_METRES in charts
 
 
 def _name(request: ReportRequest, walk: RecordingAnalysis) -> str:

@@ -1,4 +1,5 @@
-"""One measure over the dates of a patient's visits: dates to scale, whiskers of half an error, gaps where withheld."""
+"""One measure over the dates of a patient's visits: dates to scale, whiskers of half an error, gaps where not
+reported."""
 
 import datetime
 import math
@@ -38,9 +39,9 @@ def trend_chart(
     `goals` are values with the words that stand beside the title: what was agreed, and when. Of less than `least_span`
     the axis is none: what nobody judges is not to look large.
     """
-    told = [one for values in lines.values() for one in values if math.isfinite(one.value)]
+    reported = [one for values in lines.values() for one in values if math.isfinite(one.value)]
     reach = [
-        one.value + sign * (one.whisker if math.isfinite(one.whisker) else 0.0) for one in told for sign in (-1, 1)
+        one.value + sign * (one.whisker if math.isfinite(one.whisker) else 0.0) for one in reported for sign in (-1, 1)
     ]
     reach += [value for value, _ in goals]
     middle, half = 0.5 * (min(reach) + max(reach)), 0.5 * max(max(reach) - min(reach), least_span)
@@ -71,17 +72,17 @@ def trend_chart(
             parts.append(text(x(visit), bottom + 11, str(visit + 1), 7, anchor="middle", weight=600))
             parts.append(text(x(visit), bottom + 20, short_date(day), 6.4, anchor="middle", fill=PAPER.note))
             written = x(visit)
-    said = []
+    stated = []
     for side, values in lines.items():
         aside = {Side.LEFT: -NEAR, Side.RIGHT: NEAR, None: 0.0}[side] if len(lines) > 1 else 0.0
         parts += _line(side, values, x, y, aside, bottom)
         each = ", ".join(f"{one.visit + 1}: {fixed(one.value, decimals)}" for one in values)
-        said.append(f"{capitalised(side_name(side))}: {each}." if side is not None else f"{each}.")
+        stated.append(f"{capitalised(side_name(side))}: {each}." if side is not None else f"{each}.")
     if is_simulated:
         parts.append(text(right, 8, tr("SIMULATED"), 6.6, anchor="end", weight=600))
     if agreed:
-        said.append(f"{agreed}.")
-    return picture(parts, WIDTH, HEIGHT, " ".join([tr("SIMULATED.")] * is_simulated + [f"{title}.", *said]))
+        stated.append(f"{agreed}.")
+    return picture(parts, WIDTH, HEIGHT, " ".join([tr("SIMULATED.")] * is_simulated + [f"{title}.", *stated]))
 
 
 def _line(
@@ -92,7 +93,7 @@ def _line(
     aside: float,
     bottom: float,
 ) -> list[str]:
-    """A leg's values, joined where no visit between them is withheld, each with its whisker."""
+    """A leg's values, joined where no visit between them is not reported, each with its whisker."""
     colour, dash = (COLOURS[side], DASHES[side]) if side is not None else (PAPER.ink, "")
     parts = []
     for one, other in pairwise(values):
@@ -120,7 +121,7 @@ def _line(
 
 
 def _axis(low: float, high: float) -> tuple[float, float, float]:
-    """Round ends of an axis about all that stands on it, and its step."""
+    """Round ends of an axis about all that is on it, and its step."""
     span = max(high - low, 1e-3)
     size = 10.0 ** math.floor(math.log10(span / TICKS))
     step = next(size * k for k in (1, 2, 2.5, 5, 10) if size * k * TICKS >= span)

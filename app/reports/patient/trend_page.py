@@ -10,7 +10,7 @@ from app.reports.patient.trend_chart import trend_chart
 from app.summary.course_lanes import CourseVisit
 from app.summary.facts import Facts
 from app.summary.goals import goal_mark, goal_sentence, in_course
-from app.summary.measure_sentences import Told, change_sentence, unit_and_decimals, who_of_role
+from app.summary.measure_sentences import Reported, change_sentence, unit_and_decimals, who_of_role
 from app.summary.numbers_in_words import DAGGER, NOTHING, dagger_note, fixed, in_brief, signed
 from app.summary.plain_text import CONDITION_LENGTH, shortened, typed
 from app.summary.trend_lines import TrendLine, trend_columns, trend_lines, walked_visits
@@ -42,7 +42,7 @@ def trend_page(visits: Sequence[CourseVisit], condition: str, facts: Facts) -> l
     agreed = facts.part.agreed
     columns = trend_columns(agreed)
     lines = trend_lines(walked, condition, (*columns, *COLUMNS.values()), agreed)
-    shown = [line for line in lines if len(line.told) > 1]
+    shown = [line for line in lines if len(line.reported) > 1]
     if not shown:
         return []
     days = [visit.day for visit in walked]
@@ -50,16 +50,16 @@ def trend_page(visits: Sequence[CourseVisit], condition: str, facts: Facts) -> l
         count=len(walked), first=date(days[0]), last=date(days[-1])
     )
     stated = typed(condition, CONDITION_LENGTH) if condition else condition_in_words("")
-    said = [
+    wording = [
         tr("Condition: {condition}. Sensors reattached at each visit.").format(condition=stated),
         tr("Whisker: half the error of a change. Whiskers that do not overlap show a change beyond error."),
         tr("Dates to scale. Gap: not reported at that visit."),
     ]
     if without := len(visits) - len(walked):
-        said.append(tr("Visits without a walk in this condition, or not calculated: {count}.").format(count=without))
+        wording.append(tr("Visits without a walk in this condition, or not calculated: {count}.").format(count=without))
     return [
         heading(title),
-        note(" ".join(said)),
+        note(" ".join(wording)),
         bullets([*_sentences(shown, facts, len(walked)), *_goals(walked, condition, facts)]),
         figures([_chart(column, shown, days, facts) for column in columns if _of(shown, column)], columns=2),
         heading(tr("Values"), level=2),
@@ -72,14 +72,14 @@ def charts_of_tests(visits: Sequence[CourseVisit], condition: str, facts: Facts)
     """One for each timed test that two visits and more have under a condition."""
     walked, columns = walked_visits(visits, condition), tuple(COLUMNS.values())
     lines = trend_lines(walked, condition, columns, facts.part.agreed)
-    shown, days = [line for line in lines if len(line.told) > 1], [visit.day for visit in walked]
+    shown, days = [line for line in lines if len(line.reported) > 1], [visit.day for visit in walked]
     return {PROTOCOLS[column]: _chart(column, shown, days, facts) for column in columns if _of(shown, column)}
 
 
 def _goals(walked: Sequence[CourseVisit], condition: str, facts: Facts) -> list[str]:
-    """Each goal that was agreed before this visit: at which visit it was first reached, and how it stands now."""
-    said = []
-    for goal in facts.part.agreed.told:
+    """Each goal that was agreed before this visit: at which visit it was first reached, and how it is now."""
+    wording = []
+    for goal in facts.part.agreed.reported:
         parts = [(number, visit) for number, visit in enumerate(walked, start=1) if visit.day > goal.agreed]
         found = [
             (number, in_course(goal, part))
@@ -91,8 +91,8 @@ def _goals(walked: Sequence[CourseVisit], condition: str, facts: Facts) -> list[
         first = next((number for number, one in found if one.standing.is_reached), None)
         if first is not None and found[-1][1].standing.is_reached and first != found[-1][0]:
             now = f"{now} {tr('First reached at visit {number}.').format(number=first)}"
-        said.append(now)
-    return said[:MOST_GOALS]
+        wording.append(now)
+    return wording[:MOST_GOALS]
 
 
 def _of(lines: Sequence[TrendLine], column: str) -> list[TrendLine]:
@@ -129,43 +129,45 @@ def _sentences(lines: Sequence[TrendLine], facts: Facts, visits: int) -> list[st
         if not judged:
             return [tr("No change could be judged.")]
         if any(one.exceeds for one in judged):
-            said = tr(
+            wording = tr(
                 "No change is far enough beyond measurement error to be listed here. The table marks every "
                 "change beyond error."
             )
-            return [said]
+            return [wording]
         return [tr("All judged changes are within measurement error.")]
     ordered = sorted(worth, key=lambda line: -line.since_first.ratio if line.since_first is not None else 0.0)
-    told = {_movement(line): line for line in reversed(ordered)}  # of each the largest
-    return [_sentence(line, facts, visits) for line in ordered if told[_movement(line)] is line][:MOST_SENTENCES]
+    reported = {_movement(line): line for line in reversed(ordered)}  # of each the largest
+    return [_sentence(line, facts, visits) for line in ordered if reported[_movement(line)] is line][:MOST_SENTENCES]
 
 
 def _movement(line: TrendLine) -> tuple[str, Side | None]:
-    """What is told of once: speed is one, in a timed test or out of it."""
+    """What is given of once: speed is one, in a timed test or out of it."""
     return (SPEED if line.column.endswith(SPEED) else line.column), line.side
 
 
 def _sentence(line: TrendLine, facts: Facts, visits: int) -> str:
     found, last = line.since_first, line.values[-1]
-    assert found is not None  # those without one are not told
+    assert found is not None  # those without one are not reported
     unit, decimals = unit_and_decimals(line.column)
     first = next(one for one in line.values if one.visit == line.first)
     now, before = (tr("at visit {visit}").format(visit=number) for number in (visits, line.first + 1))
     who = "" if line.side is None else who_of_role(facts, line.side, line.column)
-    changed = change_sentence(line.column, who, found.difference, Told(now, last.value), Told(before, first.value))
+    changed = change_sentence(
+        line.column, who, found.difference, Reported(now, last.value), Reported(before, first.value)
+    )
     error = tr("Error between visits: {error}.").format(error=fixed(found.error, decimals) + unit)
-    said = f"{changed} {error}"
+    wording = f"{changed} {error}"
     since = line.since_last
     if since is None or line.before == line.first:
-        return said
+        return wording
     if not since.error > 0:
-        return said
+        return wording
     words = (
         tr("Since visit {number} {change}: beyond error.")
         if since.exceeds
         else tr("Since visit {number} {change}: within error.")
     )
-    return f"{said} {words.format(number=line.before + 1, change=signed(since.difference, decimals) + unit)}"
+    return f"{wording} {words.format(number=line.before + 1, change=signed(since.difference, decimals) + unit)}"
 
 
 def _table(lines: Sequence[TrendLine], visits: int) -> Block:
@@ -185,12 +187,12 @@ def _table(lines: Sequence[TrendLine], visits: int) -> Block:
         values = {one.visit: one.value for one in line.values}
         cells: list[Cell | str] = [name_with_unit(line.column), line.side.letter if line.side is not None else ""]
         for visit in shown:
-            is_withheld = visit in values and not math.isfinite(values[visit])
-            cells.append(tr("not reported") if is_withheld else fixed(values.get(visit, math.nan), decimals))
+            is_not_reported = visit in values and not math.isfinite(values[visit])
+            cells.append(tr("not reported") if is_not_reported else fixed(values.get(visit, math.nan), decimals))
         found, since = line.since_first, line.since_last
-        is_told = found is not None and found.is_told
+        is_reported = found is not None and found.is_reported
         cells.append(signed(since.difference, decimals) if since is not None and line.before != line.first else NOTHING)
-        if found is None or not is_told:
+        if found is None or not is_reported:
             rows.append([*cells, NOTHING, NOTHING, NOTHING])
             continue
         dagger = DAGGER if found.is_unverified else ""
@@ -204,12 +206,12 @@ def _table(lines: Sequence[TrendLine], visits: int) -> Block:
 
 
 def _below(lines: Sequence[TrendLine]) -> str:
-    said = [
+    wording = [
         tr(
             "Absolute angles are not included: each visit has its own standing reference. First: first "
             "visit with a reported value."
         )
     ]
     if any(line.since_first is not None and line.since_first.is_unverified for line in lines):
-        said.append(dagger_note())
-    return " ".join(said)
+        wording.append(dagger_note())
+    return " ".join(wording)

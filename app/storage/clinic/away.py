@@ -6,8 +6,8 @@ all its rows go to the server in one transaction, which leaves a mark; then its 
 are handed over as any. Killed anywhere in between, the next start goes on, and nothing goes there twice. The mark holds
 the end of its audit: a station that was restored from an image brings what it recorded since, under the same mark.
 
-A patient is known again by the code. What the clinic says of a patient holds; what was said of one here fills no gaps,
-but goals that were agreed here are added to those at the clinic.
+A patient is known again by the code. What the clinic states of a patient holds; what was stated about one here fills
+no gaps, but goals that were agreed here are added to those at the clinic.
 """
 
 import hmac
@@ -37,7 +37,7 @@ from app.storage.database.models import (
     SettingRow,
     folded,
 )
-from app.storage.database.values import told_patient
+from app.storage.database.values import reported_patient
 from app.storage.derived_keys import derived_keys
 from app.storage.files import replace_file, sync_folder
 from app.storage.layout import DATABASE, RECORDINGS, SUFFIX
@@ -49,11 +49,11 @@ from core.goals import brought_together, goals_text
 
 AWAY, COMING_HOME = "away", "away-coming-home"
 OPERATORS = "operators.json"  # who works at the clinic, as the station saw it last
-MARK = "away {library}"  # the setting that says up to which entry of its audit an away library is on the server
+MARK = "away {library}"  # the setting that states up to which entry of its audit an away library is on the server
 NOT_COVERED = "away-not-covered-{number}"  # a folder that is kept: what was edited in it is not on the server
 OWN_TO_EACH = {"settings", "operators", "audit", "patients", "corrections"}  # tables that are not copied row by row
 
-DERIVED = {"results", "courses", "readings"}  # tables that are computed anew from the others, or of a server alone
+DERIVED = {"results", "courses", "readings"}  # tables that are computed again from the others, or of a server alone
 SERVERS = {"kept_as", "station", "version", "patient_id"}  # columns that change at the server by themselves
 
 _log = logging.getLogger(__name__)
@@ -69,8 +69,8 @@ def remember_operators(opened: OpenedLibrary) -> None:
     OSError
         The station's folder cannot be written.
     """
-    told = [asdict(operator) for operator in opened.library.operators.list()]
-    replace_file(opened.folder / OPERATORS, json.dumps(told, indent=1).encode())
+    reported = [asdict(operator) for operator in opened.library.operators.list()]
+    replace_file(opened.folder / OPERATORS, json.dumps(reported, indent=1).encode())
 
 
 def open_away(folder: Path, data_key: DataKey, code: str) -> OpenedLibrary:
@@ -146,8 +146,8 @@ def _keep(coming: Path) -> None:
 
 def _remembered(folder: Path, code: str) -> Operator:
     try:
-        told = json.loads((folder / OPERATORS).read_bytes())
-        found = next(one for one in told if one["code"] == folded(code) and one["is_active"])
+        reported = json.loads((folder / OPERATORS).read_bytes())
+        found = next(one for one in reported if one["code"] == folded(code) and one["is_active"])
         return Operator(found["code"], found["name"], Role(found["role"]))
     except (OSError, ValueError, KeyError, TypeError, StopIteration):
         raise NotAllowedError(
@@ -225,7 +225,7 @@ def _bring_patients(here: OrmSession, there: OrmSession) -> dict[UUID, UUID]:
             there.add(found)
         elif row.deleted_at is None:
             found.deleted_at = None  # who is measured is a patient
-            found.goals = goals_text(brought_together(told_patient(found).goals, told_patient(row).goals))
+            found.goals = goals_text(brought_together(reported_patient(found).goals, reported_patient(row).goals))
         known[row.id] = found.id
     there.flush()
     return known

@@ -94,7 +94,7 @@ class JournalStore:
             It does not answer.
         """
         try:
-            with _told():
+            with _reported():
                 # of a bucket only that it is there: a folder in it comes with its first journal
                 self._files.info(self._root if self._is_local else self._root.partition("/")[0])
         except LibraryFaultError as fault:
@@ -117,7 +117,7 @@ class JournalStore:
         self.refuse_missing()
         name = name_in_place(path)
         at, sha256 = self._at(name), name.removesuffix(SUFFIX)
-        with path.open("rb") as here, _told():
+        with path.open("rb") as here, _reported():
             if self._files.exists(at) and self._sha256_there(at) == sha256:
                 return name
             if self._is_local:
@@ -134,7 +134,7 @@ class JournalStore:
         )
 
     def fetch(self, name: str, target: Path) -> None:
-        """Bring a journal here, beside its place first; it is what its name says, or it is not there.
+        """Bring a journal here, beside its place first; it is what its name states, or it is not there.
 
         Raises
         ------
@@ -170,7 +170,7 @@ class JournalStore:
         LibraryFaultError
             The place does not answer, or refuses.
         """
-        with _told(), contextlib.suppress(FileNotFoundError):
+        with _reported(), contextlib.suppress(FileNotFoundError):
             self._files.rm_file(self._at(name))
 
     def tidy(self, now_s: Callable[[], float] = time.time) -> None:
@@ -183,14 +183,14 @@ class JournalStore:
         """
         if not self._is_local:
             return  # an object that was not finished has no name
-        with _told():
+        with _reported():
             for path in Path(self._root).glob(f"{UNFINISHED}*"):
                 with contextlib.suppress(FileNotFoundError):
                     if now_s() - path.stat().st_mtime > UNFINISHED_S:
                         path.unlink()
 
     def _pieces(self, name: str) -> Iterator[bytes]:
-        with _told(), self._files.open(self._at(name), "rb") as there:
+        with _reported(), self._files.open(self._at(name), "rb") as there:
             while piece := there.read(PIECE_BYTES):
                 yield piece
 
@@ -235,7 +235,7 @@ def name_in_place(path: Path) -> str:
 
 
 @contextlib.contextmanager
-def _told() -> Iterator[None]:
+def _reported() -> Iterator[None]:
     """Turn what a shared place raises into sentences: each kind of place has errors of its own."""
     try:
         yield

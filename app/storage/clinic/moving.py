@@ -97,7 +97,7 @@ def move_to_server(opened: OpenedLibrary, station: Station, report: Report) -> M
                 _put_later_entries(library.database, server)
             _refuse_difference(library.database, server, "Empty the server's database, then move the library again")
             moved = _counted(server, len(kept), size)
-            replace_file(folder / MOVING, LAST_STEP)  # from here on it may be open there, whatever is heard of that
+            replace_file(folder / MOVING, LAST_STEP)  # from here on it may be open there, whatever is known of that
             with server.writing() as session:
                 set_state(session, ServerState.OPEN)
         else:
@@ -259,13 +259,13 @@ def _state_for(server: Database, source: Database) -> ServerState | None:
 def _put_journals(opened: OpenedLibrary, store: JournalStore, report: Report) -> tuple[dict[str, str], int]:
     """What each file is kept as, and how many bytes these are; a file that is missing is not among them."""
     with opened.library.database.reading() as session:
-        wanted = (
+        required = (
             select(JournalRow)
             .join(RecordingRow)
             .where(RecordingRow.state != RecordingState.DISCARDED)
             .order_by(JournalRow.recording_id, JournalRow.segment)
         )
-        files = [opened.recordings / journal.file for journal in session.scalars(wanted)]
+        files = [opened.recordings / journal.file for journal in session.scalars(required)]
     here = [path for path in files if path.exists()]
     sizes = [path.stat().st_size for path in here]
     kept, done = {}, 0

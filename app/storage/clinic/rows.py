@@ -27,7 +27,7 @@ SERVERS_OWN = (
     STATE_SETTING,
     TARGET_SETTING,
 )  # settings that a library in a folder has no use for
-# columns that tell where something is rather than what it is
+# columns that report where something is rather than what it is
 PLACES: Mapping[str, frozenset[str]] = {"journals": frozenset({"kept_as"}), "recordings": frozenset({"station"})}
 
 
@@ -71,10 +71,10 @@ def refuse_nul(database: Database) -> None:
 
 
 def _batches(source: Connection, table: Table) -> Iterator[list[dict[str, Any]]]:
-    wanted = select(table)
+    required = select(table)
     if table.name == SettingRow.__tablename__:
-        wanted = wanted.where(table.c.name.not_in(SERVERS_OWN))
-    found = source.execution_options(yield_per=MANY).execute(wanted)
+        required = required.where(table.c.name.not_in(SERVERS_OWN))
+    found = source.execution_options(yield_per=MANY).execute(required)
     for rows in found.mappings().partitions():
         yield [dict(row) for row in rows]
 

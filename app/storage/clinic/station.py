@@ -3,7 +3,7 @@
 station.json    the server's address, and this station's id; its owner's alone, for the address may hold a password
 cache/          copies of journals that are in the shared place, fetched or handed over; they may go at any time
 
-The environment variable GAITWRIGHT_DATABASE_URL stands in for the address, GAITWRIGHT_JOURNALS for the shared place
+The environment variable GAITWRIGHT_DATABASE_URL is in for the address, GAITWRIGHT_JOURNALS for the shared place
 where it has another name on this computer.
 """
 
@@ -81,10 +81,10 @@ def station_of(folder: Path) -> Station | None:
         It cannot be read.
     """
     try:
-        told = json.loads((folder / STATION).read_bytes())
-        if told["format"] != FORMAT:
-            raise ValueError(told["format"])
-        station = Station(str(UUID(told["id"])), str(told["database"]), str(told["journals"]))
+        reported = json.loads((folder / STATION).read_bytes())
+        if reported["format"] != FORMAT:
+            raise ValueError(reported["format"])
+        station = Station(str(UUID(reported["id"])), str(reported["database"]), str(reported["journals"]))
     except FileNotFoundError:
         return None
     except (ValueError, KeyError, TypeError):

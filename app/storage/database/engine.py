@@ -43,7 +43,7 @@ PG_BUILD_LOCK = 0x6761_6974  # any number, the same at all stations
 PG_MAY_WRITE = "SELECT has_table_privilege(to_regclass('settings'), 'UPDATE')"
 PG_WRITE_LOCK = "LOCK TABLE settings IN SHARE ROW EXCLUSIVE MODE"
 ONLY_READS = "only_reads"  # in the `info` of a connection whose login may change nothing
-# a server that was unplugged says nothing more: after ten seconds it counts as gone
+# a server that was unplugged gives nothing more: after ten seconds it counts as gone
 PG_SILENT = {
     "keepalives_idle": 5,
     "keepalives_interval": 2,
@@ -105,7 +105,7 @@ class Database:
             The database cannot be read.
         """
         try:
-            with _told(), OrmSession(self.engine) as session:
+            with _reported(), OrmSession(self.engine) as session:
                 yield session
         except LibraryFaultError:
             self.guard()  # this is then why
@@ -125,7 +125,7 @@ class Database:
             The database cannot be written, or the library is gone.
         """
         self.guard()
-        with _told(), self._locked_session(self._write_engine) as session:
+        with _reported(), self._locked_session(self._write_engine) as session:
             yield session
             _commit(session)
 
@@ -136,7 +136,7 @@ class Database:
         SQLite alters a table by copying it and dropping the old one, and while references are enforced that would
         delete what refers to it. So they are checked at the end instead.
         """
-        with _told(), self._locked_session(self._build_engine) as session:
+        with _reported(), self._locked_session(self._build_engine) as session:
             yield session.connection()
             if self.engine.dialect.name == "sqlite" and (lost := _dangling(session)):
                 raise LibraryError(
@@ -220,8 +220,8 @@ def sqlite_engine(path: Path, data_key: KeyMaterial | None, try_s: float = TRY_S
 def postgres_engine(url: str, try_s: float = TRY_S, *, is_kept: bool = True) -> Engine:
     """An engine on a clinic's own server; `url` as SQLAlchemy writes it, `postgresql+psycopg://...`.
 
-    A server reached over the network has to prove who it is, unless the URL says otherwise. Not `is_kept`: a connection
-    ends with its use.
+    A server reached over the network has to prove who it is, unless the URL states otherwise. Not `is_kept`: a
+    connection ends with its use.
 
     Raises
     ------
@@ -271,7 +271,7 @@ def postgres_engine(url: str, try_s: float = TRY_S, *, is_kept: bool = True) -> 
 
 @cache
 def _impatient_connection() -> "type[PgConnection[Any]]":
-    """A connection that is closed once the server has said nothing for `PG_SILENT_S`."""
+    """A connection that is closed once the server has stated nothing for `PG_SILENT_S`."""
     import psycopg
 
     class ImpatientConnection(psycopg.Connection[Any]):
@@ -281,12 +281,12 @@ def _impatient_connection() -> "type[PgConnection[Any]]":
         def _until_silent(self, gen: Generator[Any, Any, Any]) -> Generator[Any, Any, Any]:
             """Pass on what the connection waits for; zero comes back several times a second while nothing happens."""
             try:
-                asked, heard_s = next(gen), time.monotonic()
+                asked, received_s = next(gen), time.monotonic()
                 while True:
                     ready = yield asked
                     if ready:
-                        heard_s = time.monotonic()
-                    elif time.monotonic() - heard_s > PG_SILENT_S:
+                        received_s = time.monotonic()
+                    elif time.monotonic() - received_s > PG_SILENT_S:
                         self.pgconn.finish()
                         raise psycopg.OperationalError("the connection was closed: the server said nothing")
                     asked = gen.send(ready)
@@ -365,7 +365,7 @@ def _dangling(session: OrmSession) -> list[str]:
 
 
 @contextmanager
-def _told() -> Iterator[None]:
+def _reported() -> Iterator[None]:
     """Turn the database's own errors into sentences. They are not chained: some quote what was to be written."""
     try:
         yield
@@ -376,7 +376,7 @@ def _told() -> Iterator[None]:
         _log.warning("the database refused: %s (%s)", type(cause), getattr(cause, "sqlite_errorcode", None))
         raise _sentence(error) from None
     except (ValueError, LookupError, TypeError, AttributeError) as error:
-        # whoever writes on a server may put anything into a row; what is said of it would quote it
+        # whoever writes on a server may put anything into a row; what is stated about it would quote it
         _log.warning("a row cannot be read: %s", "".join(traceback.format_tb(error.__traceback__)))
         raise LibraryFaultError(
             "The library has an entry that Gaitwright did not write", "Restore the library from a backup"
@@ -435,9 +435,9 @@ def _sentence(error: DBAPIError | PoolTimeoutError | sqlite.Error) -> LibraryErr
         )
     if "readonly" in words or "unable to open" in words:
         return LibraryFaultError("The library file cannot be opened for writing", "Check the permissions of its folder")
-    if type(cause).__module__.startswith("psycopg"):  # while a connection is made the server says why, if it answers
-        for said, (what, remedy) in PG_SENTENCES:
-            if any(one in words for one in said):
+    if type(cause).__module__.startswith("psycopg"):  # while a connection is made the server states why, if it answers
+        for stated, (what, remedy) in PG_SENTENCES:
+            if any(one in words for one in stated):
                 return LibraryFaultError(what, remedy)
         if any(one in words for one in PG_NO_HOST):
             return ServerSilentError(

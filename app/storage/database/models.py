@@ -172,7 +172,7 @@ class SessionRow(Versioned, Base):
 
 
 class JointRow(Base):
-    """What was said about one joint: the goniometer while standing, and the turned sign. None: nothing was said.
+    """What was stated about one joint: the goniometer while standing, and the turned sign. None: nothing was stated.
 
     `is_absent`: a foot without an ankle joint.
     """
@@ -225,11 +225,12 @@ class PlacedSensorRow(Base):
 class RecordingRow(Versioned, Base):
     """`is_decided`: nobody is to be asked any more whether it is kept.
 
-    `judged_by`: the operator who said after a crash whether what was recovered is kept; empty until then.
+    `judged_by`: the operator who stated after a crash whether what was recovered is kept; empty until then.
 
     `left_out`: the strides that were left out by hand, as `values` writes them.
 
-    `alignment`: what was changed at the prosthesis before, as `core.alignment` writes it; empty where nothing was said.
+    `alignment`: what was changed at the prosthesis before, as `core.alignment` writes it; empty where nothing was
+    stated.
 
     `test`: which timed test it is, as `core.timed.protocols` writes it; empty where it is none.
 
@@ -310,7 +311,7 @@ class ResultRow(Base):
 
 
 class CourseRow(Base):
-    """What stands of a session in its patient's course, as it came of all that `key` is a digest of."""
+    """What is of a session in its patient's course, as it came of all that `key` is a digest of."""
 
     __tablename__ = "courses"
 

@@ -33,30 +33,30 @@ RECORDING_FIELDS = tuple(field.name for field in fields(Recording) if field.name
 SESSION_FIELDS = ("started", "operator", "surface", "notes", "software", "is_simulated", "unknown")
 
 
-def told_patient(row: PatientRow) -> Patient:
+def reported_patient(row: PatientRow) -> Patient:
     return Patient(goals=goals_of_text(row.goals), **{name: getattr(row, name) for name in PATIENT_FIELDS})
 
 
-def patient_in_row(told: Patient, names: Sequence[str] = PATIENT_FIELDS) -> dict[str, object]:
+def patient_in_row(reported: Patient, names: Sequence[str] = PATIENT_FIELDS) -> dict[str, object]:
     """Some fields of a patient, and the goals, as the row holds them."""
-    return {name: getattr(told, name) for name in names} | {"goals": goals_text(told.goals)}
+    return {name: getattr(reported, name) for name in names} | {"goals": goals_text(reported.goals)}
 
 
-def stored_patients(session: OrmSession, *is_wanted: ColumnElement[bool]) -> list[StoredPatient]:
+def stored_patients(session: OrmSession, *is_required: ColumnElement[bool]) -> list[StoredPatient]:
     visits = (
         select(SessionRow.patient_id, func.count().label("count"), func.max(SessionRow.started).label("last"))
         .where(SessionRow.deleted_at.is_(None))
         .group_by(SessionRow.patient_id)
         .subquery()
     )
-    wanted = (
+    required = (
         select(PatientRow, func.coalesce(visits.c.count, 0), func.coalesce(visits.c.last, ""))
         .outerjoin(visits, visits.c.patient_id == PatientRow.id)
-        .where(*is_wanted)
+        .where(*is_required)
     )
     return [
-        StoredPatient(row.id, row.version, told_patient(row), row.created_at, row.deleted_at, count, last)
-        for row, count, last in session.execute(wanted)
+        StoredPatient(row.id, row.version, reported_patient(row), row.created_at, row.deleted_at, count, last)
+        for row, count, last in session.execute(required)
     ]
 
 
@@ -111,9 +111,9 @@ def stored_session(row: SessionRow) -> StoredSession:
     worn: dict[Site, PlacedSensor] = {}
     for placement in placements:  # the latest word on each site
         worn |= placement.sensors
-    told = Session(
+    reported = Session(
         recordings=tuple(recording.details for recording in recordings),
-        patient=told_patient(row.patient),
+        patient=reported_patient(row.patient),
         sensors={site: worn[site].info for site in Site if site in worn and worn[site].info != SensorInfo()},
         zero_rad={joint.joint: joint.zero_rad for joint in row.joints if joint.zero_rad is not None},
         turned_sign={joint.joint: joint.turned_sign for joint in row.joints if joint.turned_sign is not None},
@@ -127,7 +127,7 @@ def stored_session(row: SessionRow) -> StoredSession:
         row.id,
         row.version,
         row.patient_id,
-        told,
+        reported,
         row.comment,
         row.created_at,
         row.deleted_at,

@@ -1,8 +1,9 @@
 """Is the end of what was saved still there after a crash?
 
-What SQLite wrote last stands in the write-ahead log until it is copied into the database. After a crash SQLite takes
+What SQLite wrote last is in the write-ahead log until it is copied into the database. After a crash SQLite takes
 from the log what is whole and ends, without a word, at the first frame that is not: behind a flipped bit everything
-is lost that had been saved. So the log is looked at before it is opened. https://www.sqlite.org/fileformat2.html#walformat
+is lost that had been saved. So the log is looked at before it is opened.
+https://www.sqlite.org/fileformat2.html#walformat
 """
 
 import struct
@@ -15,9 +16,9 @@ Sums = tuple[int, int]
 
 
 def is_end_lost(log: Path) -> bool:
-    """Tell whether the write-ahead log holds saved changes that SQLite is going to drop.
+    """Return whether the write-ahead log holds saved changes that SQLite is going to drop.
 
-    A power cut amid a write may look like that too: then the changes had not been said to be saved.
+    A power cut amid a write may look like that too: then the changes had not been stated to be saved.
 
     Raises
     ------
@@ -27,7 +28,7 @@ def is_end_lost(log: Path) -> bool:
     try:
         content = log.read_bytes()
         while content[: HEADER.size] != (now := log.read_bytes())[: HEADER.size]:
-            content = now  # another program has begun the log anew meanwhile
+            content = now  # another program has begun the log again meanwhile
     except FileNotFoundError:
         return False  # it was closed well
     if len(content) <= HEADER.size:

@@ -1,7 +1,7 @@
 """Which samples does a journal hold? The same way from a journal to a Recording at every stop and after every crash.
 
 What is missing stays a gap. Times are seconds since the recording's first segment was opened; a later segment's are
-moved by how long after it that segment was opened. A segment that says it was opened when the one before was is that
+moved by how long after it that segment was opened. A segment that states it was opened when the one before was is that
 one's continuation, in another file: the writer went on in it, and so does the decoder.
 """
 
@@ -43,9 +43,9 @@ class DecodedJournal:
     sensors
         Samples and counts by the sensor's name. What lies between two segments was not recorded, so it is not lost.
     sources
-        Every source, as it was told of last.
+        Every source, as it was given of last.
     undecoded
-        Those of them whose driver is not known here, or of which no record tells any more.
+        Those of them whose driver is not known here, or of which no record reports any more.
     dropped_records
         Records that the disk was too slow for.
     reports
@@ -63,10 +63,10 @@ class DecodedJournal:
     def is_simulated(self) -> bool:
         return any(source.is_simulated for source in self.sources)
 
-    def recording(self, told: Recording, placement: Mapping[str, Site]) -> Recording:
-        """The recording that `told` tells of, with the samples of the sensors that were worn."""
+    def recording(self, reported: Recording, placement: Mapping[str, Site]) -> Recording:
+        """The recording that `reported` reports, with the samples of the sensors that were worn."""
         imu = {site: self.sensors[name].block for name, site in placement.items() if name in self.sensors}
-        return replace(told, imu=imu)
+        return replace(reported, imu=imu)
 
 
 def decode(
@@ -124,21 +124,21 @@ class _JournalSegment:
         self.marks: list[JournalMark] = []
         self.undecoded: list[str] = []
         self.last_ns = self.header.opened_ns
-        self._told_dropped = self._dropped_before = 0
-        self._is_told_again: set[int] = set()  # sources that a continuation tells of as they were: nothing was cut
+        self._reported_dropped = self._dropped_before = 0
+        self._is_reported_again: set[int] = set()  # sources that a continuation reports as they were: nothing was cut
         self._decoders: dict[int, StreamDecoder] = {}
         self._samples: dict[str, list[_SampleRows]] = {}
 
     @property
     def dropped_records(self) -> int:
         footer = self.readers[-1].report.footer
-        return self._dropped_before + (footer.dropped_records if footer else self._told_dropped)
+        return self._dropped_before + (footer.dropped_records if footer else self._reported_dropped)
 
     def go_on(self, reader: JournalReader) -> None:
         """Read a continuation, too; where all of the file before is there, bytes join across the two."""
         is_joined = self.readers[-1].report.is_whole
-        self._is_told_again = set(self.sources) if is_joined else set()
-        self._dropped_before, self._told_dropped = self.dropped_records, 0
+        self._is_reported_again = set(self.sources) if is_joined else set()
+        self._dropped_before, self._reported_dropped = self.dropped_records, 0
         self.readers.append(reader)
         self.read()
 
@@ -165,9 +165,9 @@ class _JournalSegment:
 
     def _begin(self, entry: SourceEntry) -> None:
         driver = entry.info.driver
-        self._told_dropped += entry.dropped_records
-        if entry.number in self._is_told_again:
-            self._is_told_again.remove(entry.number)
+        self._reported_dropped += entry.dropped_records
+        if entry.number in self._is_reported_again:
+            self._is_reported_again.remove(entry.number)
             return
         self.sources[entry.number] = entry
         if entry.layout is None and driver in self._known:
@@ -316,7 +316,7 @@ def _joined_unknown(name: str, blocks: Sequence[ImuBlock]) -> NDArray[np.generic
 def _opened_later_s(before: _JournalSegment, header: JournalHeader) -> float:
     """How long after a segment the next one was opened.
 
-    By the monotonic clock, which nobody sets; where it began anew in between, with the machine, by the wall clock, but
+    By the monotonic clock, which nobody sets; where it began again in between, with the machine, by the wall clock, but
     never before the last record.
     """
     recorded_ns = before.last_ns - before.header.opened_ns

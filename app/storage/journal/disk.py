@@ -17,7 +17,7 @@ FULL_RATE_BYTES_S = 200_000.0  # six sensors at 200 Hz with orientation and magn
 
 
 class Trouble(StrEnum):
-    """What went wrong while recording. `TOLD` has the words; those of `MOVED` name the shelter.
+    """What went wrong while recording. `REPORTED` has the words; those of `MOVED` name the shelter.
 
     What is kept in spite of it the journal's status knows.
     """
@@ -31,7 +31,7 @@ class Trouble(StrEnum):
     DROPPED = "dropped"
 
 
-TOLD = {
+REPORTED = {
     Trouble.LITTLE_ROOM: (
         later("The disk has space for less than five more minutes"),
         later("Stop soon, then delete or move files you do not need"),
@@ -75,7 +75,7 @@ class Room:
     start_s, start_bytes
         A recording begins only where there is room for so long and so much besides.
     warn_s
-        Less than this left is told.
+        Less than this left is reported.
     kept_bytes
         A recording stops, and is closed, before less than this is free: for the database, and for other programs.
     """

@@ -1,4 +1,4 @@
-"""Which recording is this, and by which key is it sealed? What stands before a journal's first record.
+"""Which recording is this, and by which key is it sealed? What is before a journal's first record.
 
     magic 8 | format 2 | flags 2 | recording 16 | segment 4 | opened, wall clock 8 | opened, monotonic 8
     | wrapped key 60 (nonce 12, key 32, tag 16) | CRC32C 4
@@ -85,7 +85,7 @@ class JournalHeader:
 
     @classmethod
     def parsed(cls, content: bytes, where: str, wrapped_key: bytes | None = None) -> "JournalHeader":
-        """Read a header; `wrapped_key`, from the library's own row, stands in for one that is damaged.
+        """Read a header; `wrapped_key`, from the library's own row, is in for one that is damaged.
 
         Raises
         ------

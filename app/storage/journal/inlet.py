@@ -18,7 +18,7 @@ class Inlet:
     """Between whoever reads a source and the one thread that writes. Every method may be called from any thread.
 
     A record waits here until it is written, so one whose writing failed is still here to be counted. What does not fit
-    is dropped and counted; before its source's next record the source is told of anew, with how many it lacks.
+    is dropped and counted; before its source's next record the source is given of again, with how many it lacks.
     """
 
     def __init__(
@@ -28,7 +28,7 @@ class Inlet:
         opened_ns: int,
         awake_s: Callable[[], float] = time.monotonic,
     ) -> None:
-        """`awake_s` tells by what clock records wait: one that stands still with the process blames no disk for it."""
+        """`awake_s` reports by what clock records wait: one that is still with the process blames no disk for it."""
         self._limit_bytes, self._now_ns, self._last_ns, self._awake_s = limit_bytes, now_ns, opened_ns, awake_s
         self._change = threading.Condition()
         self._waiting: deque[Waiting] = deque()
@@ -47,7 +47,7 @@ class Inlet:
 
     def change(self, source: int, info: SourceInfo, layout: SampleLayout | None) -> None:
         with self._change:
-            self._tell_anew(replace(self.sources[source], info=info, layout=layout))
+            self._show_again(replace(self.sources[source], info=info, layout=layout))
 
     def put(self, kind: RecordKind, source: int, payload: bytes, *, waits: bool = False) -> bool:
         """Put in a source's record; whether it was taken. `waits` for room instead of dropping it."""
@@ -65,7 +65,7 @@ class Inlet:
                 )
                 return False
             if entry.dropped_records:
-                self._tell_anew(entry)
+                self._show_again(entry)
             return self._append(kind, payload)
 
     def put_mark(self, payload: bytes) -> bool:
@@ -137,7 +137,7 @@ class Inlet:
             self._stuck_since_s = self._awake_s()
         return True
 
-    def _tell_anew(self, entry: SourceEntry) -> None:
+    def _show_again(self, entry: SourceEntry) -> None:
         self._append(RecordKind.SOURCE, entry.packed())
         self.sources[entry.number] = replace(entry, dropped_records=0, dropped_bytes=0)
 

@@ -1,4 +1,4 @@
-"""What stands inside the records? Sources and marks as JSON, samples as rows of float64, bytes as they came."""
+"""What is inside the records? Sources and marks as JSON, samples as rows of float64, bytes as they came."""
 
 import json
 import struct
@@ -19,10 +19,10 @@ from devices.source import SourceInfo
 STREAM = struct.Struct("<H")  # the source's number, before its bytes
 ROWS = struct.Struct("<HHI")  # the source's number, the sensor's, and how many rows follow
 FLOAT = np.dtype("<f8")
-BELONGING = "gaitwright-recording/1 "  # how the mark begins that says whose a recording is
+BELONGING = "gaitwright-recording/1 "  # how the mark begins that states whose a recording is
 BELONGING_FIELDS = ("name", "kind", "folder", "condition", "started", "is_restrapped_before")
-ALIGNMENT = "alignment"  # among what that mark says, where something was changed
-KEY_PRESSED = "gaitwright-test-key/1 "  # how the mark begins that says what a key amid a timed test meant
+ALIGNMENT = "alignment"  # among what that mark states, where something was changed
+KEY_PRESSED = "gaitwright-test-key/1 "  # how the mark begins that states what a key amid a timed test meant
 OWN_COLUMNS = {
     (has_orientation, has_field): (TIME, *GYR, *ACC, *(QUAT if has_orientation else ()), *(MAG if has_field else ()))
     for has_orientation in (False, True)
@@ -34,7 +34,7 @@ OWN_COLUMNS = {
 class SampleLayout:
     """The columns of a source that gives samples: `columns` numbers, `texts` texts, by the session folder's names.
 
-    `rate_hz` None: not told, so that losses are counted by the usual interval.
+    `rate_hz` None: not reported, so that losses are counted by the usual interval.
     """
 
     columns: tuple[str, ...]
@@ -45,7 +45,7 @@ class SampleLayout:
 
 @dataclass(frozen=True, slots=True)
 class SourceEntry:
-    """A source as a journal tells of it: when it begins, after a change, and after records of it had to be dropped."""
+    """A source as a journal reports it: when it begins, after a change, and after records of it had to be dropped."""
 
     number: int
     info: SourceInfo
@@ -58,39 +58,40 @@ class SourceEntry:
 
     @classmethod
     def parsed(cls, payload: bytes) -> "SourceEntry":
-        told: dict[str, Any] = json.loads(payload)
-        info, layout = told.pop("info"), told.pop("layout")
+        reported: dict[str, Any] = json.loads(payload)
+        info, layout = reported.pop("info"), reported.pop("layout")
         info["sensors"] = tuple(info["sensors"])
         if layout is not None:
             layout |= {"columns": tuple(layout["columns"]), "texts": tuple(layout["texts"])}
-        return cls(**told, info=SourceInfo(**info), layout=SampleLayout(**layout) if layout is not None else None)
+        return cls(**reported, info=SourceInfo(**info), layout=SampleLayout(**layout) if layout is not None else None)
 
 
 @dataclass(frozen=True, slots=True)
 class Belonging:
-    """Of which session a recording is, and what was told of it, in the text of a mark: its row may not be there yet."""
+    """Of which session a recording is, and what was given of it, in the text of a mark: its row may not be there
+    yet."""
 
     session_id: UUID
     details: Recording
 
     def text(self) -> str:
-        told = {name: getattr(self.details, name) for name in BELONGING_FIELDS}
+        reported = {name: getattr(self.details, name) for name in BELONGING_FIELDS}
         if self.details.alignment is not None:  # left out otherwise: earlier versions read no other keys
-            told[ALIGNMENT] = alignment_table(self.details.alignment)
-        told |= planned_table(self.details.test)  # likewise
-        return BELONGING + json.dumps({"session": str(self.session_id), **told})
+            reported[ALIGNMENT] = alignment_table(self.details.alignment)
+        reported |= planned_table(self.details.test)  # likewise
+        return BELONGING + json.dumps({"session": str(self.session_id), **reported})
 
     @classmethod
     def parsed(cls, text: str) -> "Belonging | None":
         """What `text` has written; None of any other mark."""
         if not text.startswith(BELONGING):
             return None
-        told: dict[str, Any] = json.loads(text.removeprefix(BELONGING))
-        session_id = UUID(told.pop("session"))
-        told[ALIGNMENT] = alignment_of_table(told.get(ALIGNMENT))
-        test = planned_of_table(told)
-        told = {key: value for key, value in told.items() if key not in TABLE_KEYS} | {"test": test}
-        return cls(session_id, Recording(imu={}, **(told | {"kind": RecordingKind(told["kind"])})))
+        reported: dict[str, Any] = json.loads(text.removeprefix(BELONGING))
+        session_id = UUID(reported.pop("session"))
+        reported[ALIGNMENT] = alignment_of_table(reported.get(ALIGNMENT))
+        test = planned_of_table(reported)
+        reported = {key: value for key, value in reported.items() if key not in TABLE_KEYS} | {"test": test}
+        return cls(session_id, Recording(imu={}, **(reported | {"kind": RecordingKind(reported["kind"])})))
 
 
 @dataclass(frozen=True, slots=True)
@@ -211,7 +212,7 @@ def key_text(meaning: KeyMeaning) -> str:
 
 
 def with_keys(planned: PlannedTest | None, marks: Iterable[tuple[float, str]]) -> PlannedTest | None:
-    """The test with the keys that a journal's marks tell, seconds and text; what is said of it already stays."""
+    """The test with the keys that a journal's marks report, seconds and text; what is stated about it already stays."""
     if planned is None or planned.start_key_s is not None or planned.end_key_s is not None:
         return planned
     at_s = {text: time_s for time_s, text in marks if text.startswith(KEY_PRESSED)}

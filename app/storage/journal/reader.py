@@ -139,14 +139,14 @@ class _Window:
         self._is_at_end = False
         self.offset = 0
 
-    def fill(self, wanted: int) -> bool:
-        """Read on where little is left; whether `wanted` bytes are there."""
+    def fill(self, required: int) -> bool:
+        """Read on where little is left; whether `required` bytes are there."""
         if not self._is_at_end and len(self._held) - self._place < MAX_PAYLOAD + OVERHEAD_BYTES:
             more = self._file.read(CHUNK_BYTES)
             self._is_at_end = not more
             self._hash.update(more)
             self._held, self._place = self._held[self._place :] + more, 0
-        return len(self._held) - self._place >= wanted
+        return len(self._held) - self._place >= required
 
     def view(self) -> memoryview:
         return memoryview(self._held)[self._place :]
@@ -157,7 +157,7 @@ class _Window:
         self.offset += count
 
     def skip_to(self, mark: bytes) -> None:
-        """Leave the place that was looked at, for where `mark` stands next or may begin."""
+        """Leave the place that was looked at, for where `mark` is next or may begin."""
         found = self._held.find(mark, self._place + 1)
         end = found if found >= 0 else max(len(self._held) - len(mark) + 1, self._place + 1)
         self.skip(end - self._place)

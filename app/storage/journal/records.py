@@ -2,7 +2,7 @@
 
     magic 4 | number 8 | length 4 | kind 1 | host monotonic time 8 (ns) | payload | CRC32C 4
 
-Little-endian. `length` is the payload's as it stands in the file. In a sealed journal the payload is AES-256-GCM: its
+Little-endian. `length` is the payload's as it is in the file. In a sealed journal the payload is AES-256-GCM: its
 nonce is the record's number, which is never used twice under the journal's own key; associated data are the
 recording's id and the record's header. The CRC starts from the journal's header, so that a record of another journal,
 or of an older file whose place on the disk this one took, fails it even where nothing is sealed.
@@ -56,7 +56,7 @@ class Seal:
         self._checksum_start = crc32c(header.identity)
 
     def closed(self, record: Record) -> bytes:
-        """The record as it stands in the file."""
+        """The record as it is in the file."""
         number, kind, time_ns, payload = record
         length = len(payload) + (TAG_BYTES if self._cipher else 0)
         head = RECORD_HEADER.pack(RECORD_MAGIC, number, length, kind, time_ns)

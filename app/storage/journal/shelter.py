@@ -14,7 +14,7 @@ from app.storage.journal.header import JournalHeader, segment_path
 class Shelter:
     """A place of safety on this computer, one folder for each library; it is there once something had to go into it.
 
-    `is_home` says whether the library is where it was opened.
+    `is_home` states whether the library is where it was opened.
     """
 
     folder: Path

@@ -1,8 +1,8 @@
 """How does what sensors send get onto the disk, whatever the disk is doing?
 
 Whoever reads a port only puts into a bounded queue; one thread seals, writes and syncs. A disk that stalls fills the
-queue, never a port; what no longer fits is dropped, counted and told. A kill costs what was not yet written, a power
-cut what was not yet synced.
+queue, never a port; what no longer fits is dropped, counted and reported. A kill costs what was not yet written, a
+power cut what was not yet synced.
 
 Where the library's folder is gone, or can no longer be written, the recording goes on in its shelter, in a segment of
 its own that continues the one before. A disk that was pulled out costs what a power cut does, a renamed folder nothing.
@@ -119,9 +119,9 @@ class JournalWriter:
         self.path, self.header = segment.path, segment.header
         self._file, self._seal, self._room = file, Seal(segment.header, segment.key), room
         self._shelter, self._next = shelter, next_segment
-        self._sources: dict[int, SourceEntry] = {}  # as the file tells of them
+        self._sources: dict[int, SourceEntry] = {}  # as the file reports them
         self._last_ns = segment.header.opened_ns
-        self._dropped_before = self._dropped_bytes_before = 0  # told of by the segment before
+        self._dropped_before = self._dropped_bytes_before = 0  # informed of by the segment before
         self._expected_bytes_s, self._on_trouble = bytes_per_s, on_trouble
         self._inlet = inlet
         self._troubles: set[Trouble] = set()
@@ -158,7 +158,7 @@ class JournalWriter:
         Parameters
         ----------
         folder
-            It may be missing, but the folder that it is in may not: a library that is gone is not made anew.
+            It may be missing, but the folder that it is in may not: a library that is gone is not made again.
         data_key
             The library's, to wrap the journal's key with; None for the demonstration's library: nothing is sealed.
         bytes_per_s
@@ -166,7 +166,7 @@ class JournalWriter:
         shelter
             None: where `folder` cannot be written any more, the recording ends.
         awake_s
-            By what clock the disk is late: one that stands still with the process blames no disk for it.
+            By what clock the disk is late: one that is still with the process blames no disk for it.
 
         Raises
         ------
@@ -203,7 +203,7 @@ class JournalWriter:
         return cls(file, segment, bytes_per_s, room, on_trouble, inlet, shelter, following)
 
     def source(self, info: SourceInfo, layout: SampleLayout | None = None) -> int:
-        """Tell of a source before its first byte; returns its number. `layout` for one that gives samples.
+        """Report of a source before its first byte; returns its number. `layout` for one that gives samples.
 
         Raises
         ------
@@ -213,7 +213,7 @@ class JournalWriter:
         return self._inlet.source(info, layout)
 
     def change(self, source: int, info: SourceInfo, layout: SampleLayout | None = None) -> None:
-        """Tell of a source whose settings changed, or which came back: what follows does not join what was before."""
+        """Report of a source whose settings changed, or which came back: what follows does not join what was before."""
         self._inlet.change(source, info, layout)
 
     def received(self, source: int, data: bytes) -> bool:
@@ -305,12 +305,12 @@ class JournalWriter:
     def _put(self, kind: RecordKind, source: int, payload: bytes, waits: bool) -> bool:
         is_taken = self._inlet.put(kind, source, payload, waits=waits)
         if self._inlet.stuck_s > SLOW_S:
-            self._tell(Trouble.DISK_SLOW)
+            self._show_message(Trouble.DISK_SLOW)
         if not is_taken and self._inlet.is_open:
-            self._tell(Trouble.DROPPED)
+            self._show_message(Trouble.DROPPED)
         return is_taken
 
-    def _tell(self, trouble: Trouble) -> None:
+    def _show_message(self, trouble: Trouble) -> None:
         if trouble in self._troubles:
             return
         self._troubles.add(trouble)
@@ -328,7 +328,7 @@ class JournalWriter:
                 self._go_into_shelter()
         except OSError as error:
             self._give_up(Trouble.DISK_FULL if error.errno in OUT_OF_SPACE else Trouble.DISK_GONE)
-        except Exception:  # the thread's edge: whatever it is, it is told
+        except Exception:  # the thread's edge: whatever it is, it is reported
             _log.exception("the journal's thread failed")
             self._give_up(Trouble.DISK_GONE)
 
@@ -406,7 +406,7 @@ class JournalWriter:
             self._file.close()
 
     def _go_into_shelter(self) -> None:
-        """Go on in the shelter, in the next segment, which is told of the sources as the one before was."""
+        """Go on in the shelter, in the next segment, which is given of the sources as the one before was."""
         assert self._shelter is not None  # without one nothing else was drawn
         assert self._next is not None
         self._shelter.made()
@@ -415,10 +415,10 @@ class JournalWriter:
         self.path, self.header, self._seal = segment.path, segment.header, Seal(segment.header, segment.key)
         self._number = FIRST_NUMBER
         self._began_s, self._looked_s, self._looked_size = time.monotonic(), 0.0, 0
-        told = (self._sealed(RecordKind.SOURCE, self._last_ns, entry.packed()) for entry in self._sources.values())
-        if out := b"".join(told):
+        reported = (self._sealed(RecordKind.SOURCE, self._last_ns, entry.packed()) for entry in self._sources.values())
+        if out := b"".join(reported):
             self._file.append(out)
-        self._tell(Trouble.MOVED)
+        self._show_message(Trouble.MOVED)
 
     def _has_room(self) -> bool:
         """Whether the recording may go on; looked at twice a second, and sooner where much was written since."""
@@ -432,9 +432,9 @@ class JournalWriter:
         self._left_s = max(spare, 0) / max(rate, 1.0)
         if spare <= 0:
             self._reason = Trouble.NO_ROOM
-            self._tell(Trouble.NO_ROOM)
+            self._show_message(Trouble.NO_ROOM)
         elif self._left_s < self._room.warn_s:
-            self._tell(Trouble.LITTLE_ROOM)
+            self._show_message(Trouble.LITTLE_ROOM)
         return spare > 0
 
     def _close(self, reason: str) -> None:
@@ -455,7 +455,7 @@ class JournalWriter:
         """End on a disk that fails: nothing more is taken, what was not written is counted, the file is let go."""
         self._inlet.abandon()
         self._reason = trouble
-        self._tell(trouble)
+        self._show_message(trouble)
         try:
             if trouble is Trouble.DISK_FULL:
                 self._close(trouble)  # the cut-off piece is gone again, which most often leaves room for a footer

@@ -1,4 +1,4 @@
-"""How well does the free motion show the joints, do the labels agree with it, and who is where if nobody said so?"""
+"""How well does the free motion show the joints, do the labels agree with it, and who is where if nobody stated so?"""
 
 from collections.abc import Generator, Mapping
 from dataclasses import dataclass, field, replace
@@ -30,14 +30,14 @@ class FreeMotionView:
     motion
         Empty as long as nobody knows who is where.
     elapsed_s
-        Since the first sample, or since one leg alone began anew.
+        Since the first sample, or since one leg alone began again.
     repeated
         The leg that is being repeated; the other's joints stay as they were.
     detected
-        By the site that a sensor is said to be at, the one where the motion puts it, in two looks that agree; empty
+        By the site that a sensor is stated to be at, the one where the motion puts it, in two looks that agree; empty
         where it contradicts nothing.
     site_of
-        By the sensor's name: as was said, or as the motion has told.
+        By the sensor's name: as was stated, or as the motion has reported.
     chains
         What is known of the legs where the placement is left to the motion.
     is_side_open
@@ -55,7 +55,7 @@ class FreeMotionView:
 
 
 class FreeMotionEstimator:
-    """The motion of sensors whose sites are known. Their joints are watched leg by leg, so that one can begin anew.
+    """The motion of sensors whose sites are known. Their joints are watched leg by leg, so that one can begin again.
 
     Parameters
     ----------
@@ -88,7 +88,7 @@ class FreeMotionEstimator:
         self.state = FreeMotionView(site_of=self._site_of)
 
     def repeat(self, side: Side) -> None:
-        """Begin this leg anew at the next update, and leave the other as it is. From any thread."""
+        """Begin this leg again at the next update, and leave the other as it is. From any thread."""
         self._wish = side
 
     def update(self, blocks: Mapping[str, ImuBlock]) -> None:
@@ -122,9 +122,9 @@ class FreeMotionEstimator:
 
 
 class UnplacedFreeMotionEstimator:
-    """The motion of sensors whose sites it has to tell itself: it is held back until it has, and then made up for.
+    """The motion of sensors whose sites it has to report itself: it is held back until it has, and then made up for.
 
-    Where both legs began together, or only one wears sensors, `name_leg` settles what the motion cannot tell.
+    Where both legs began together, or only one wears sensors, `name_leg` settles what the motion cannot report.
 
     Parameters
     ----------
@@ -152,9 +152,9 @@ class UnplacedFreeMotionEstimator:
         self._wish: Side | None = None
         self.state = FreeMotionView()
 
-    def name_leg(self, told: tuple[str, Side] | None) -> None:
+    def name_leg(self, reported: tuple[str, Side] | None) -> None:
         """Say which leg a sensor is worn on; it counts once the chains are certain. None: undone. From any thread."""
-        self._answer = told
+        self._answer = reported
 
     def repeat(self, side: Side) -> None:
         """As of `FreeMotionEstimator`; nothing before it is known who is where. From any thread."""
@@ -179,7 +179,7 @@ class UnplacedFreeMotionEstimator:
         """Take a little of what was held back."""
         wish, self._wish = self._wish, None
         if wish is not None:
-            self._held = self._held[-1:]  # what was before begins anew, or stays as it is
+            self._held = self._held[-1:]  # what was before begins again, or stays as it is
             placed.repeat(wish)
         until_s = _begin_s(self._held[0]) + CAUGHT_UP_S
         while self._held and _begin_s(self._held[0]) < until_s:
@@ -187,17 +187,17 @@ class UnplacedFreeMotionEstimator:
         return placed.state
 
     def _look(self, worn: Mapping[str, ImuBlock]) -> None:
-        """Whether the motion tells by now who is where."""
+        """Whether the motion reports by now who is where."""
         while _begin_s(self._held[0]) < self._now_s - KEPT_S and len(self._held) > 1:
             del self._held[0]
         self._search.update(worn)
-        site_of = self._told()
+        site_of = self._reported()
         if site_of:
             self._placed = FreeMotionEstimator(
                 site_of, self._sensors, self._prosthetic_sides, self._without_ankle, self._standing
             )
 
-    def _told(self) -> dict[str, Site]:
+    def _reported(self) -> dict[str, Site]:
         chains = self._search.chains
         if chains is None or not self._search.is_sure:
             return {}
@@ -248,7 +248,7 @@ class _LabelCheck:
 
 
 def _both(legs: Mapping[Side, FreeMotionState], known: Mapping[Joint, HipHeadingState]) -> FreeMotionState:
-    """The state of both legs together; what was known of a hip holds until it is known anew."""
+    """The state of both legs together; what was known of a hip holds until it is known again."""
     joints = {joint: state for leg in legs.values() for joint, state in leg.joints.items()}
     lags = {joint: state for leg in legs.values() for joint, state in leg.lags.items()}
     weakest = [leg.weakest for leg in legs.values() if leg.weakest is not None]

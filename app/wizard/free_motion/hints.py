@@ -9,7 +9,7 @@ from app.widgets.gauge import AXIS_FROM_DEG, CENTRE_FROM_MM, CLOSED, GaugeState,
 from app.widgets.hint import Hint
 from app.wording.translation import capitalised, name_of, tr, tr_n
 from core.body import Joint, Segment, Side, Site
-from core.live.excitation import HUMAN, PROSTHESIS, ExcitationState, Missing, Movement, Wanted
+from core.live.excitation import HUMAN, PROSTHESIS, ExcitationState, Missing, Movement, Required
 from core.live.free_motion import FreeMotionState
 
 LETTERS = 28  # what is read from two metres
@@ -19,7 +19,7 @@ RESTS_S = 6.0  # with nothing left to ask for, before what was given up is asked
 ONCE_MORE_S = 8.0
 
 
-def wanted_of(joint: Joint, prosthetic_sides: frozenset[Side]) -> Wanted:
+def required_of(joint: Joint, prosthetic_sides: frozenset[Side]) -> Required:
     """What closes this joint."""
     return PROSTHESIS if joint.side in prosthetic_sides else HUMAN
 
@@ -48,15 +48,16 @@ def first_hint() -> Hint:
 
 
 def unplaced_hint() -> Hint:
-    """While the motion is to tell which sensor is where: the leg that moves first is the left one."""
+    """While the motion is to report which sensor is where: the leg that moves first is the left one."""
     how = tr("Then the right leg. The movement identifies the sensor positions.")
     return Hint(tr("Move the left leg first"), how, tr("Then the right leg."))
 
 
 def judged(motion: FreeMotionState, prosthetic_sides: frozenset[Side]) -> dict[Joint, GaugeState]:
-    """Give what is said of each joint, whichever is asked for now: the gauge's word is the rail's and the hint's."""
+    """Give what is stated about each joint, whichever is asked for now: the gauge's word is the rail's and the
+    hint's."""
     return {
-        joint: gauge_face(joint, state, wanted_of(joint, prosthetic_sides), is_now=False).state
+        joint: gauge_face(joint, state, required_of(joint, prosthetic_sides), is_now=False).state
         for joint, state in motion.joints.items()
     }
 
@@ -78,10 +79,10 @@ def enough_for(motion: FreeMotionState, prosthetic_sides: frozenset[Side]) -> st
         for words, of_kind in ((of_knees, knees), (of_ankles, ankles))
         if of_kind
     ]
-    said = tr("enough movement for {counts}").format(counts=", ".join(counts))
+    stated = tr("enough movement for {counts}").format(counts=", ".join(counts))
     loose = tr("{joint}: not a hinge")
     named = [loose.format(joint=name_of(joint)) for joint, state in states.items() if state is GaugeState.LOOSE]
-    return "; ".join([said, *named])
+    return "; ".join([stated, *named])
 
 
 def last_hint(motion: FreeMotionState, prosthetic_sides: frozenset[Side] = frozenset()) -> Hint:
@@ -147,10 +148,10 @@ def absent_note(joint: Joint, worn: Collection[Site], without_ankle: Collection[
     missing = [site for site in (joint.proximal, joint.distal) if site not in worn]
     if not missing:
         return ""
-    told = tr("No sensor on {sites}: no {joint} angle.")
+    reported = tr("No sensor on {sites}: no {joint} angle.")
     sites = [name_of(site) for site in missing]
     both = tr("{first} and {last}").format(first=sites[0], last=sites[-1]) if len(sites) == 2 else sites[0]
-    return told.format(sites=both, joint=name_of(joint))
+    return reported.format(sites=both, joint=name_of(joint))
 
 
 @dataclass(frozen=True, slots=True)
@@ -245,7 +246,7 @@ def price_of_stopping(
     if not is_open:
         return ""
     worst = max(is_open, key=lambda joint: motion.joints[joint].wanting)
-    figure = _figure(worst, motion.joints[worst], wanted_of(worst, prosthetic_sides))
+    figure = _figure(worst, motion.joints[worst], required_of(worst, prosthetic_sides))
     if motion.joints[worst].is_plateau or len(is_open) > 1 or not can_move:
         rest = tr("If you continue, the report states this.")
     elif worst.side is Side.LEFT:
@@ -289,17 +290,17 @@ def _is_unknown(joint: Joint, state: ExcitationState) -> bool:
     return is_axis_unknown or 1000 * state.centre_sd_m >= CENTRE_FROM_MM
 
 
-def _figure(joint: Joint, state: ExcitationState, wanted: Wanted) -> str:
-    """ "Left knee: 3.8°, 1.5° wanted." """
+def _figure(joint: Joint, state: ExcitationState, required: Required) -> str:
+    """ "Left knee: 3.8°, 1.5° required." """
     name = name_of(joint)
     name = name[0].upper() + name[1:]
     axis, centre = math.degrees(state.axis_sd_rad), 1000 * state.centre_sd_m
-    axis_wanted, centre_wanted = math.degrees(wanted.axis_rad), 1000 * wanted.centre_m
-    if joint.is_knee and axis / axis_wanted >= centre / centre_wanted:
-        said = tr("{joint}: {figure}°, limit {wanted:g}°.")
-        return said.format(joint=name, figure=two_digits(axis, axis_wanted), wanted=axis_wanted)
-    said = tr("{joint}: {figure} mm, limit {wanted:g} mm.")
-    return said.format(joint=name, figure=two_digits(centre, centre_wanted), wanted=centre_wanted)
+    axis_required, centre_required = math.degrees(required.axis_rad), 1000 * required.centre_m
+    if joint.is_knee and axis / axis_required >= centre / centre_required:
+        stated = tr("{joint}: {figure}°, limit {required:g}°.")
+        return stated.format(joint=name, figure=two_digits(axis, axis_required), required=axis_required)
+    stated = tr("{joint}: {figure} mm, limit {required:g} mm.")
+    return stated.format(joint=name, figure=two_digits(centre, centre_required), required=centre_required)
 
 
 def _names(joints: list[Joint]) -> str:

@@ -21,9 +21,9 @@ class LabelQuestions(QObject):
     changed
         Something else is asked, or nothing any more.
     relabelled
-        Sensors are worn otherwise than they were said to be: what the motion has told was told of others.
+        Sensors are worn otherwise than they were stated to be: what the motion has reported was given of others.
     leg_named
-        Which leg a sensor is on was answered, or that was undone, before the motion has told the sites.
+        Which leg a sensor is on was answered, or that was undone, before the motion has reported the sites.
     """
 
     changed = Signal()
@@ -34,12 +34,12 @@ class LabelQuestions(QObject):
         super().__init__(parent)
         self._visit = visit
         self._side = SideQuestion()
-        self._sides_told: dict[str, Side] = {}  # in this visit, by the sensor's name
+        self._sides_reported: dict[str, Side] = {}  # in this visit, by the sensor's name
 
     @property
     def named(self) -> tuple[str, Side] | None:
-        """The sensor and the leg that it was said to be on; None before, and once that is undone."""
-        return self._side.told
+        """The sensor and the leg that it was stated to be on; None before, and once that is undone."""
+        return self._side.reported
 
     @property
     def is_in_doubt(self) -> bool:
@@ -49,7 +49,7 @@ class LabelQuestions(QObject):
     @property
     def is_understood(self) -> bool:
         """Whether `words` say what was understood, which can be undone by the answer 1."""
-        return self._side.told is not None and not self.is_in_doubt
+        return self._side.reported is not None and not self.is_in_doubt
 
     @property
     def words(self) -> Words:
@@ -57,21 +57,21 @@ class LabelQuestions(QObject):
         return (*self._visit.sensors.doubt_in_words(), ()) if self.is_in_doubt else self._side.words
 
     def begin(self) -> None:
-        """Another recording begins: nothing is asked yet. What was kept or told of sensors holds for the visit."""
+        """Another recording begins: nothing is asked yet. What was kept or informed of sensors holds for the visit."""
         self._side = SideQuestion()
         self._visit.sensors.doubt({})
 
     def ask_for_side(self, chains: "Chains | None") -> None:
-        """The motion does not tell left from right: both legs began together, or one alone wears sensors."""
+        """The motion does not report left from right: both legs began together, or one alone wears sensors."""
         if chains is not None:
             session = self._visit.session
             placed = session.placements[-1].site_of if session is not None and session.placements else {}
             earlier = {name: site.side for name, site in placed.items() if site.side is not None}
-            self._side.look(chains, earlier | self._sides_told)
+            self._side.look(chains, earlier | self._sides_reported)
             self.changed.emit()
 
     def withdraw(self) -> None:
-        """The motion has told the sites itself."""
+        """The motion has reported the sites itself."""
         self._side.withdraw()
 
     @Slot(int)
@@ -83,11 +83,15 @@ class LabelQuestions(QObject):
 
     def _take_side(self) -> None:
         """Let the motion be that of the leg that was named; what was placed already changes legs."""
-        told, sensors = self._side.told, self._visit.sensors
-        if told is not None:
-            self._sides_told[told[0]] = told[1]
+        reported, sensors = self._side.reported, self._visit.sensors
+        if reported is not None:
+            self._sides_reported[reported[0]] = reported[1]
         if not sensors.site_of:
             self.leg_named.emit()
-        elif told is not None and told[0] in sensors.site_of and sensors.site_of[told[0]].side is not told[1]:
+        elif (
+            reported is not None
+            and reported[0] in sensors.site_of
+            and sensors.site_of[reported[0]].side is not reported[1]
+        ):
             sensors.assign_all({name: opposite(site) for name, site in sensors.site_of.items()})
             self.relabelled.emit()

@@ -5,7 +5,7 @@ from typing import TYPE_CHECKING
 from app.widgets.body_figure import SensorMark
 from app.widgets.gauge import GaugeFace, GaugeState, gauge_face
 from app.widgets.hip_gauge import HipFace, hip_face
-from app.wizard.free_motion.hints import absent_note, wanted_of
+from app.wizard.free_motion.hints import absent_note, required_of
 from core.body import LEG_JOINTS, Joint, Side, Site, hip_of
 from core.live.free_motion import FreeMotionState
 
@@ -25,8 +25,8 @@ def gauge_faces(visit: "Visit", motion: FreeMotionState, now: Joint | None) -> d
         if note:
             faces[joint] = GaugeFace(GaugeState.ABSENT, note=note)
         else:
-            wanted = wanted_of(joint, prosthetic)
-            faces[joint] = gauge_face(joint, motion.joints.get(joint), wanted, is_now=joint is now)
+            required = required_of(joint, prosthetic)
+            faces[joint] = gauge_face(joint, motion.joints.get(joint), required, is_now=joint is now)
     return faces
 
 

@@ -89,7 +89,7 @@ class FreeMotionPage(Themed):
             shown[0].setFocus()
 
     def set_from_behind(self, is_from_behind: bool) -> None:
-        """Turn figure and gauges: from behind, the patient's left stands at the left."""
+        """Turn figure and gauges: from behind, the patient's left is at the left."""
         self.figure.set_from_behind(is_from_behind)
         self._place(is_from_behind)
         self.update()
@@ -105,14 +105,14 @@ class FreeMotionPage(Themed):
         self._on_look_changed()
 
     def ask(self, what: str, then: str = "", answers: tuple[str, ...] = (), *, is_understood: bool = False) -> None:
-        """Say what the motion contradicts, or cannot tell, and offer one or two answers; empty takes it back.
+        """Say what the motion contradicts, or cannot report, and offer one or two answers; empty takes it back.
 
         `is_understood`: it is no question but what was answered to one, and the second button takes that back.
         """
         self.question.ask(what, then, answers, is_understood=is_understood)
 
     def show_state(self, view: FreeMotionFace) -> None:
-        """Show how far the motion has come; only what reads otherwise is painted anew."""
+        """Show how far the motion has come; only what reads otherwise is painted again."""
         self.band.show_hint(view.hint)
         self.band.show_elapsed(view.elapsed_s, USUAL_S)
         for joint, gauge in self.gauges.items():
@@ -194,7 +194,7 @@ class _Question(Themed):
                 button.updateGeometry()
         self.setVisible(bool(what))
         self._is_understood = is_understood
-        self.notice.tell(Icon.CHECK if is_understood else Icon.WARNING, what, then)
+        self.notice.show_message(Icon.CHECK if is_understood else Icon.WARNING, what, then)
         self.update()
 
     def paintEvent(self, _event: QPaintEvent) -> None:

@@ -1,4 +1,4 @@
-"""Which leg is it, where the motion does not tell? Asked once; the answer is shown, can be undone, and is held to."""
+"""Which leg is it, where the motion does not report? Asked once; the answer is shown, can be undone, and is held to."""
 
 from collections.abc import Mapping
 
@@ -17,13 +17,13 @@ class SideQuestion:
     ----------
     asked
         The sensor that is asked about; None while none is.
-    told
+    reported
         The sensor and the side that were understood; None before, and once that is undone.
     """
 
     def __init__(self) -> None:
         self.asked: str | None = None
-        self.told: tuple[str, Side] | None = None
+        self.reported: tuple[str, Side] | None = None
         self._are_both = False
         self._earlier: dict[str, Side] = {}
         self._contradicted: Side | None = None
@@ -31,7 +31,7 @@ class SideQuestion:
 
     @property
     def words(self) -> Words:
-        """What stands on the screen: a question, what was understood, or nothing."""
+        """What is on the screen: a question, what was understood, or nothing."""
         if self.asked is not None:
             which = tr("Which leg has {sensor} on the shank?")
             if self._contradicted is not None:
@@ -40,27 +40,28 @@ class SideQuestion:
                 which = tr("Both legs moved at once. Which leg has {sensor} on the shank?")
             side = "" if self._contradicted is None else side_name(self._contradicted)
             return which.format(sensor=self.asked, side=side), "", (tr("Left"), tr("Right"))
-        if self.told is not None:
-            sensor, side = self.told
+        if self.reported is not None:
+            sensor, side = self.reported
             understood = tr("{sensor} set to the {side} leg.").format(sensor=sensor, side=side_name(side))
             return understood, "", (tr("Undo"),)
         return SILENT
 
     def look(self, chains: Chains, earlier: Mapping[str, Side]) -> None:
-        """Ask, unless that was asked or answered of one of these legs. `earlier` is what was said of sensors before."""
+        """Ask, unless that was asked or answered of one of these legs. `earlier` is what was stated about sensors
+        before."""
         self._earlier = dict(earlier)
-        known = self.asked or (self.told[0] if self.told is not None else None)
+        known = self.asked or (self.reported[0] if self.reported is not None else None)
         if any(known in leg.sensors for leg in chains.legs):
             return
-        self.told, self._contradicted = None, None
+        self.reported, self._contradicted = None, None
         self.asked = chains.legs[0].shank
         self._are_both = chains.lead_s is not None
 
     def answer(self, number: int) -> None:
         """Take the answer of this number, as `words` offers them; what contradicts an earlier one is asked again."""
         if self.asked is None:
-            if self.told is not None:  # undone
-                self.asked, self.told, self._is_undone = self.told[0], None, True
+            if self.reported is not None:  # undone
+                self.asked, self.reported, self._is_undone = self.reported[0], None, True
             return
         sensor, side = self.asked, (Side.LEFT, Side.RIGHT)[number]
         before = self._earlier.get(sensor, side)
@@ -68,9 +69,9 @@ class SideQuestion:
             self._contradicted = before
             return
         self.asked, self._contradicted, self._is_undone = None, None, False
-        self.told = sensor, side
+        self.reported = sensor, side
 
     def withdraw(self) -> None:
-        """Ask no longer, for the motion has told it itself; an answer that was undone is still wanted."""
+        """Ask no longer, for the motion has reported it itself; an answer that was undone is still required."""
         if not self._is_undone:
             self.asked, self._contradicted = None, None

@@ -80,7 +80,7 @@ class FreeMotionStep(Step):
         self._elapsed_s: float | None = None
         self._enough: frozenset[Joint] = frozenset()  # joints with enough motion, as their gauges say
         self._replaced: FreeMotionState | None = None  # of the free motion that is in force while another is recorded
-        self._left = "", ""  # what is to be said of one that was left before its end
+        self._left = "", ""  # what is to be stated about one that was left before its end
         self._plays_s: float | None = None  # for how long a replayed patient moves
         self._plays_to_s = 0.0
         self._then = AfterRecording.ITSELF
@@ -173,8 +173,8 @@ class FreeMotionStep(Step):
 
     def bar(self) -> BarState:
         enter, space = tr("Enter"), tr("Space")
-        again = BarAction(tr("Record again"), self._begin, space, Icon.REPEAT, is_wished=False)
-        stop = BarAction(tr("Stop early"), self._stop, space, Icon.STOP, is_wished=False)
+        again = BarAction(tr("Record again"), self._begin, space, Icon.REPEAT, is_requested=False)
+        stop = BarAction(tr("Stop early"), self._stop, space, Icon.STOP, is_requested=False)
         check = BarAction(tr("Check positions"), self._check_positions, "P")
         left = BarAction(tr("Repeat left"), self._repeat_left, "L", Icon.REPEAT)
         right = BarAction(tr("Repeat right"), self._repeat_right, "R", Icon.REPEAT)
@@ -195,8 +195,8 @@ class FreeMotionStep(Step):
         if self._is_played and not self._plays_s:
             return BarState(primary=go_on)
         if self._is_played:
-            anew = replace(again, run=self._record_anew, key="")
-            return BarState(primary=go_on, others=(anew,), note=price)
+            once_more = replace(again, run=self._record_again, key="")
+            return BarState(primary=go_on, others=(once_more,), note=price)
         return BarState(primary=stop, quiet=repeat, note=price)
 
     def undo(self) -> None:
@@ -232,7 +232,7 @@ class FreeMotionStep(Step):
 
     @property
     def _is_unplaced(self) -> bool:
-        """Whether a motion is to tell where the sensors are, and none has."""
+        """Whether a motion is to report where the sensors are, and none has."""
         sensors = self._visit.sensors
         return sensors.is_left_to_motion and not sensors.site_of
 
@@ -270,7 +270,8 @@ class FreeMotionStep(Step):
         return self._then is AfterRecording.ITSELF and not (self._has_moved or recordings.is_recording)
 
     def _begin(self, side: Side | None = None) -> None:
-        """Record; one leg alone takes only that leg's sensors, so that what the other's motion told stays in force."""
+        """Record; one leg alone takes only that leg's sensors, so that what the other's motion reported stays in
+        force."""
         acquisition, recordings = self._visit.sensors.acquisition, self._visit.recordings
         if acquisition is None or self._visit.session is None or recordings.is_recording:
             return
@@ -321,7 +322,7 @@ class FreeMotionStep(Step):
         assert self._estimator is not None
         view, sensors = self._estimator.state, self._visit.sensors
         self._elapsed_s = view.elapsed_s
-        if view.site_of and not sensors.site_of:  # the motion has told it
+        if view.site_of and not sensors.site_of:  # the motion has reported it
             sensors.assign_all(view.site_of)
             self._visit.worn.place_once_ended()
             self.labels.withdraw()
@@ -347,12 +348,12 @@ class FreeMotionStep(Step):
             self.changed.emit()  # what stopping costs is read, not watched
 
     def _with_enough(self) -> frozenset[Joint]:
-        """The joints whose gauge says that the motion is enough: one that is no hinge is not among them."""
+        """The joints whose gauge states that the motion is enough: one that is no hinge is not among them."""
         states = judged(self._motion, self._visit.prosthetic_sides)
         return frozenset(joint for joint, state in states.items() if state in CLOSED)
 
     def _joined(self, motion: FreeMotionState) -> FreeMotionState:
-        """With what the other leg's motion told before, if one leg alone is repeated."""
+        """With what the other leg's motion reported before, if one leg alone is repeated."""
         return replace(
             motion,
             joints={**self._before.joints, **motion.joints},
@@ -367,7 +368,7 @@ class FreeMotionStep(Step):
         return FreeMotionState(joints, lags, hips=self._motion.hips)
 
     def _repeat(self, side: Side) -> None:
-        """Begin one leg anew, and leave the other as it is."""
+        """Begin one leg again, and leave the other as it is."""
         if self._is_recording and self._estimator is not None:
             self._settled.stop()
             self._estimator.repeat(side)
@@ -381,7 +382,7 @@ class FreeMotionStep(Step):
     def _repeat_right(self) -> None:
         self._repeat(Side.RIGHT)
 
-    def _record_anew(self) -> None:
+    def _record_again(self) -> None:
         """Give up what is being recorded, for another."""
         self._then, self._again_side = AfterRecording.ANOTHER, self._repeated
         self._motion = self._replaced or FreeMotionState()
@@ -425,7 +426,7 @@ class FreeMotionStep(Step):
 
     @Slot()
     def _show_question(self) -> None:
-        """Show what is to be answered, or what was understood; the page is left alone where that stands there."""
+        """Show what is to be answered, or what was understood; the page is left alone where that is there."""
         words = self.labels.words if self._is_recording or self.labels.is_in_doubt else SILENT
         if words != self._asked_words:
             self._asked_words = words
@@ -434,7 +435,7 @@ class FreeMotionStep(Step):
     @Slot()
     def _on_relabelled(self) -> None:
         self._visit.worn.place_once_ended()
-        self._watch()  # what the motion told was told of others
+        self._watch()  # what the motion reported was given of others
 
     @Slot()
     def _on_leg_named(self) -> None:
@@ -458,9 +459,11 @@ class FreeMotionStep(Step):
             self._stop()
         else:
             self._motion = FreeMotionState()
-            self._visit.worn.place_as_said_now()
+            self._visit.worn.place_as_stated_now()
             self.done.emit()
-            self.told.emit(tr("Sensor positions changed. Standing reference and calibration are derived again."), "")
+            self.reported.emit(
+                tr("Sensor positions changed. Standing reference and calibration are derived again."), ""
+            )
 
     # the page
 
@@ -522,9 +525,9 @@ class FreeMotionStep(Step):
             self._then = AfterRecording.WORD if self._is_unplaced else AfterRecording.ITSELF
             if self._is_unplaced:
                 then = tr("Move each leg for longer, or place the sensors by hand.")
-                self.told.emit(tr("Sensor positions could not be detected."), then)
+                self.reported.emit(tr("Sensor positions could not be detected."), then)
             elif not self.labels.is_in_doubt:
                 self.done.emit()
         if self._left[0]:  # over the step that came next
-            self.told.emit(*self._left)
+            self.reported.emit(*self._left)
             self._left = "", ""

@@ -1,4 +1,4 @@
-"""What stands beside the form of a patient: the reference band, whose code it is, and the visit before this one."""
+"""What is beside the form of a patient: the reference band, whose code it is, and the visit before this one."""
 
 from dataclasses import dataclass
 

@@ -41,7 +41,7 @@ _ACROSS, _DOWN = QBoxLayout.Direction.LeftToRight, QBoxLayout.Direction.TopToBot
 
 @dataclass(frozen=True, slots=True)
 class PatientDraft:
-    """What stands on the page. `without_ankle` holds the sides whose prosthetic foot has no ankle joint."""
+    """What is on the page. `without_ankle` holds the sides whose prosthetic foot has no ankle joint."""
 
     patient: Patient = field(default_factory=Patient)
     without_ankle: frozenset[Side] = frozenset()
@@ -53,7 +53,7 @@ class PatientPage(Themed):
     Signals
     -------
     edited
-        What stands on the page, with every letter.
+        What is on the page, with every letter.
     code_committed
         The code has been typed to its end.
     open_pressed
@@ -124,23 +124,23 @@ class PatientPage(Themed):
 
     @property
     def draft(self) -> PatientDraft:
-        """What stands on the page now; what the page cannot show, or what is half typed, is as it was shown."""
-        told = self._shown.patient
-        affected, prosthetic = told.affected_side, told.prosthetic_side
-        if (self.side.choice, self.limb.choice) != _sides_on_page(told):
+        """What is on the page now; what the page cannot show, or what is half typed, is as it was shown."""
+        reported = self._shown.patient
+        affected, prosthetic = reported.affected_side, reported.prosthetic_side
+        if (self.side.choice, self.limb.choice) != _sides_on_page(reported):
             is_prosthetic = self.limb.choice == "prosthetic"
             affected, prosthetic = ("none", self.side.choice) if is_prosthetic else (self.side.choice, "none")
-        height_cm = _typed(self.height_cm, told.height_m and told.height_m * 100)
-        birth_year = _typed(self.birth_year, told.birth_year)
+        height_cm = _typed(self.height_cm, reported.height_m and reported.height_m * 100)
+        birth_year = _typed(self.birth_year, reported.birth_year)
         patient = replace(
-            told,
+            reported,
             code=self.code.text,
             birth_year=None if birth_year is None else round(birth_year),
-            sex=self.sex.choice if self.sex.choice != _sex_on_page(told) else told.sex,
+            sex=self.sex.choice if self.sex.choice != _sex_on_page(reported) else reported.sex,
             height_m=None if height_cm is None else round(height_cm / 100, 4),
-            mass_kg=_typed(self.mass_kg, told.mass_kg),
+            mass_kg=_typed(self.mass_kg, reported.mass_kg),
             device=self.device.text,
-            aids=", ".join(self.aids.chosen) if self.aids.chosen != _aids_in(told) else told.aids,
+            aids=", ".join(self.aids.chosen) if self.aids.chosen != _aids_in(reported) else reported.aids,
             affected_side=affected,
             prosthetic_side=prosthetic,
         )
@@ -178,32 +178,32 @@ class PatientPage(Themed):
         self._fit()
 
     def eventFilter(self, watched: QObject, event: QEvent) -> bool:
-        """Fit the cards anew when something on them needs another height: chips know it once they have their width."""
+        """Fit the cards again when something on them needs another height: chips know it once they have their width."""
         if watched is self._scroll.widget() and event.type() is QEvent.Type.LayoutRequest:
             self._fit()
         return super().eventFilter(watched, event)
 
     def show_draft(self, draft: PatientDraft) -> None:
-        """Fill the page; what stands there is not told as an edit."""
+        """Fill the page; what is there is not reported as an edit."""
         self._shown = draft
-        told = draft.patient
-        side, limb = _sides_on_page(told)
+        reported = draft.patient
+        side, limb = _sides_on_page(reported)
         with QSignalBlocker(self.sex), QSignalBlocker(self.side), QSignalBlocker(self.limb):
-            self.sex.choose(_sex_on_page(told))
+            self.sex.choose(_sex_on_page(reported))
             self.side.choose(side)
             self.limb.choose(limb)
-        self.code.set_text(told.code)
-        self.birth_year.set_value(told.birth_year)
-        self.height_cm.set_value(None if told.height_m is None else told.height_m * 100)
-        self.mass_kg.set_value(told.mass_kg)
-        self.device.set_text(told.device)
-        self.aids.choose(_aids_in(told))
+        self.code.set_text(reported.code)
+        self.birth_year.set_value(reported.birth_year)
+        self.height_cm.set_value(None if reported.height_m is None else reported.height_m * 100)
+        self.mass_kg.set_value(reported.mass_kg)
+        self.device.set_text(reported.device)
+        self.aids.choose(_aids_in(reported))
         for one, chips in self.ankles.items():
             chips.choose(["none"] if one in draft.without_ankle else [])
         self._follow()
 
     def show_saved(self, words: str) -> None:
-        """Say in a few words whether what stands here is kept: "draft, saved"."""
+        """Say in a few words whether what is here is kept: "draft, saved"."""
         self._saved.setText(words)
 
     def show_code_taken(self, code: str) -> None:
@@ -297,7 +297,7 @@ class PatientPage(Themed):
         self._last.same.clicked.connect(self.same_set_up_pressed)
 
     def _follow(self) -> None:
-        """Ask only what follows from what is said: no limb without a side, no ankle without a prosthesis."""
+        """Ask only what follows from what is stated: no limb without a side, no ankle without a prosthesis."""
         draft = self.draft
         has_side = self.side.choice != "none"
         self.limb.setEnabled(has_side)
@@ -406,7 +406,7 @@ def _sex_on_page(patient: Patient) -> str:
 
 
 def _sides_on_page(patient: Patient) -> tuple[str, str]:
-    """Give the choices that show the patient's sides; where two are told, the prosthesis is the one it is about."""
+    """Give the choices that show the patient's sides; where two are reported, the prosthesis is the one it is about."""
     if patient.prosthetic_side not in ("", "none"):
         return patient.prosthetic_side, "prosthetic"
     return patient.affected_side or "none", "affected"
@@ -419,6 +419,6 @@ def _prosthetic(patient: Patient) -> tuple[Side, ...]:
 def _aids_in(patient: Patient) -> tuple[str, ...]:
     """Give the aids as the page's keys; an unknown one in its own words."""
     known = {aid.lower(): aid for aid in AIDS}
-    told = [aid.strip() for aid in patient.aids.split(",") if aid.strip()]
-    named = [known.get(aid.lower(), aid) for aid in told]
+    reported = [aid.strip() for aid in patient.aids.split(",") if aid.strip()]
+    named = [known.get(aid.lower(), aid) for aid in reported]
     return tuple(sorted(dict.fromkeys(named), key=lambda aid: AIDS.index(aid) if aid in AIDS else len(AIDS)))

@@ -41,7 +41,7 @@ class PatientStep(Step):
         self._taken_code = ""
         self._is_entered = False
         self._shown_without: frozenset[Side] = frozenset()  # feet without an ankle joint, as the page has it
-        visit.patient.read_anew.connect(self._fill)
+        visit.patient.read_again.connect(self._fill)
         visit.changed.connect(self._on_visit_changed)
         visit.patient.changed.connect(self._on_patient_changed)
         visit.patient.code_taken.connect(self._on_code_taken)
@@ -63,8 +63,8 @@ class PatientStep(Step):
 
     @property
     def note(self) -> str:
-        told = self._visit.patient.details
-        return _about(told) if told.code else tr("new session")
+        reported = self._visit.patient.details
+        return _about(reported) if reported.code else tr("new session")
 
     @property
     def state(self) -> StepState:
@@ -154,7 +154,7 @@ class PatientStep(Step):
         self.changed.emit()
 
     def _on_visit_changed(self) -> None:
-        """Show what another station said of the feet, so that nobody answers over what was not seen."""
+        """Show what another station stated of the feet, so that nobody answers over what was not seen."""
         if self._is_entered and self._visit.without_ankle != self._shown_without:
             self._fill()
 
@@ -182,16 +182,16 @@ class PatientStep(Step):
         self.changed.emit()
 
     def _on_refused(self, _what: str, _remedy: str) -> None:
-        self._is_going_on = False  # the wizard's banner says why
+        self._is_going_on = False  # the wizard's banner states why
         if self._page is not None and self._page.draft.patient.code.strip() != self._visit.patient.details.code:
             self._fill()  # another's code, which was not taken
             self.changed.emit()
 
     def _on_open_pressed(self, code: str) -> None:
         if self._visit.session is not None:
-            told = self._visit.session.details.patient.code
-            self.told.emit(
-                tr("This session belongs to {code}.").format(code=told),
+            reported = self._visit.session.details.patient.code
+            self.reported.emit(
+                tr("This session belongs to {code}.").format(code=reported),
                 tr("Go back to all patients to start a session for another patient."),
             )
             return
@@ -231,27 +231,27 @@ def _about(patient: Patient) -> str:
 
 
 def _last_visit(session: "StoredSession") -> LastVisit:
-    told = session.details
+    reported = session.details
     try:
-        day = date(datetime.datetime.fromisoformat(told.started).date())
+        day = date(datetime.datetime.fromisoformat(reported.started).date())
     except ValueError:
-        day = told.started
-    walks = [one for one in told.recordings if one.kind is RecordingKind.WALKING and one.is_kept]
+        day = reported.started
+    walks = [one for one in reported.recordings if one.kind is RecordingKind.WALKING and one.is_kept]
     facts = [
         (tr("Walks"), ", ".join(dict.fromkeys(walk.condition or walk.name for walk in walks)) or tr("none included")),
-        (tr("Standing angle (goniometer)"), _zero_in_words(told)),
+        (tr("Standing angle (goniometer)"), _zero_in_words(reported)),
     ]
     if session.placements:
         sensors = session.placements[-1].site_of
         facts.append((tr("Sensors"), ", ".join(sorted(sensors))))
-    if told.surface:
-        facts.append((tr("Surface"), told.surface))
+    if reported.surface:
+        facts.append((tr("Surface"), reported.surface))
     return LastVisit(tr("Last visit, {day}").format(day=day), tuple(facts))
 
 
-def _zero_in_words(told: Session) -> str:
+def _zero_in_words(reported: Session) -> str:
     """Give the goniometer's values while standing: "left knee 15°, others 0°"."""
-    values = {joint: round(float(np.rad2deg(told.zero_rad.get(joint, 0.0)))) for joint in LEG_JOINTS}
+    values = {joint: round(float(np.rad2deg(reported.zero_rad.get(joint, 0.0)))) for joint in LEG_JOINTS}
     bent = [
         tr("{joint} {angle}°").format(joint=name_of(joint), angle=str(angle).replace("-", "\N{MINUS SIGN}"))
         for joint, angle in values.items()

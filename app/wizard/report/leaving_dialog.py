@@ -55,7 +55,7 @@ class LeavingDialog(QDialog):
 
     @property
     def shown(self) -> list[tuple[str, str]]:
-        """What stands in the table."""
+        """What is in the table."""
         return [(self._word(row, 0), self._word(row, 1)) for row in range(self._grid.rowCount()) if self._word(row, 0)]
 
     def _options(self) -> list[tuple[str, str]]:

@@ -35,13 +35,13 @@ class ReportPage(Themed):
         The words, once the typing pauses.
     options_changed
         Another paper, another visit to compare with, or other files beside the report.
-    sharper_wanted
+    sharper_required
         There is room for finer pictures of the pages than those shown.
     """
 
     comment_edited = Signal(str)
     options_changed = Signal()
-    sharper_wanted = Signal()
+    sharper_required = Signal()
 
     def __init__(self, look: ThemeNotifier) -> None:
         super().__init__()
@@ -109,11 +109,11 @@ class ReportPage(Themed):
         self.comment.textChanged.connect(self._pause.start)
         self.formats.turned.connect(self.options_changed)
         self.added.turned.connect(self.options_changed)
-        self.small.wished.connect(self._go_to)
+        self.small.requested.connect(self._go_to)
         self.reading.verticalScrollBar().valueChanged.connect(self._on_scrolled)
         self.paper.chosen.connect(self.options_changed)
         self.earlier.activated.connect(self.options_changed)
-        self.sheets.sharper_wanted.connect(self.sharper_wanted)
+        self.sheets.sharper_required.connect(self.sharper_required)
         self.show_visits([])
         self._on_look_changed()
 
@@ -141,7 +141,7 @@ class ReportPage(Themed):
         self._card.setMaximumWidth(QWIDGETSIZE_MAX if self._is_narrow else words)
 
     def show_comment(self, comment: str) -> None:
-        """Show what was said earlier; the typing goes on where it was if it is the same."""
+        """Show what was stated earlier; the typing goes on where it was if it is the same."""
         if comment != self.comment.toPlainText():
             with QSignalBlocker(self.comment):
                 self.comment.setPlainText(comment)
@@ -185,7 +185,7 @@ class ReportPage(Themed):
         self.small.mark(number)  # also of the last, which may not come to stand at the top
 
     def _on_scrolled(self, value: int) -> None:
-        """Mark the page that stands at the upper third of what is seen."""
+        """Mark the page that is at the upper third of what is seen."""
         at = value + self.reading.viewport().height() / 3
         begun = [number for number in range(self.sheets.count) if self.sheets.top_of(number) <= at]
         if begun and begun[-1] != self.small.number:
@@ -204,11 +204,11 @@ class ReportPage(Themed):
 
     @property
     def is_typing(self) -> bool:
-        """Whether words stand here that were not told of yet."""
+        """Whether words stand here that were not reported of yet."""
         return self._pause.isActive()
 
     def flush(self) -> None:
-        """Tell of words that are still being typed."""
+        """Report of words that are still being typed."""
         if self._pause.isActive():
             self._pause.stop()
             self._on_paused()

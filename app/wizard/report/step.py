@@ -68,7 +68,7 @@ class ReportStep(Step):
         self.saved: Path | None = None
         self.is_saving = False
         self._kept: frozenset[str] = frozenset()  # of what was typed freely: leaves with the files without a name
-        self._shown_comment = ""  # as it stood on the page, or was told from there, last
+        self._shown_comment = ""  # as it stood on the page, or was distinguished from there, last
         self._clinic = ""
         self._earlier: tuple[UUID, AnalysedVisit] | None = None  # as was read last
         self._before: tuple[CourseVisit, ...] = ()  # earlier visits of the course, in order of time
@@ -85,7 +85,7 @@ class ReportStep(Step):
             self._frame = _ReportFrame(self._look)
             self._frame.report.comment_edited.connect(self._on_comment_edited)
             self._frame.report.options_changed.connect(self._on_options_changed)
-            self._frame.report.sharper_wanted.connect(self._draw)
+            self._frame.report.sharper_required.connect(self._draw)
             self.printer = ReportPrinter(self._frame)
             self.printer.confirmed.connect(self._on_print_confirmed)
         return self._frame
@@ -122,12 +122,12 @@ class ReportStep(Step):
     def bar(self) -> BarState:
         can_save = self.can_save()
         save = BarAction(tr("Save the report"), self._save, tr("Ctrl S"), Icon.FOLDER, is_enabled=can_save)
-        put = BarAction(tr("Print"), self.print, tr("Ctrl P"), Icon.PRINT, is_wished=False, is_enabled=can_save)
+        put = BarAction(tr("Print"), self.print, tr("Ctrl P"), Icon.PRINT, is_requested=False, is_enabled=can_save)
         if self.saved is None:
             return BarState(primary=save, others=(put,), note=tr("Shows the patient code only, no name."))
         note = tr("Saved as {folder}. Saving again asks for the folder.").format(folder=self.saved.name)
-        show = BarAction(tr("Open the folder"), self._open_folder, is_wished=False)
-        return BarState(primary=replace(save, is_wished=False), others=(put, show), note=note)
+        show = BarAction(tr("Open the folder"), self._open_folder, is_requested=False)
+        return BarState(primary=replace(save, is_requested=False), others=(put, show), note=note)
 
     def _save(self) -> None:
         if not self.can_save() or self.is_saving:
@@ -141,7 +141,7 @@ class ReportStep(Step):
         self._controller.run(lambda opened: _previews(opened, session_id), self._on_previews, self._on_refused, self)
 
     def _on_previews(self, previews: "Mapping[frozenset[str], Rows]") -> None:
-        """Show what leaves without the name before anybody says where to."""
+        """Show what leaves without the name before anybody states where to."""
         dialog = LeavingDialog(self._look, previews, self.page)
         dialog.confirmed.connect(self._on_leaving_confirmed)
         dialog.open()
@@ -157,8 +157,8 @@ class ReportStep(Step):
     def _proposed_in(self, place: Path) -> str:
         if self._visit.session is None:
             return ""
-        told = self._visit.session.details
-        return free_name(place, session_name(told.patient.code, told.started))
+        reported = self._visit.session.details
+        return free_name(place, session_name(reported.patient.code, reported.started))
 
     def _open_folder(self) -> None:
         if self.saved is not None:
@@ -178,8 +178,8 @@ class ReportStep(Step):
         if not self.can_save() or self._visit.session is None:
             return
         self.page.report.flush()
-        told = self._visit.session.details
-        self.printer.ask(session_name(told.patient.code, told.started), self.page.report.paper.choice)
+        reported = self._visit.session.details
+        self.printer.ask(session_name(reported.patient.code, reported.started), self.page.report.paper.choice)
 
     def _on_print_confirmed(self) -> None:
         request, stored = self._request(), self._visit.session
@@ -197,7 +197,7 @@ class ReportStep(Step):
 
     def _on_printable(self, pages: list[bytes]) -> None:
         if not self.printer.put(pages):
-            self.told.emit(tr("The printer did not accept the report."), tr("Save it, then print the file."))
+            self.reported.emit(tr("The printer did not accept the report."), tr("Save it, then print the file."))
 
     def can_save(self) -> bool:
         return self._has_results() and not self._lacks_earlier
@@ -249,7 +249,7 @@ class ReportStep(Step):
         return course_to(self._before, stored, visit.session, visit.analysis) if stored is not None else ()
 
     def _draw(self) -> None:
-        """Set the pages anew, beside the screen."""
+        """Set the pages again, beside the screen."""
         request = self._request()
         if request is not None:
             self._visit.preview.start(self._previewing(request, self.page.report.pages_ppi))
@@ -267,14 +267,14 @@ class ReportStep(Step):
         self.page.report.show_pages(pages)
         if self._has_failed:
             self._has_failed = False
-            self.told.emit("", "")
+            self.reported.emit("", "")
 
     def _on_preview_failed(self, error: Exception) -> None:
         """Show no page rather than those of what was chosen before."""
         _log.error("the report could not be set", exc_info=error)
         self._has_failed = True
         self.page.report.show_pages([])
-        self.told.emit(tr("The report cannot be shown."), tr("See the log for details."))
+        self.reported.emit(tr("The report cannot be shown."), tr("See the log for details."))
 
     def _on_comment_edited(self, comment: str) -> None:
         shown, self._shown_comment = self._shown_comment, comment
@@ -396,7 +396,7 @@ class ReportStep(Step):
                             kept=typed,
                         )
             except FileRefusedError as refusal:
-                what, remedy = (filled(said, refusal.values) for said in (refusal.what, refusal.remedy))
+                what, remedy = (filled(stated, refusal.values) for stated in (refusal.what, refusal.remedy))
                 raise LibraryError(capitalised(what), remedy) from refusal
             except OSError as problem:
                 what = tr("{folder} is not writable").format(folder=out.name)
@@ -407,12 +407,12 @@ class ReportStep(Step):
 
     def _on_saved(self, found: tuple[Path, list[str]]) -> None:
         self.is_saving, (self.saved, lines) = False, found
-        self.told.emit(tr("Not every file was written.") if lines else "", "\n".join(lines[:MOST_LINES]))
+        self.reported.emit(tr("Not every file was written.") if lines else "", "\n".join(lines[:MOST_LINES]))
         self.changed.emit()
 
     def _on_refused(self, what: str, remedy: str) -> None:
         self.is_saving = False
-        self.told.emit(what, remedy)
+        self.reported.emit(what, remedy)
 
 
 def _previews(opened: "OpenedLibrary", session_id: UUID) -> "dict[frozenset[str], Rows]":
@@ -434,7 +434,7 @@ def _words_of(line: "SessionSummary") -> str:
 
 
 class _ReportFrame(QStackedWidget):
-    """The report, or what stands in its place."""
+    """The report, or what is in its place."""
 
     def __init__(self, look: ThemeNotifier) -> None:
         super().__init__()

@@ -11,7 +11,7 @@ from PySide6.QtCore import QObject, QTimer
 from PySide6.QtWidgets import QWidget
 
 from app.results.correct_page import CorrectPage, JointLine, WalkLine
-from app.results.detail_pages import BehindResults
+from app.results.detail_pages import DetailPages
 from app.summary.agreed import agreed_with
 from app.summary.course_lanes import CourseVisit
 from app.summary.report_dates import date_of
@@ -74,8 +74,8 @@ class ResultsStep(Step):
         if self._frame is None:
             self._frame = _ResultsFrame(self._look, self._visit)
             self._frame.sentence.pressed.connect(self._on_sentence_pressed)
-            self._frame.behind.refused.connect(self.told)
-            self._frame.behind.writing.connect(self._on_figures_wished)
+            self._frame.behind.refused.connect(self.reported)
+            self._frame.behind.writing.connect(self._on_figures_requested)
             self._frame.behind.closed.connect(self._on_answered)
         return self._frame
 
@@ -169,13 +169,13 @@ class ResultsStep(Step):
             results = page.results()
             if is_new:
                 results.set_has_visits(True)
-                results.told.connect(self.changed)
+                results.reported.connect(self.changed)
                 results.quality.how_found.clicked.connect(self._ask)
                 results.quality.agreement.clicked.connect(self._compare)
-                results.quality.repeat_wished.connect(lambda _side: self.jumped.emit(StepId.FREE_MOTION))
-                results.compare.visits_wished.connect(self._visit.read_earlier)
+                results.quality.repeat_requested.connect(lambda _side: self.jumped.emit(StepId.FREE_MOTION))
+                results.compare.visits_requested.connect(self._visit.read_earlier)
                 results.strides.turned.connect(self._strides.turn)
-                results.strides.all_wanted.connect(self._strides.take_all_in)
+                results.strides.all_required.connect(self._strides.take_all_in)
             self._shown = evaluation.analysis
             self._hold(results, evaluation.analysis)
             if page.currentWidget() is not results:
@@ -194,7 +194,7 @@ class ResultsStep(Step):
         visit = AnalysedVisit(session, analysis)
         results.show_visit(visit, can_choose=True, is_live=is_live, course=self._course(visit))
 
-    # what stands behind the results
+    # what is behind the results
 
     def _ask(self) -> None:
         evaluation, recording = self._visit.evaluation, self.page.results().recording
@@ -219,7 +219,7 @@ class ResultsStep(Step):
         self.page.behind.stop()
         self._show()
 
-    def _on_figures_wished(self, what: str, folder: Path, write: Callable[[], None]) -> None:
+    def _on_figures_requested(self, what: str, folder: Path, write: Callable[[], None]) -> None:
         from app.results.diagnostics_controller import saved_from_library
 
         if (session := self._visit.session) is not None:
@@ -232,11 +232,11 @@ class ResultsStep(Step):
             )
 
     def _on_figures_saved(self, folder: Path) -> None:
-        self.told.emit("", "")
+        self.reported.emit("", "")
         self.page.behind.show_saved(folder)
 
     def _on_figures_not_saved(self, what: str, remedy: str) -> None:
-        self.told.emit(what, remedy)
+        self.reported.emit(what, remedy)
 
     # what is put right
 
@@ -247,12 +247,12 @@ class ResultsStep(Step):
         for recording in visit.recordings.walks:
             strides = visit.evaluation.strides(recording.details.name)
             counted = ", ".join(f"{side[0].upper()} {count}" for side, count in strides.items())
-            told = tr("strides {counts}").format(counts=counted) if counted else tr("not analysed")
+            reported = tr("strides {counts}").format(counts=counted) if counted else tr("not analysed")
             walks.append(
                 WalkLine(
                     str(recording.id),
                     str(names[recording.details.name]),
-                    told,
+                    reported,
                     recording.details.condition,
                     recording.details.is_kept,
                 )
@@ -291,26 +291,28 @@ class ResultsStep(Step):
             return
         before, walk = recording.details.condition, self._visit.recordings.shown_names[recording.details.name]
         self._change_condition(key, condition)
-        said = tr("{walk}: condition now {condition}.") if condition else tr("{walk}: condition not recorded.")
+        stated = tr("{walk}: condition now {condition}.") if condition else tr("{walk}: condition not recorded.")
         self._offer(
-            said.format(walk=walk, condition=condition),
+            stated.format(walk=walk, condition=condition),
             lambda: self._change_condition(key, before),
         )
 
     def _change_condition(self, key: str, condition: str) -> None:
         if (recording := self._recording(key)) is not None:
-            self._visit.recordings.change(recording, lambda told: replace(told, condition=condition))
+            self._visit.recordings.change(recording, lambda reported: replace(reported, condition=condition))
 
     def _on_kept_turned(self, key: str, is_kept: bool) -> None:
         recording = self._recording(key)
         if recording is None or recording.details.is_kept == is_kept:
             return
-        name, told = recording.details.name, self._visit.recordings.told
-        counting = [replace(one, is_kept=True) if one.name == name else one for one in told]  # else it has no letter
+        name, reported = recording.details.name, self._visit.recordings.reported
+        counting = [
+            replace(one, is_kept=True) if one.name == name else one for one in reported
+        ]  # else it has no letter
         self._keep(key, is_kept)
-        said = tr("{walk} is included.") if is_kept else tr("{walk} is excluded.")
+        stated = tr("{walk} is included.") if is_kept else tr("{walk} is excluded.")
         walk = capitalised(str(shown_names(counting)[name]))
-        self._offer(said.format(walk=walk), lambda: self._keep(key, not is_kept))
+        self._offer(stated.format(walk=walk), lambda: self._keep(key, not is_kept))
 
     def _keep(self, key: str, is_kept: bool) -> None:
         if (recording := self._recording(key)) is not None:
@@ -320,8 +322,8 @@ class ResultsStep(Step):
         joint = Joint(name)
         before = self._visit.details.turned_sign.get(joint)
         self._visit.record.set_turned(joint, -1 if is_turned else None)
-        said = tr("{joint}: sign reversed.") if is_turned else tr("{joint}: sign as detected.")
-        words = said.format(joint=capitalised(name_of(joint)))
+        stated = tr("{joint}: sign reversed.") if is_turned else tr("{joint}: sign as detected.")
+        words = stated.format(joint=capitalised(name_of(joint)))
         self._offer(words, lambda: self._visit.record.set_turned(joint, before))
 
     def _on_sides_swapped(self) -> None:
@@ -345,7 +347,7 @@ class ResultsStep(Step):
         return course_to(before, stored, visit.session, visit.analysis)
 
     def _read_courses(self) -> None:
-        """What was kept of the visits before: changes since then are what the answer tells first."""
+        """What was kept of the visits before: changes since then are what the answer reports first."""
         if (session := self._visit.session) is not None:
             self._visit.controller.run(
                 lambda opened: (session.id, courses_before(opened, session)),
@@ -370,8 +372,10 @@ class ResultsStep(Step):
             return
         visits = [*found, (session, self._shown)]
         named = [
-            WalkedVisit(told.started[:10], analysis, told.recordings, date_of(told.started), agreed_with(told))
-            for told, analysis in visits
+            WalkedVisit(
+                reported.started[:10], analysis, reported.recordings, date_of(reported.started), agreed_with(reported)
+            )
+            for reported, analysis in visits
         ]
         self.page.results().show_visits(visits_by_condition(named), conditions_in_words(named), parts_of_visits(named))
 
@@ -416,12 +420,12 @@ class ResultsStep(Step):
 
 
 class _ResultsFrame(PageStack):
-    """The results, or what stands in their place."""
+    """The results, or what is in their place."""
 
     def __init__(self, look: ThemeNotifier, visit: "Visit") -> None:
         super().__init__()
         self._look = look
-        self.behind = BehindResults(look, self, visit.looking, visit.comparing, self)
+        self.behind = DetailPages(look, self, visit.looking, visit.comparing, self)
         self.sentence = SentencePage(look)
         self.working = WorkingPage(look)
         self.working.stop.hide()  # an analysis takes a second; there is nothing to go back to

@@ -19,7 +19,7 @@ LeftOut = Mapping[Side, tuple[float, ...]]
 
 
 class StrideChoice(QObject):
-    """Says what is wanted; the library follows, and `SessionRecordings.changed` tells when it has."""
+    """States what is required; the library follows, and `SessionRecordings.changed` gives when it has."""
 
     offered = Signal(str, object)  # what was done, and what undoes it
 
@@ -32,24 +32,24 @@ class StrideChoice(QObject):
         recording = self._recording(walk)
         if recording is None:
             return
-        before = self._recordings.said(recording).left_out_s
+        before = self._recordings.stated(recording).left_out_s
         others = tuple(time_s for time_s in before.get(line.side, ()) if not line.start_s <= time_s < line.end_s)
         middle_s = (line.start_s + line.end_s) / 2
         times_s = tuple(sorted((*others, middle_s))) if is_left_out else others
-        told = tr("{stride} of {walk} is excluded.") if is_left_out else tr("{stride} of {walk} is included again.")
-        said = told.format(stride=line.name, walk=self._called(walk))
-        self._change(recording, {**before, line.side: times_s}, said)
+        reported = tr("{stride} of {walk} is excluded.") if is_left_out else tr("{stride} of {walk} is included again.")
+        stated = reported.format(stride=line.name, walk=self._called(walk))
+        self._change(recording, {**before, line.side: times_s}, stated)
 
     def take_all_in(self, walk: str) -> None:
         """Let all strides of a walk count that were left out by hand."""
         if (recording := self._recording(walk)) is not None:
-            said = tr("All usable strides of {walk} are included.").format(walk=self._called(walk))
-            self._change(recording, {}, said)
+            stated = tr("All usable strides of {walk} are included.").format(walk=self._called(walk))
+            self._change(recording, {}, stated)
 
-    def _change(self, recording: "SessionRecording", left_out_s: LeftOut, told: str) -> None:
-        before = self._recordings.said(recording).left_out_s
+    def _change(self, recording: "SessionRecording", left_out_s: LeftOut, reported: str) -> None:
+        before = self._recordings.stated(recording).left_out_s
         self._move(recording.id, before, left_out_s)
-        self.offered.emit(told[:1].upper() + told[1:], self._undoing(recording.id, left_out_s, before))
+        self.offered.emit(reported[:1].upper() + reported[1:], self._undoing(recording.id, left_out_s, before))
 
     def _undoing(self, recording_id: UUID, after: LeftOut, before: LeftOut) -> Callable[[], None]:
         return lambda: self._move(recording_id, after, before)
@@ -59,13 +59,13 @@ class StrideChoice(QObject):
         recording = next((recording for recording in self._recordings.walks if recording.id == recording_id), None)
         if recording is None:
             return
-        now = self._recordings.said(recording).left_out_s
-        wanted = {}
+        now = self._recordings.stated(recording).left_out_s
+        required = {}
         for side in Side:
             held, before, after = (set(times_s.get(side, ())) for times_s in (now, one, other))
-            wanted[side] = tuple(sorted((held | (after - before)) - (before - after)))
-        left_out_s = {side: times_s for side, times_s in wanted.items() if times_s}
-        self._recordings.change(recording, lambda told: replace(told, left_out_s=left_out_s))
+            required[side] = tuple(sorted((held | (after - before)) - (before - after)))
+        left_out_s = {side: times_s for side, times_s in required.items() if times_s}
+        self._recordings.change(recording, lambda reported: replace(reported, left_out_s=left_out_s))
 
     def _recording(self, walk: str) -> "SessionRecording | None":
         return next((recording for recording in self._recordings.walks if recording.details.name == walk), None)

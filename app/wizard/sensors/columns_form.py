@@ -1,4 +1,4 @@
-"""What does each column mean of a sensor that sends lines of numbers? Told beside what it sends at the moment."""
+"""What does each column mean of a sensor that sends lines of numbers? Reported beside what it sends at the moment."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -36,7 +36,7 @@ AXES = tuple(meaning for meaning in Meaning if meaning not in (Meaning.UNUSED, M
 
 
 @dataclass(frozen=True, slots=True)
-class ColumnsTold:
+class ColumnsReported:
     """What is chosen: a meaning for each column, those that are turned round, and units by their names in `UNITS`."""
 
     meanings: tuple[Meaning, ...]
@@ -48,7 +48,7 @@ class ColumnsTold:
 
     @property
     def is_whole(self) -> bool:
-        """Whether every meaning but `UNUSED` is told once."""
+        """Whether every meaning but `UNUSED` is reported once."""
         return sorted(meaning for meaning in self.meanings if meaning) == sorted(
             meaning for meaning in Meaning if meaning
         )
@@ -59,9 +59,9 @@ class ColumnsForm(Themed):
     Signals
     -------
     changed
-        Something else is told.
+        Something else is reported.
     back_pressed
-        Other sources are wanted.
+        Other sources are required.
     """
 
     changed = Signal()
@@ -102,9 +102,9 @@ class ColumnsForm(Themed):
         self._on_look_changed()
 
     @property
-    def told(self) -> ColumnsTold:
+    def reported(self) -> ColumnsReported:
         chosen = [str(choice.currentData()) for choice in self.meanings]
-        return ColumnsTold(
+        return ColumnsReported(
             meanings=tuple(Meaning(one.removeprefix("-")) for one in chosen),
             turned=frozenset(number for number, one in enumerate(chosen) if one.startswith("-")),
             time_unit=str(self.time.currentData()),
@@ -121,24 +121,24 @@ class ColumnsForm(Themed):
         (self.meanings[0] if self.meanings else self.back).setFocus()
 
     def show_places(self, places: Sequence[str]) -> None:
-        """Say at which ports these lines are heard."""
+        """Say at which ports these lines are received."""
         self._where.setText(tr("Text lines (CSV) at {places}").format(places=", ".join(places)))
 
-    def show_told(self, told: ColumnsTold) -> None:
+    def show_reported(self, reported: ColumnsReported) -> None:
         """Show what is known or guessed; the user's changes follow as `changed`."""
-        self._set_count(len(told.meanings))
-        for number, (choice, meaning) in enumerate(zip(self.meanings, told.meanings, strict=True)):
-            _choose(choice, f"-{meaning}" if number in told.turned else str(meaning))
+        self._set_count(len(reported.meanings))
+        for number, (choice, meaning) in enumerate(zip(self.meanings, reported.meanings, strict=True)):
+            _choose(choice, f"-{meaning}" if number in reported.turned else str(meaning))
         for choice, key in (
-            (self.time, told.time_unit),
-            (self.wraps, str(told.wraps_bits)),
-            (self.rate, told.rate_unit),
-            (self.force, told.force_unit),
+            (self.time, reported.time_unit),
+            (self.wraps, str(reported.wraps_bits)),
+            (self.rate, reported.rate_unit),
+            (self.force, reported.force_unit),
         ):
             _choose(choice, key)
 
     def show_values(self, values: Sequence[str]) -> None:
-        """Show what each column says now; four times a second is enough."""
+        """Show what each column states now; four times a second is enough."""
         for shown, value in zip(self._values, values, strict=False):
             if shown.text() != value:
                 shown.setText(value)
@@ -148,10 +148,10 @@ class ColumnsForm(Themed):
         self._room = width
         self._fit()
 
-    def tell(self, what: str, then: str = "", is_right: bool = False) -> None:
+    def show_message(self, what: str, then: str = "", is_right: bool = False) -> None:
         """Say whether the numbers can be so."""
         icon = Icon.CHECK if is_right else Icon.WARNING
-        self.notice.tell(icon if what else None, what, then, is_caution=bool(what) and not is_right)
+        self.notice.show_message(icon if what else None, what, then, is_caution=bool(what) and not is_right)
 
     def _choice(self, label: str, options: dict[str, str]) -> Choice:
         choice = Choice(self._look, label)

@@ -7,7 +7,7 @@ import numpy as np
 from PySide6.QtCore import QObject, Signal
 
 from app.system.known_columns import keep_columns
-from app.wizard.sensors.columns_form import AXES, ColumnsTold, Meaning
+from app.wizard.sensors.columns_form import AXES, ColumnsReported, Meaning
 from app.wording.translation import figure_text, tr
 from core.samples import FloatArray
 from devices.drivers.csv_serial import FORCE_UNITS, RATE_UNITS, Columns
@@ -25,7 +25,7 @@ FASTEST_RAD_S = 40.0  # nobody's leg turns so fast
 
 
 class ColumnsTelling(QObject):
-    """One port is listened to; what is told of it holds for all ports that send as many columns."""
+    """One port is listened to; what is given of it holds for all ports that send as many columns."""
 
     changed = Signal()
 
@@ -42,23 +42,23 @@ class ColumnsTelling(QObject):
 
     @property
     def columns(self) -> Columns | None:
-        """What is told; None while something is missing."""
-        told = self._form.told if self._form is not None and self._is_shown else None
-        if told is None or not told.is_whole:
+        """What is reported; None while something is missing."""
+        reported = self._form.reported if self._form is not None and self._is_shown else None
+        if reported is None or not reported.is_whole:
             return None
-        places = {meaning: number for number, meaning in enumerate(told.meanings) if meaning}
+        places = {meaning: number for number, meaning in enumerate(reported.meanings) if meaning}
         axes = [places[meaning] for meaning in AXES]
         return Columns(
             time=places[Meaning.TIME],
             rate=tuple(axes[:3]),
             force=tuple(axes[3:]),
-            tick_hz=TICKS_HZ[told.time_unit],
-            wraps_bits=told.wraps_bits,
-            rate_unit=told.rate_unit,
-            force_unit=told.force_unit,
+            tick_hz=TICKS_HZ[reported.time_unit],
+            wraps_bits=reported.wraps_bits,
+            rate_unit=reported.rate_unit,
+            force_unit=reported.force_unit,
             separator=self._separator,
-            signs=tuple(-1 if number in told.turned else 1 for number in axes),
-            count=len(told.meanings),
+            signs=tuple(-1 if number in reported.turned else 1 for number in axes),
+            count=len(reported.meanings),
         )
 
     def begin(self, form: "ColumnsForm", lines: "Sequence[LinesAt]") -> None:
@@ -71,31 +71,31 @@ class ColumnsTelling(QObject):
         self._lines = [one for one in lines if one.count == first.count]
         self._is_shown = False
         form.show_places([one.port.device for one in self._lines])
-        form.tell("")
+        form.show_message("")
         self._preview = LinePreview(SerialPort(first.port, first.baud))
         self._preview.start()
 
     def tick(self) -> None:
-        """Show what comes, and whether it can be what it is said to be."""
+        """Show what comes, and whether it can be what it is stated to be."""
         if self._preview is None or self._form is None:
             return
         lines = self._preview.lines
         table, separator = table_of(lines)
         if len(table) < ENOUGH_LINES:
             return
-        if not self._is_shown or table.shape[1] != len(self._form.told.meanings):
+        if not self._is_shown or table.shape[1] != len(self._form.reported.meanings):
             known = self._lines[0].columns or guessed(lines)
-            self._form.show_told(_told_of(known, table.shape[1]))
+            self._form.show_reported(_reported_of(known, table.shape[1]))
             self._is_shown = True
             self.changed.emit()
             self._form.focus()
         self._separator = separator
         self._form.show_values([figure_text(value, "g") for value in table[-1]])
         columns = self.columns
-        self._form.tell(*(_missing() if columns is None else _said_of(columns, table)))
+        self._form.show_message(*(_missing() if columns is None else _stated_of(columns, table)))
 
     def keep(self) -> None:
-        """Remember what is told, and let go of the port.
+        """Remember what is reported, and let go of the port.
 
         Raises
         ------
@@ -114,17 +114,17 @@ class ColumnsTelling(QObject):
             preview.close()
 
 
-def _told_of(columns: Columns | None, count: int) -> ColumnsTold:
-    """As the form shows it; nothing is told of the columns of something unknown."""
+def _reported_of(columns: Columns | None, count: int) -> ColumnsReported:
+    """As the form shows it; nothing is given of the columns of something unknown."""
     meanings = [Meaning.UNUSED] * count
     if columns is None:
-        return ColumnsTold(tuple(meanings))
+        return ColumnsReported(tuple(meanings))
     axes = (*columns.rate, *columns.force)
     for place, meaning in zip((columns.time, *axes), (Meaning.TIME, *AXES), strict=True):
         meanings[place] = meaning
     turned = frozenset(place for place, sign in zip(axes, columns.signs, strict=True) if sign < 0)
     unit = next((name for name, hz in TICKS_HZ.items() if hz == columns.tick_hz), "ms")
-    return ColumnsTold(tuple(meanings), turned, unit, columns.wraps_bits, columns.rate_unit, columns.force_unit)
+    return ColumnsReported(tuple(meanings), turned, unit, columns.wraps_bits, columns.rate_unit, columns.force_unit)
 
 
 def _missing() -> tuple[str, str, bool]:
@@ -132,8 +132,8 @@ def _missing() -> tuple[str, str, bool]:
     return what, tr("Set all other columns to “not needed”."), False
 
 
-def _said_of(columns: Columns, table: FloatArray) -> tuple[str, str, bool]:
-    """Whether numbers (n, columns) can be what they are said to be, by their size."""
+def _stated_of(columns: Columns, table: FloatArray) -> tuple[str, str, bool]:
+    """Whether numbers (n, columns) can be what they are stated to be, by their size."""
     step_s = float(np.median(np.diff(table[:, columns.time]))) / columns.tick_hz if len(table) > 1 else 0.0
     rate_hz = 1.0 / step_s if step_s > 0 else 0.0
     rates = table[:, columns.rate] * RATE_UNITS[columns.rate_unit]

@@ -30,7 +30,7 @@ NOTE_SHARE = 0.6  # of a note's width: broken into two lines it needs no more
 
 @dataclass(frozen=True, slots=True)
 class DotLine:
-    """One sensor that was heard. `note`: what is the matter with it; `firmware` empty until it was asked."""
+    """One sensor that was received. `note`: what is the matter with it; `firmware` empty until it was asked."""
 
     name: str
     is_worn: bool = True
@@ -120,7 +120,7 @@ class DotForm(Themed):
     changed
         They are to measure otherwise.
     back_pressed
-        Other sources are wanted.
+        Other sources are required.
     """
 
     turned = Signal(int)
@@ -166,7 +166,7 @@ class DotForm(Themed):
 
     @property
     def consequence(self) -> str:
-        """What is said of how walks are recorded."""
+        """What is stated about how walks are recorded."""
         return self._consequence.text()
 
     def focus(self) -> None:
@@ -180,7 +180,7 @@ class DotForm(Themed):
         self._show_consequence()
 
     def show_dots(self, lines: Sequence[DotLine]) -> None:
-        """Show what was heard, and what is known of each."""
+        """Show what was received, and what is known of each."""
         if tuple(lines) == self._lines:
             return
         self._lines = tuple(lines)
@@ -201,11 +201,11 @@ class DotForm(Themed):
             )
         )
 
-    def tell(self, what: str, then: str = "") -> None:
+    def show_message(self, what: str, then: str = "") -> None:
         """Say why they were not synchronised, and what to do; "" takes it back."""
-        self.notice.tell(Icon.WARNING if what else None, what, then, is_caution=bool(what))
+        self.notice.show_message(Icon.WARNING if what else None, what, then, is_caution=bool(what))
         self.notice.setVisible(bool(what))
-        self._lead.setVisible(not what)  # `then` says it, and the list needs the room
+        self._lead.setVisible(not what)  # `then` states it, and the list needs the room
 
     def identify_selected(self) -> bool:
         """Let the chosen sensor blink; whether one is chosen."""
@@ -280,7 +280,7 @@ class DotForm(Themed):
         self._column.setContentsMargins(0, 0, 0, 0)
         self._column.addWidget(self._card, 1)
         self._column.addLayout(verbs)
-        self.tell("")
+        self.show_message("")
 
     def _connect(self) -> None:
         self.list.opened.connect(self._on_opened)
@@ -293,17 +293,17 @@ class DotForm(Themed):
     def _show_consequence(self) -> None:
         record_hz = self.choice.record_hz
         if record_hz == 120:
-            said = tr(
+            stated = tr(
                 "No walk data are lost in radio transmission, at any distance. Curves appear once the walk is "
                 "fetched. The sensors are synchronised again before the first walk."
             )
         elif record_hz:
-            said = tr(
+            stated = tr(
                 "No walk data are lost in radio transmission, at any distance. Curves appear once the walk is fetched."
             )
         else:
-            said = tr("Curves are shown during walking. Data lost in radio transmission are missing.")
-        self._consequence.setText(said)
+            stated = tr("Curves are shown during walking. Data lost in radio transmission are missing.")
+        self._consequence.setText(stated)
 
     def _on_clicked(self, index: QModelIndex) -> None:
         if index.column() == 0:

@@ -19,7 +19,7 @@ from devices.dot.synchronising import SyncFailure
 from devices.live import SourceLostError, SourceRefusedError
 
 if TYPE_CHECKING:
-    from app.acquisition.dot_fleet import HeardDot
+    from app.acquisition.dot_fleet import ReceivedDot
     from app.system.progress import Report
     from app.widgets.sensors_progress import SensorsProgress
     from app.wizard.sensors.dot_form import DotForm
@@ -29,8 +29,8 @@ if TYPE_CHECKING:
 LISTENS_S = 0.1  # so often it is looked whether somebody wants something of the sensors
 
 
-class _WantedError(Exception):
-    """Something is wanted of the sensors before the next one is asked."""
+class _RequiredError(Exception):
+    """Something is required of the sensors before the next one is asked."""
 
 
 class DotSetup(QObject):
@@ -42,7 +42,7 @@ class DotSetup(QObject):
     ready
         A `SourceChoice` whose sensors are on one clock.
     left
-        Other sources are wanted.
+        Other sources are required.
     """
 
     changed = Signal()
@@ -59,7 +59,7 @@ class DotSetup(QObject):
         self._worn: set[int] = set()
         self._asked: dict[int, DotAsked] = {}  # by the thread that asks
         self._failed: Mapping[str, SyncFailure] = {}
-        self._wanted: deque[Callable[[], None]] = deque()
+        self._required: deque[Callable[[], None]] = deque()
         self._is_stopping = False
         self._refusal = ("", "")
         self._group: DotGroup | None = None
@@ -74,8 +74,8 @@ class DotSetup(QObject):
         return self._fleet is not None
 
     @property
-    def dots(self) -> "tuple[HeardDot, ...]":
-        """Those that were heard."""
+    def dots(self) -> "tuple[ReceivedDot, ...]":
+        """Those that were received."""
         return self._fleet.dots if self._fleet is not None else ()
 
     @property
@@ -105,7 +105,7 @@ class DotSetup(QObject):
         progress.stop_pressed.connect(self._sensors.sync.stop)
 
     def begin(self, choice: "SourceChoice", known: Collection[str]) -> None:
-        """Ask the sensors of this choice who they are. `known` are names that are worn, if they are heard."""
+        """Ask the sensors of this choice who they are. `known` are names that are worn, if they are received."""
         self.end()
         self._sensors.sync.forget()
         assert choice.make_fleet is not None
@@ -161,7 +161,7 @@ class DotSetup(QObject):
         if self._failed and len(self._failed) < count:
             again = BarAction(tr("Try again"), self._synchronise, tr("Enter"), Icon.REPEAT)
             without = tr("Continue without {sensors}").format(sensors=", ".join(self._failed))
-            return BarState(primary=again, others=(BarAction(without, self._leave_out_failed, is_wished=False),))
+            return BarState(primary=again, others=(BarAction(without, self._leave_out_failed, is_requested=False),))
         words = tr("Use this sensor")
         if count != 1:
             words = tr_n("Synchronise {count} sensor", "Synchronise {count} sensors", count).format(count=count)
@@ -172,7 +172,7 @@ class DotSetup(QObject):
 
     def _want_stop(self) -> None:
         self._is_stopping = True
-        self._wanted.append(self._stop_recordings)
+        self._required.append(self._stop_recordings)
         self._show()
 
     def _leave_out_failed(self) -> None:
@@ -186,30 +186,30 @@ class DotSetup(QObject):
         return any(self._asked.get(number) is DotAsked.RECORDING for number in self._worn)
 
     def _ask(self) -> None:
-        """Ask each until it has answered, and do meanwhile what is wanted of them."""
+        """Ask each until it has answered, and do meanwhile what is required of them."""
         fleet = self._fleet
         assert fleet is not None
         asked: dict[int, DotAsked] = {}
-        wanted: deque[Callable[[], None]] = deque()
-        self._asked, self._wanted = asked, wanted
+        required: deque[Callable[[], None]] = deque()
+        self._asked, self._required = asked, required
         wait = self._sensors.closings()
 
         def work(report: "Report") -> object:
             def tick() -> None:
                 report(0.0, "")
-                if wanted:
-                    raise _WantedError
+                if required:
+                    raise _RequiredError
 
             wait()
             while True:
-                while wanted:
+                while required:
                     report(0.0, "")
-                    wanted.popleft()()
+                    required.popleft()()
                 for number in _unanswered(fleet, asked):
                     try:
                         asked[number] = fleet.ask(number, tick)
                         report(0.0, fleet.dots[number].name)
-                    except _WantedError:
+                    except _RequiredError:
                         break
                 else:
                     time.sleep(LISTENS_S)
@@ -259,7 +259,7 @@ class DotSetup(QObject):
             return
         if fleet is not None:
             form.show_dots([self._line(number) for number in range(len(fleet.dots))])
-            form.tell(*(self._refusal if self._refusal[0] else self._sensors.sync.failure))
+            form.show_message(*(self._refusal if self._refusal[0] else self._sensors.sync.failure))
         if self.is_synchronising:
             open_ones = self._sensors.acquisition.sensors if self._sensors.acquisition is not None else ()
             asked = fleet.dots if fleet is not None else ()
@@ -287,7 +287,7 @@ class DotSetup(QObject):
     def _on_identify_pressed(self, number: int) -> None:
         fleet = self._fleet
         if fleet is not None:
-            self._wanted.append(partial(_identify, fleet, number))
+            self._required.append(partial(_identify, fleet, number))
 
     def _on_asked(self, _share: float, _what: str) -> None:
         self._show()

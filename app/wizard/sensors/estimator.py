@@ -1,4 +1,4 @@
-"""Which sensor is worn where? Told by shaking one after the other, or by moving the legs."""
+"""Which sensor is worn where? Reported by shaking one after the other, or by moving the legs."""
 
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, field
@@ -14,7 +14,7 @@ from core.samples import FloatArray, ImuBlock
 
 @dataclass(frozen=True, slots=True)
 class PlacingState:
-    """What the movement so far tells.
+    """What the movement so far reports.
 
     Attributes
     ----------
@@ -39,8 +39,8 @@ class PlacingState:
         """Every sensor's site, once it is certain, with the side that was asked to move first; a single leg's side."""
         if self.chains is None or not self.is_sure:
             return {}
-        is_told = len(self.chains.legs) == 1 or self.chains.is_first_certain
-        return self.chains.sites(first_moved) if is_told else {}
+        is_reported = len(self.chains.legs) == 1 or self.chains.is_first_certain
+        return self.chains.sites(first_moved) if is_reported else {}
 
 
 class PlacingEstimator:

@@ -1,7 +1,7 @@
 """What the sensors' memories hold: found out, held against the library, fetched where it was left, and erased.
 
 Only what this program began is fetched here: it knows that those sensors were on one clock. Nothing is erased before
-it was said what that is and what of it is kept, and the button was pressed once more.
+it was stated what that is and what of it is kept, and the button was pressed once more.
 """
 
 import datetime
@@ -40,7 +40,7 @@ class MemoriesControl(QObject):
     changed
         Something else is shown, or can be done.
     left
-        The sensors are wanted, and whether they were live before.
+        The sensors are required, and whether they were live before.
     """
 
     changed = Signal()
@@ -120,12 +120,12 @@ class MemoriesControl(QObject):
             return BarState(primary=again, quiet=(back,))
         if not self._held:
             return BarState(primary=replace(back, key=tr("Enter")))
-        erase = BarAction(tr("Erase sensor memory"), self._warn, is_wished=False)
+        erase = BarAction(tr("Erase sensor memory"), self._warn, is_requested=False)
         if self._is_warned:
             words = tr("Erase now, losing unsaved data") if self._unkept else tr("Erase now")
-            erase = BarAction(words, self._erase, is_wished=False)
+            erase = BarAction(words, self._erase, is_requested=False)
         if self._chosen is None:
-            return BarState(primary=replace(back, key=tr("Enter"), is_wished=False), others=(erase,))
+            return BarState(primary=replace(back, key=tr("Enter"), is_requested=False), others=(erase,))
         fetch = BarAction(tr("Fetch walk"), self._fetch_chosen, tr("Enter"))
         return BarState(primary=fetch, others=(erase,), quiet=(back,))
 
@@ -133,7 +133,7 @@ class MemoriesControl(QObject):
         """Say what would be lost by erasing."""
         if self._form is not None:
             self._is_warned = True
-            self._form.tell(*_warning(self._held, self._unkept, self._lacking))
+            self._form.show_message(*_warning(self._held, self._unkept, self._lacking))
             self.changed.emit()
 
     # what is known
@@ -200,7 +200,10 @@ class MemoriesControl(QObject):
     # what is done
 
     def _look(self) -> None:
-        self._ask(tr("Checking what the sensors recorded"), lambda memories, tell, tick: memories.held(tell, tick))
+        self._ask(
+            tr("Checking what the sensors recorded"),
+            lambda memories, show_message, tick: memories.held(show_message, tick),
+        )
 
     def _erase(self) -> None:
         held = self._held
@@ -208,9 +211,9 @@ class MemoriesControl(QObject):
         gone = {name: [one.started_utc_s for one in held if name in one.files] for name in names}
         utc_s = int(datetime.datetime.now().timestamp())
 
-        def work(memories: DotMemories, tell: Callable[[str], None], tick: Callable[[], None]) -> object:
-            memories.erase(gone, utc_s, tell, tick)
-            return memories.held(tell, tick)
+        def work(memories: DotMemories, show_message: Callable[[str], None], tick: Callable[[], None]) -> object:
+            memories.erase(gone, utc_s, show_message, tick)
+            return memories.held(show_message, tick)
 
         self._ask(tr("The sensor memory is being erased"), work)
 
@@ -232,9 +235,14 @@ class MemoriesControl(QObject):
         if acquisition is None or self._memories is None or chosen is None:
             return
         self._is_fetching, (held, row) = True, chosen
-        told, left = row.details, self._memories.left(held)
+        reported, left = row.details, self._memories.left(held)
         self._visit.recordings.begin(
-            acquisition, told.kind, told.condition, told.alignment, told.test, fetched=(left, told.started)
+            acquisition,
+            reported.kind,
+            reported.condition,
+            reported.alignment,
+            reported.test,
+            fetched=(left, reported.started),
         )
         self._show()
 
@@ -273,7 +281,7 @@ class MemoriesControl(QObject):
         if not self.is_on or self._form is None:
             return
         self._known, self._is_listed = found, True
-        self._form.tell("")
+        self._form.show_message("")
         self._form.show_lines([self._line(one) for one in self._held])
         self._show()
         self.focus()

@@ -59,7 +59,7 @@ class MemoriesForm(Themed):
         self._column.setContentsMargins(0, 0, 0, 0)
         self._column.addWidget(card, 1)
         self.list.chosen.connect(self._on_chosen)
-        self.tell("")
+        self.show_message("")
         self.show_lines(())
         self._on_look_changed()
 
@@ -87,9 +87,9 @@ class MemoriesForm(Themed):
         columns.append(TableColumn(TextCell(tr("Status"), size=12, tone="ink2", wraps=True), share=1))
         self.list.show_rows(columns, [_row(number, line) for number, line in enumerate(lines)])
         self.list.setVisible(bool(lines))
-        wanted = [number for number, line in enumerate(lines) if line.can_fetch]
+        required = [number for number, line in enumerate(lines) if line.can_fetch]
         if lines:
-            self.list.choose(wanted[0] if wanted else 0)
+            self.list.choose(required[0] if required else 0)
         count = len(lines)
         title = tr("The sensor memory is empty")
         if count:
@@ -106,11 +106,11 @@ class MemoriesForm(Themed):
         """Say why it is not known what they hold, and what to do."""
         self.show_lines(())
         self._title.setText(tr("The content of the sensor memory is unknown"))
-        self.tell(what, then)
+        self.show_message(what, then)
 
-    def tell(self, what: str, then: str = "") -> None:
+    def show_message(self, what: str, then: str = "") -> None:
         """Say what is the matter, and what to do; "" takes it back."""
-        self.notice.tell(Icon.WARNING if what else None, what, then, is_caution=bool(what))
+        self.notice.show_message(Icon.WARNING if what else None, what, then, is_caution=bool(what))
         self.notice.setVisible(bool(what))
 
     def _on_chosen(self, _number: object) -> None:

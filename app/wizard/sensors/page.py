@@ -30,7 +30,7 @@ from app.wizard.sensors.memories_form import MemoriesForm
 from app.wizard.sensors.sensor_list import SensorList
 from app.wizard.sensors.sensor_places import PlaceShown, SensorPlaces
 from app.wizard.sensors.sensor_row import SensorRow
-from app.wizard.sensors.sensor_sentences import Said, said_of_dragged, said_of_sensors, said_of_shaken_together
+from app.wizard.sensors.sensor_sentences import Stated, stated_of_dragged, stated_of_sensors, stated_of_shaken_together
 from app.wizard.sensors.session_chooser import SessionChooser
 from app.wizard.sensors.source_pages import NoSource, Searching, SourceOption
 from app.wording.translation import tr
@@ -81,11 +81,11 @@ class SensorsPage(Themed):
         self._doubt = ""
         self._names: tuple[str, ...] = ()
         self._offered: tuple[tuple[SourceOption, ...], str] = ((), "")
-        self._told = ("", "")
+        self._reported = ("", "")
         self._shaken_together: tuple[str, ...] = ()
         self._hovered: tuple[str, Site] | None = None
         self._bared: set[Site] = set()
-        self._wanted_next: Site | None = None
+        self._required_next: Site | None = None
         self._flashing: Site | None = None
         self._flash_end = QTimer(self)
         self._flash_end.setSingleShot(True)
@@ -130,8 +130,8 @@ class SensorsPage(Themed):
     def next_place(self) -> Site | None:
         """Where the sensor that is shaken next goes: the place that was pressed, or the first that is free."""
         worn = {sensor.site for sensor in self._sensors}
-        if self._wanted_next is not None and self._wanted_next not in worn:
-            return self._wanted_next
+        if self._required_next is not None and self._required_next not in worn:
+            return self._required_next
         return next((site for site in self.offered_places if site not in worn), None)
 
     @property
@@ -172,7 +172,7 @@ class SensorsPage(Themed):
         self.places.set_from_behind(is_from_behind)
 
     def show_sources(self, options: Sequence[SourceOption], chosen: str = "") -> None:
-        """Offer what sensors can be heard through; `chosen` is the key of the one in force."""
+        """Offer what sensors can be received through; `chosen` is the key of the one in force."""
         is_shown = self.sources.currentIndex() == self.sources.findData(chosen)
         if (is_shown and (tuple(options), chosen) == self._offered) or self.sources.view().isVisible():
             return  # in its view one is chosen now
@@ -195,14 +195,14 @@ class SensorsPage(Themed):
         """Say that nothing is connected, and offer the sources."""
         self._sensors = ()
         self._bared.clear()
-        self._wanted_next = None
+        self._required_next = None
         self._show(self.nothing)
         self._refresh()
 
     def show_searching(self, source: str) -> None:
         """Say that sensors are looked for through `source`; "": wherever there may be some."""
-        said = tr("Looking for sensors: {source}").format(source=source) if source else tr("Looking for sensors")
-        self.searching.begin(said)
+        stated = tr("Looking for sensors: {source}").format(source=source) if source else tr("Looking for sensors")
+        self.searching.begin(stated)
         self._show(self.searching)
 
     def show_stored(self) -> None:
@@ -264,20 +264,20 @@ class SensorsPage(Themed):
         site = known.site or self.next_place
         self._flash(site)
         if known.site is None and site is not None and self.way is Way.SHAKE:
-            self._wanted_next = None
+            self._required_next = None
             self.assigned.emit(sensor, site)
         self._refresh()
 
     def show_shaken_together(self, sensors: Sequence[str]) -> None:
-        """Say that several were shaken at once, which tells nothing; none takes it back."""
+        """Say that several were shaken at once, which gives nothing; none takes it back."""
         if tuple(sensors) != self._shaken_together:
             self._shaken_together = tuple(sensors)
             self._refresh()
 
-    def tell(self, what: str, then: str = "") -> None:
+    def show_message(self, what: str, then: str = "") -> None:
         """Say what happened and what to do, before anything the page would say itself; "" takes it back."""
-        if (what, then) != self._told:
-            self._told = (what, then)
+        if (what, then) != self._reported:
+            self._reported = (what, then)
             self._refresh()
 
     def place_selected(self, number: int) -> bool:
@@ -380,8 +380,8 @@ class SensorsPage(Themed):
         before = next((one.site for one in self._sensors if one.name == sensor), None)
         if site is None and before is not None:
             self._bared.add(before)
-        self._wanted_next = None
-        self._told, self._shaken_together = ("", ""), ()
+        self._required_next = None
+        self._reported, self._shaken_together = ("", ""), ()
         if site != before:
             self.assigned.emit(sensor, site)
         self._refresh()
@@ -403,8 +403,8 @@ class SensorsPage(Themed):
         if self.places.has_pelvis is not (Site.PELVIS in places):
             self._name(has_pelvis=Site.PELVIS in places)
         self.places.show_places({site: self._place(site, worn.get(site)) for site in places})
-        self.notice.tell(*self._sentence(worn))
-        self.nothing.tell(*self._told)
+        self.notice.show_message(*self._sentence(worn))
+        self.nothing.show_message(*self._reported)
 
     def _place(self, site: Site, sensor: SensorRow | None) -> PlaceShown:
         is_next = self.way is Way.SHAKE and bool(self._sensors) and site is self.next_place
@@ -421,19 +421,19 @@ class SensorsPage(Themed):
             return PlaceShown(sensor.name, tr("data loss"), SensorMark.LOOK, is_next, is_flashing)
         return PlaceShown(sensor.name, "", SensorMark.WORN, is_next, is_flashing)
 
-    def _sentence(self, worn: Mapping[Site, SensorRow]) -> Said:
-        """What is so and what to do: the most urgent of all that could be said."""
-        if self._told[0]:
-            return Icon.WARNING, *self._told, True
+    def _sentence(self, worn: Mapping[Site, SensorRow]) -> Stated:
+        """What is so and what to do: the most urgent of all that could be stated."""
+        if self._reported[0]:
+            return Icon.WARNING, *self._reported, True
         if self._hovered is not None:
-            return said_of_dragged(*self._hovered, worn)
+            return stated_of_dragged(*self._hovered, worn)
         if self._shaken_together:
-            return said_of_shaken_together(self._shaken_together)
+            return stated_of_shaken_together(self._shaken_together)
         if self._doubt:
             return Icon.WARNING, self._doubt, tr("Change their positions, or continue with these."), True
         next_place = self.next_place if self.way is Way.SHAKE else None
         is_left_to_motion = self.way is Way.MOTION
-        return said_of_sensors(self._sensors, worn, self._bared, next_place, is_left_to_motion, self.offered_places)
+        return stated_of_sensors(self._sensors, worn, self._bared, next_place, is_left_to_motion, self.offered_places)
 
     def _name(self, has_pelvis: bool) -> None:
         """Say how many sensors there are, and where they go."""
@@ -491,7 +491,7 @@ class SensorsPage(Themed):
         """While shaking, the place that is pressed is next; else it takes the selected sensor."""
         is_worn = any(sensor.site is site for sensor in self._sensors)
         if self.way is Way.SHAKE and not is_worn:
-            self._wanted_next = site
+            self._required_next = site
             self._refresh()
         elif self.list.selection:
             self.assign(self.list.selection, site)

@@ -1,4 +1,4 @@
-"""Which sensors are heard, and how are they? A row for each, with its movement, rate, battery and place."""
+"""Which sensors are received, and how are they? A row for each, with its movement, rate, battery and place."""
 
 from collections.abc import Mapping, Sequence
 
@@ -83,7 +83,7 @@ class SensorList(Themed):
         self._mark_selected()
 
     def show_traces(self, traces: Mapping[str, FloatArray]) -> None:
-        """Draw how each sensor turned in the last 5 s, deg/s, oldest first; only the traces are drawn anew."""
+        """Draw how each sensor turned in the last 5 s, deg/s, oldest first; only the traces are drawn again."""
         for name, values in traces.items():
             if name in self.rows:
                 self.rows[name].trace.show_values(values)
@@ -96,7 +96,7 @@ class SensorList(Themed):
             self.selected.emit(name)
 
     def set_narrow(self, is_narrow: bool) -> None:
-        """Tell rate and battery in the second line, where there is no room for columns."""
+        """Report rate and battery in the second line, where there is no room for columns."""
         if is_narrow != self._is_narrow:
             self._is_narrow = is_narrow
             self._on_look_changed()
@@ -128,7 +128,7 @@ class SensorList(Themed):
             widest(theme.font(16, SEMIBOLD, is_code=True), [one.name for one in shown]),
             widest(small, [self.second_line(one) for one in shown] + self._longest_second_lines()),
         )
-        wanted = {
+        required = {
             "name": max(names, px(64)),
             "rate": max(widest(text, [tr("{rate} Hz").format(rate=100)]), widest(theme.font(12), [tr("Rate")])),
             "battery": max(
@@ -141,20 +141,20 @@ class SensorList(Themed):
             "identify": max(px(IDENTIFY), widest(theme.font(12), [tr("Identify")])),
         }
         if self._is_narrow:
-            wanted["rate"] = wanted["battery"] = 0
+            required["rate"] = required["battery"] = 0
         grip = px(NARROW_GRIP if self._is_narrow else GRIP)
         gap, right = px(NARROW_GAP if self._is_narrow else COLUMN_GAP), px(6)
-        rest = width - grip - right - sum(wanted.values()) - gap * sum(1 for one in wanted.values() if one)
+        rest = width - grip - right - sum(required.values()) - gap * sum(1 for one in required.values() if one)
         places: dict[str, QRect] = {}
         x = grip
         for key in ("name", "trace", "rate", "battery", "worn", "identify"):
-            taken = max(rest, 0) if key == "trace" else wanted[key]
+            taken = max(rest, 0) if key == "trace" else required[key]
             places[key] = QRect(x, 0, taken, px(ROW))
             x += taken + (gap if taken else 0)
         return places
 
     def _longest_second_lines(self) -> list[str]:
-        """What may be said of any sensor: there is room for it from the first, so that no column moves later."""
+        """What may be stated about any sensor: there is room for it from the first, so that no column moves later."""
         figures = [tr("{rate} Hz").format(rate=100), tr("{percent} %").format(percent=100)] if self._is_narrow else []
         lost = tr("{share} % lost").format(share=figure_text(10.0, ".1f"))
         return [tr("charge soon"), tr("no signal"), lost, " · ".join(figures)]

@@ -101,7 +101,8 @@ class SensorPlaces(Themed):
             self.tiles[site].show_place(place)
 
     def set_names(self, names: tuple[str, ...]) -> None:
-        """Make room on the tiles for these sensors with whatever may be said of them, so that no tile grows later."""
+        """Make room on the tiles for these sensors with whatever may be stated about them, so that no tile grows
+        later."""
         if names != self._names:
             self._names = names
             self._arrange()
@@ -182,7 +183,7 @@ class SensorPlaces(Themed):
 
     @property
     def has_notes_below(self) -> bool:
-        """Whether the names are so long that what is said of a sensor stands under its name."""
+        """Whether the names are so long that what is stated about a sensor is under its name."""
         metrics = QFontMetrics(self._look.theme.font(12, SEMIBOLD, is_code=True))
         room = self._look.theme.px(TILE[0] - 2 * PADDING - 2)
         return any(metrics.horizontalAdvance(" · ".join((name, _notes()[0]))) > room for name in self._names)
@@ -222,13 +223,13 @@ class SensorPlaces(Themed):
             bottom = lowest
             for segment in reversed(LEG_SEGMENTS):
                 site = Site(f"{side}_{segment}")
-                wanted = round(self.figure.anchor(site).y()) - (0 if segment is Segment.FOOT else height // 2)
-                top = min(wanted, bottom - height)
+                required = round(self.figure.anchor(site).y()) - (0 if segment is Segment.FOOT else height // 2)
+                top = min(required, bottom - height)
                 self.tiles[site].setGeometry(x, top, width, height)
                 bottom = top - px(GAP)
             if not is_right:  # it has no side; reading begins here
-                wanted = round(self.figure.anchor(Site.PELVIS).y()) - height // 2
-                self.tiles[Site.PELVIS].setGeometry(x, min(wanted, bottom - height), width, height)
+                required = round(self.figure.anchor(Site.PELVIS).y()) - height // 2
+                self.tiles[Site.PELVIS].setGeometry(x, min(required, bottom - height), width, height)
         self._lines.setGeometry(self.rect())
         self._lines.update()
         self.updateGeometry()
@@ -295,8 +296,8 @@ class _Tile(DraggedButton):
     @property
     def lines(self) -> list[str]:
         """Who is there and how that one is, in one line or two."""
-        said = [part for part in (self._place.sensor, self._place.note) if part] or [tr("no sensor")]
-        return said if self._places.has_notes_below else [" · ".join(said)]
+        stated = [part for part in (self._place.sensor, self._place.note) if part] or [tr("no sensor")]
+        return stated if self._places.has_notes_below else [" · ".join(stated)]
 
     @property
     def first_line_width(self) -> int:
@@ -367,10 +368,10 @@ class _Tile(DraggedButton):
 
 
 def _notes() -> tuple[str, ...]:
-    """What may be said of a sensor that is worn, the longest first."""
+    """What may be stated about a sensor that is worn, the longest first."""
     return tuple(sorted((tr("no signal"), tr("charge"), tr("data loss")), key=len, reverse=True))
 
 
 def number_of(site: Site) -> int:
-    """The key that says this place: 1 to 6, left leg first; 7 the pelvis."""
+    """The key that states this place: 1 to 6, left leg first; 7 the pelvis."""
     return list(Site).index(site) + 1

@@ -9,11 +9,11 @@ from core.body import LEG_SITES, Segment, Side, Site
 
 NEARLY_EMPTY = 0.05  # of a battery: minutes
 
-Said = tuple[Icon | None, str, str, bool]
+Stated = tuple[Icon | None, str, str, bool]
 """Icon, what is so, what to do, and whether it wants a look."""
 
 
-def said_of_dragged(sensor: str, site: Site, worn: Mapping[Site, SensorRow]) -> Said:
+def stated_of_dragged(sensor: str, site: Site, worn: Mapping[Site, SensorRow]) -> Stated:
     """What happens to a sensor that is dropped here."""
     other = worn.get(site)
     if other is not None and other.name != sensor:
@@ -22,8 +22,8 @@ def said_of_dragged(sensor: str, site: Site, worn: Mapping[Site, SensorRow]) -> 
     return Icon.INFO, capitalised(name_of(site)), tr("Drop {sensor} here.").format(sensor=sensor), False
 
 
-def said_of_shaken_together(sensors: Sequence[str]) -> Said:
-    """Several were shaken at once, which tells nothing."""
+def stated_of_shaken_together(sensors: Sequence[str]) -> Stated:
+    """Several were shaken at once, which gives nothing."""
     first, *_, last = sensors
     what = (
         tr("{first} and {last} were both shaken.").format(first=first, last=last)
@@ -33,14 +33,14 @@ def said_of_shaken_together(sensors: Sequence[str]) -> Said:
     return Icon.WARNING, what, tr("Shake one at a time."), True
 
 
-def said_of_sensors(
+def stated_of_sensors(
     sensors: Sequence[SensorRow],
     worn: Mapping[Site, SensorRow],
     bared: Collection[Site],
     next_place: Site | None,
     is_left_to_motion: bool,
     places: Sequence[Site] = LEG_SITES,
-) -> Said:
+) -> Stated:
     """How the sensors are, and what is missing.
 
     Parameters
@@ -48,15 +48,15 @@ def said_of_sensors(
     bared
         Sites that a sensor was taken off from.
     next_place
-        Where the sensor that is shaken next goes; None where places are told otherwise.
+        Where the sensor that is shaken next goes; None where places are reported otherwise.
     places
         Where sensors can be worn.
     """
     has_pelvis = Site.PELVIS in places
     if silent := [sensor for sensor in sensors if sensor.silent_s > 0]:
-        return Icon.WARNING, *_said_of_silent(silent[0], has_hips=Site.PELVIS in worn), True
+        return Icon.WARNING, *_stated_of_silent(silent[0], has_hips=Site.PELVIS in worn), True
     if (foot := _missing_foot(sensors, worn, bared, is_left_to_motion)) is not None:
-        return Icon.WARNING, *_said_of_missing_foot(foot), True
+        return Icon.WARNING, *_stated_of_missing_foot(foot), True
     if low := [sensor for sensor in sensors if sensor.is_low]:
         what = tr("{name}: battery at {charge}.").format(name=_called(low[0]), charge=low[0].charge)
         ends_soon = low[0].battery is not None and low[0].battery <= NEARLY_EMPTY
@@ -127,7 +127,7 @@ def _in_sentence(site: Site) -> str:
     }[site]
 
 
-def _said_of_silent(sensor: SensorRow, has_hips: bool) -> tuple[str, str]:
+def _stated_of_silent(sensor: SensorRow, has_hips: bool) -> tuple[str, str]:
     seconds = max(round(sensor.silent_s), 1)
     what = tr("{name}: no signal for {seconds} s.").format(name=_called(sensor), seconds=seconds)
     if sensor.site is None:
@@ -149,7 +149,7 @@ def _said_of_silent(sensor: SensorRow, has_hips: bool) -> tuple[str, str]:
     return what, tr("Switch the sensor off and on, or continue without {angles}.").format(angles=lost[sensor.site])
 
 
-def _said_of_missing_foot(foot: Site) -> tuple[str, str]:
+def _stated_of_missing_foot(foot: Site) -> tuple[str, str]:
     if foot.side is Side.LEFT:
         what = tr("No left foot sensor: no left ankle angles.")
     else:

@@ -31,7 +31,7 @@ class Trace(QWidget):
         Parameters
         ----------
         values : (n,)
-            Angular rate, deg/s, oldest first, at even steps; NaN where nothing was heard.
+            Angular rate, deg/s, oldest first, at even steps; NaN where nothing was received.
         """
         self._values = values
         self.update()
@@ -73,12 +73,12 @@ def _lines(values: FloatArray, width: int, height: int) -> list[QPolygonF]:
         return []
     step = max(1, PIXELS_PER_POINT * len(values) // width)
     values = values[::step]
-    heard = np.isfinite(values)
-    if not heard.any():
+    received = np.isfinite(values)
+    if not received.any():
         return []
-    span = max(SPAN_DEG_S, float(2 * np.abs(values[heard]).max()))
+    span = max(SPAN_DEG_S, float(2 * np.abs(values[received]).max()))
     x = np.linspace(0.0, width - 1.0, len(values))
     y = height / 2 - values / span * (height - 4)
-    edges = np.flatnonzero(np.diff(heard)) + 1
+    edges = np.flatnonzero(np.diff(received)) + 1
     parts = np.split(np.arange(len(values)), edges)
-    return [QPolygonF([QPointF(x[i], y[i]) for i in part]) for part in parts if heard[part[0]] and len(part) > 1]
+    return [QPolygonF([QPointF(x[i], y[i]) for i in part]) for part in parts if received[part[0]] and len(part) > 1]

@@ -29,9 +29,9 @@ class SessionChooser(Themed):
     opened
         The id of a session that is to be replayed.
     folder_pressed
-        A session folder is wanted instead.
+        A session folder is required instead.
     back_pressed
-        No session is wanted after all.
+        No session is required after all.
     """
 
     chosen = Signal(object)
@@ -80,7 +80,7 @@ class SessionChooser(Themed):
         self.back.clicked.connect(self.back_pressed)
         self._on_look_changed()
         self.show_sessions(())
-        self.tell("")
+        self.show_message("")
 
     @property
     def session(self) -> UUID | None:
@@ -100,9 +100,9 @@ class SessionChooser(Themed):
         self.sessions.show_lines(lines, self.session)
         self._lists.setCurrentWidget(self.sessions if lines else self._none)
 
-    def tell(self, what: str, then: str = "") -> None:
+    def show_message(self, what: str, then: str = "") -> None:
         """Say why a session cannot be replayed, above those that may be tried instead; "" takes it back."""
-        self.notice.tell(Icon.WARNING if what else None, what, then, is_caution=bool(what))
+        self.notice.show_message(Icon.WARNING if what else None, what, then, is_caution=bool(what))
         self.notice.setVisible(bool(what))
 
     def _on_look_changed(self) -> None:

@@ -1,4 +1,4 @@
-"""Which sensor is being shaken, so that it can be told where it is worn?
+"""Which sensor is being shaken, so that it can be given where it is worn?
 
 Shaking is vigorous for a second, and only one sensor is: strapping one on is not so lively, and who carries them or
 walks moves several.
@@ -45,7 +45,7 @@ class _Sensor:
     """`vigour` of the last windows, 1 at what counts as shaking."""
 
     windows: "Windows"
-    heard_s: float = -np.inf
+    received_s: float = -np.inf
     vigour: deque[float] = field(default_factory=lambda: deque([0.0] * WINDOWS, maxlen=WINDOWS))
     waiting: dict[int, float] = field(default_factory=dict)  # of windows that others have not passed yet
     is_ready: bool = True
@@ -78,7 +78,7 @@ class Shaking:
             block = blocks.get(name)
             if block is None or not len(block):
                 continue
-            sensor.heard_s = float(block.time_s[-1])
+            sensor.received_s = float(block.time_s[-1])
             if self._next is None:
                 first_s = min(block.time_s[0] for block in blocks.values() if len(block))
                 self._next = int(np.floor(first_s / WINDOW_S))
@@ -92,8 +92,8 @@ class Shaking:
 
     def _is_passed(self, number: int) -> bool:
         end_s = (number + 1) * WINDOW_S
-        heard_s = [sensor.heard_s for sensor in self._sensors.values() if np.isfinite(sensor.heard_s)]
-        return bool(heard_s) and (min(heard_s) >= end_s or max(heard_s) >= end_s + SILENT_S)
+        received_s = [sensor.received_s for sensor in self._sensors.values() if np.isfinite(sensor.received_s)]
+        return bool(received_s) and (min(received_s) >= end_s or max(received_s) >= end_s + SILENT_S)
 
     def _judge(self, number: int) -> None:
         for sensor in self._sensors.values():

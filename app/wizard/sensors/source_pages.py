@@ -1,4 +1,4 @@
-"""Where there are no sensors yet: what they can be heard through, and what is being looked for."""
+"""Where there are no sensors yet: what they can be received through, and what is being looked for."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -18,7 +18,7 @@ from app.wording.translation import tr
 
 @dataclass(frozen=True, slots=True)
 class SourceOption:
-    """Something that sensors can be heard through; `note` is what was found there: "6 found".
+    """Something that sensors can be received through; `note` is what was found there: "6 found".
 
     `is_last`: offered after all others, and takes the place of none.
     """
@@ -55,9 +55,9 @@ class NoSource(Themed):
         self._column.addStretch(2)
         self._on_look_changed()
 
-    def tell(self, what: str, then: str) -> None:
+    def show_message(self, what: str, then: str) -> None:
         """Say why nothing is connected, above the sources that may be tried instead."""
-        self.notice.tell(Icon.WARNING if what else None, what, then, is_caution=bool(what))
+        self.notice.show_message(Icon.WARNING if what else None, what, then, is_caution=bool(what))
 
     @property
     def left_out(self) -> str:

@@ -1,4 +1,4 @@
-"""What can sensors be heard through? What was found at ports and on the network, streams, and a simulated patient.
+"""What can sensors be received through? What was found at ports and on the network, streams, and a simulated patient.
 
 Sensors are looked for beside the screen: ports take a second or two, and some never answer. Streams are asked for in
 the network that somebody has chosen, and in none before.
@@ -109,9 +109,9 @@ class Sources(Sequence[SourceChoice]):
             is_simulated=True,
             make_prosthetic=partial(_prosthesis_user, settings=DEMONSTRATION_WITH_PELVIS),
         )
-        anew = SourceChoice(SEARCH, tr("Search for sensors"), self._open_all)
+        again = SourceChoice(SEARCH, tr("Search for sensors"), self._open_all)
         streams = [_of_streams(address) for address in self._networks]
-        return (demonstration, *self._of_drivers(), *self._of_lines(), anew, *streams, with_pelvis)
+        return (demonstration, *self._of_drivers(), *self._of_lines(), again, *streams, with_pelvis)
 
     def _of_drivers(self) -> list[SourceChoice]:
         found = self._found
@@ -138,7 +138,7 @@ class Sources(Sequence[SourceChoice]):
         return SourceChoice(key, words.format(name=name, count=count), make, is_simulated, make_fleet=make_fleet)
 
     def _open_all(self) -> Acquisition:
-        """Search anew, and take all sensors that are heard."""
+        """Search again, and take all sensors that are received."""
         self._found = found = self._looked()
         others = [sensor for sensor in found.sensors if sensor.driver != MOVELLA_DOT]
         if found.sensors and not others:
@@ -183,7 +183,7 @@ def _networks() -> Sequence[str]:
 
 
 def _of_streams(address: str) -> SourceChoice:
-    """The streams where this computer has this address. Whom that asks is told before."""
+    """The streams where this computer has this address. Whom that asks is reported before."""
     make = partial(_open_streams, address)
     if address == THIS_COMPUTER:
         return SourceChoice(STREAMS + address, tr("Streams from programs on this computer"), make)
@@ -207,14 +207,14 @@ def _open_streams(address: str) -> Acquisition:
 
 def fleet_of(sensors: "Sequence[FoundSensor]") -> "DotFleet":
     """The DOTs among what was found, to be set up."""
-    from app.acquisition.dot_fleet import DotFleet, HeardDot
+    from app.acquisition.dot_fleet import DotFleet, ReceivedDot
 
-    heard = []
+    received = []
     for one in sensors:
         source = one.make()
         if isinstance(source, DotSource):
-            heard.append((source.group.radio, HeardDot(source.sensor, one.rssi_dbm)))
-    return DotFleet(heard[0][0], [dot for _, dot in heard])
+            received.append((source.group.radio, ReceivedDot(source.sensor, one.rssi_dbm)))
+    return DotFleet(received[0][0], [dot for _, dot in received])
 
 
 def _opening(sensors: "Sequence[FoundSensor]") -> Acquisition:

@@ -1,4 +1,4 @@
-"""Six sensors on, or seven, and each known: heard through a source, and told where they are worn."""
+"""Six sensors on, or seven, and each known: received through a source, and reported where they are worn."""
 
 from dataclasses import replace
 from typing import TYPE_CHECKING
@@ -35,7 +35,7 @@ TRACE_TICKS, ROW_TICKS = 3, 8  # of 30 a second: traces ten times a second, rows
 
 
 class SensorsStep(Step):
-    """The library is told who wears what when the step is left, and only if that is news."""
+    """The library is given who wears what when the step is left, and only if that is news."""
 
     id = StepId.SENSORS
 
@@ -45,11 +45,11 @@ class SensorsStep(Step):
         self._estimator: PlacingEstimator | None = None
         self._shakes = self._ticks = 0
         self._is_in_sight = False
-        self._wanted: dict[str, Site] = {}  # where sensors go that are being looked for again
+        self._required: dict[str, Site] = {}  # where sensors go that are being looked for again
         self._without_light: set[str] = set()
         self._traces = TraceValues()
         self._silent_site: Site | None = None
-        self._told_of = ""  # the choice of which it was said whom it asks on the network
+        self._reported_of = ""  # the choice of which it was stated whom it asks on the network
         self.telling = ColumnsTelling(self)
         self.telling.changed.connect(self.changed)
         self.setup = DotSetup(visit.sensors, self)
@@ -65,7 +65,7 @@ class SensorsStep(Step):
         self.stored.left.connect(self._on_asking_left)
         visit.sensors.changed.connect(self._on_changed)
         visit.sensors.opened.connect(self._on_opened)
-        visit.sensors.set_up_wanted.connect(self._on_source_chosen)
+        visit.sensors.set_up_required.connect(self._on_source_chosen)
 
     @property
     def page(self) -> SensorsPage:
@@ -138,7 +138,7 @@ class SensorsStep(Step):
     def leave(self) -> None:
         self._end_asking()
         self._is_in_sight = False
-        self._told_of = ""
+        self._reported_of = ""
         sensors = self._visit.sensors
         sensors.keep_labels()  # somebody has looked at them
         sensors.sync.forget()
@@ -149,24 +149,25 @@ class SensorsStep(Step):
             self._take_places()
 
     def _take_places(self) -> None:
-        """Other places of the same sensors: they were told wrongly; another sensor at a place: strapped on since."""
+        """Other places of the same sensors: they were reported wrongly; another sensor at a place: strapped on
+        since."""
         visit, worn, known = self._visit, self._visit.sensors.site_of, self._known_places
         known_at, worn_at = {site: name for name, site in known.items()}, visit.sensors.sensor_at
         if not visit.recordings.since_strapped:
             visit.place_sensors()
         elif worn.keys() == known.keys():
-            visit.worn.place_as_said_now()
-            for joint in visit.details.turned_sign:  # said by hand of other sensors
+            visit.worn.place_as_stated_now()
+            for joint in visit.details.turned_sign:  # stated by hand of other sensors
                 if any(known_at.get(site) != worn_at.get(site) for site in (joint.proximal, joint.distal)):
                     visit.record.set_turned(joint, None)
             what = tr("Sensor positions changed. Standing reference and calibration are derived again.")
-            self.told.emit(what, tr("If sensors were moved on the body, record both again."))
+            self.reported.emit(what, tr("If sensors were moved on the body, record both again."))
         else:
             visit.place_sensors()
             if any(known_at.get(site, name) != name for name, site in worn.items()):
                 visit.recordings.say_restrapped()
                 what = tr("Another sensor is worn. Standing reference and calibration are no longer valid.")
-                self.told.emit(what, tr("Record standing and free motion again."))
+                self.reported.emit(what, tr("Record standing and free motion again."))
 
     def tick(self) -> None:
         self._ticks += 1
@@ -205,14 +206,14 @@ class SensorsStep(Step):
         """What can be done with the sensors that are open, or why the session cannot go on with them yet."""
         sensors, silent, enter = self._visit.sensors, self._silent_site, tr("Enter")
         if sensors.are_in_memory:
-            back = BarAction(tr("Return to live"), self.setup.set_back, enter, is_wished=False)
+            back = BarAction(tr("Return to live"), self.setup.set_back, enter, is_requested=False)
             return BarState(primary=back, note=tr("The sensors are ready for walks. They send no data."))
         if sensors.acquisition is None:
             return BarState(note="" if sensors.is_searching else tr("Choose where to search for sensors."))
         if reason := self._visit.cannot_record:
             other = BarAction(tr("Choose other sensors"), self._choose_others, enter, Icon.REPEAT)
             words = tr("Start with a demonstration patient")
-            demonstration = BarAction(words, self.demonstration_wanted.emit, is_wished=False)
+            demonstration = BarAction(words, self.demonstration_required.emit, is_requested=False)
             return BarState(primary=other, others=(demonstration,), note=reason)
         go_on = BarAction(tr("Stand still"), self.done.emit, enter)
         if silent is not None:
@@ -220,7 +221,9 @@ class SensorsStep(Step):
             again = BarAction(words, self._reconnect, enter, Icon.REPEAT)
             joints = (*LEG_JOINTS, *sensors.hips)
             lost = tr(" and ").join(name_of(one) for one in joints if silent in (one.proximal, one.distal))
-            without = replace(go_on, text=tr("Continue without {joints}").format(joints=lost), key="", is_wished=False)
+            without = replace(
+                go_on, text=tr("Continue without {joints}").format(joints=lost), key="", is_requested=False
+            )
             return BarState(primary=again, others=(without,) if sensors.joints else ())
         if sensors.is_left_to_motion:
             return BarState(primary=go_on, note=tr("Sensor positions are detected in the free motion."))
@@ -228,11 +231,11 @@ class SensorsStep(Step):
             note = tr("Two sensors at one joint are needed: thigh and shank, or shank and foot.")
             return BarState(primary=replace(go_on, is_enabled=False), note=note)
         is_whole = set(LEG_SITES) <= sensors.sensor_at.keys()  # a pelvis is for whoever wants hips
-        return BarState(primary=replace(go_on, is_wished=is_whole), note=sensors.price_of_missing())
+        return BarState(primary=replace(go_on, is_requested=is_whole), note=sensors.price_of_missing())
 
     @property
     def _is_asking(self) -> bool:
-        """Whether something stands in the place of the sensors that are open, or that are to be."""
+        """Whether something is in the place of the sensors that are open, or that are to be."""
         is_of_dots = self.setup.is_on or self.setup.is_synchronising or self.memories.is_on
         return is_of_dots or self.telling.is_on or self.stored.is_on
 
@@ -252,7 +255,7 @@ class SensorsStep(Step):
 
     @property
     def _known_places(self) -> dict[str, Site]:
-        """Site by the sensor's name, as the library was told last in this session."""
+        """Site by the sensor's name, as the library was reported last in this session."""
         session = self._visit.session
         return session.placements[-1].site_of if session is not None and session.placements else {}
 
@@ -302,10 +305,10 @@ class SensorsStep(Step):
         options.sort(key=lambda option: option.is_last)
         page = self.page
         page.show_sources(options, chosen.key if chosen is not None else "")
-        asks = next((choice.asks for choice in visit.choices if choice.key == self._told_of), ("", ""))
+        asks = next((choice.asks for choice in visit.choices if choice.key == self._reported_of), ("", ""))
         if not self.setup.is_on and sensors.sync.failure[0]:
             asks = sensors.sync.failure
-        page.tell(*asks if options else (tr("No sensor source is available for this patient."), ""))
+        page.show_message(*asks if options else (tr("No sensor source is available for this patient."), ""))
         apart = tr(
             "Simulated and replayed sensors are offered only for codes that begin with DEMO. This keeps "
             "them apart from real patients."
@@ -330,7 +333,7 @@ class SensorsStep(Step):
         return SensorRow(
             name=status.sensor,
             model=status.details.model,
-            rate_hz=status.details.rate_hz or float(round(status.heard_hz)),
+            rate_hz=status.details.rate_hz or float(round(status.received_hz)),
             battery=status.details.battery,
             site=self._visit.sensors.site_of.get(status.sensor),
             silent_s=float(round(status.silent_s)) if is_silent else 0.0,
@@ -350,11 +353,11 @@ class SensorsStep(Step):
         self.page.show_traces(self._traces.of(latest, now_s))
 
     def _reconnect(self) -> None:
-        """Open the source anew; its sensors come back to their places."""
+        """Open the source again; its sensors come back to their places."""
         sensors = self._visit.sensors
         if sensors.choice is None:
             return
-        self._wanted = dict(sensors.site_of)
+        self._required = dict(sensors.site_of)
         if sensors.choice.make_fleet is not None:
             self._set_up(sensors.choice)
         else:
@@ -363,13 +366,13 @@ class SensorsStep(Step):
     def _on_opened(self) -> None:
         sensors = self._visit.sensors
         assert sensors.acquisition is not None
-        told = sensors.choice.worn if sensors.choice is not None else {}
-        for wanted in (self._wanted or self._known_places or self._visit.placement_before, told):
-            known = {name: site for name, site in wanted.items() if name in sensors.acquisition.sensors}
+        reported = sensors.choice.worn if sensors.choice is not None else {}
+        for required in (self._required or self._known_places or self._visit.placement_before, reported):
+            known = {name: site for name, site in required.items() if name in sensors.acquisition.sensors}
             if known:
                 sensors.assign_all(known)
                 break
-        self._wanted = {}
+        self._required = {}
         self._begin_estimator()
         if self._is_in_sight:
             self._show()
@@ -387,7 +390,7 @@ class SensorsStep(Step):
 
     def _on_source_chosen(self, key: str) -> None:
         if self.memories.is_busy:  # what is fetched or erased is not left by accident
-            self.told.emit(self.memories.cannot_leave, "")
+            self.reported.emit(self.memories.cannot_leave, "")
             self._show_sources()
             return
         sensors = self._visit.sensors
@@ -395,13 +398,13 @@ class SensorsStep(Step):
         choice = next((one for one in known if one.key == key), None)
         if choice is None and key != REPLAY:
             return
-        is_told, self._told_of = key == self._told_of, ""
+        is_reported, self._reported_of = key == self._reported_of, ""
         self._end_asking()
         if choice is None:
             self.stored.begin()
             self._show_asked()
-        elif any(choice.asks) and not is_told:
-            self._told_of = key
+        elif any(choice.asks) and not is_reported:
+            self._reported_of = key
             sensors.close()
             self._on_changed()
         elif choice.lines:
@@ -414,7 +417,7 @@ class SensorsStep(Step):
             sensors.search(choice)
 
     def _end_asking(self) -> None:
-        """Let go of all that stands in the place of the sensors, or would come there once it is read."""
+        """Let go of all that is in the place of the sensors, or would come there once it is read."""
         self.stored.end()
         self.telling.end()
         self.setup.end()
@@ -423,7 +426,7 @@ class SensorsStep(Step):
     def _set_up(self, choice: SourceChoice) -> None:
         """Ask of Movella DOTs which are worn, and synchronise them."""
         self._visit.sensors.close()
-        known = self._wanted or self._known_places or self._visit.placement_before
+        known = self._required or self._known_places or self._visit.placement_before
         self.setup.begin(choice, known.keys())
         self._show_asked()
 
@@ -434,7 +437,7 @@ class SensorsStep(Step):
         self.changed.emit()
 
     def _on_asking_left(self) -> None:
-        """Other sources are wanted than what is asked about."""
+        """Other sources are required than what is asked about."""
         self._end_asking()
         self._show_asked()
 
@@ -448,11 +451,11 @@ class SensorsStep(Step):
         self.page.focus()
 
     def _use_columns(self) -> None:
-        """Remember what is told, and search again: all that is known is heard then."""
+        """Remember what is reported, and search again: all that is known is received then."""
         try:
             self.telling.keep()
         except OSError as problem:
-            self.told.emit(tr("The column settings could not be saved."), str(problem))
+            self.reported.emit(tr("The column settings could not be saved."), str(problem))
             return
         self._on_source_chosen(SEARCH)
 
@@ -471,7 +474,9 @@ class SensorsStep(Step):
         acquisition = self._visit.sensors.acquisition
         if acquisition is not None and not acquisition.identify(sensor):
             self._without_light.add(sensor)
-            self.told.emit(tr("{sensor} has no LED that can be lit.").format(sensor=sensor), tr("Shake it instead."))
+            self.reported.emit(
+                tr("{sensor} has no LED that can be lit.").format(sensor=sensor), tr("Shake it instead.")
+            )
             self._show_rows()
 
     def _on_reconnect_pressed(self, _sensor: str) -> None:

@@ -32,7 +32,7 @@ class StoredReplay(QObject):
     read
         A `SourceChoice` that plays what was chosen.
     left
-        No session is wanted after all.
+        No session is required after all.
     """
 
     changed = Signal()
@@ -68,7 +68,7 @@ class StoredReplay(QObject):
         """Ask which is to be played: what sends now goes on doing so meanwhile."""
         self.is_on = True
         if self._form is not None:
-            self._form.tell("")
+            self._form.show_message("")
         session = self._visit.session
         self._replays.list_sessions(session.id if session is not None else None)
 
@@ -126,7 +126,7 @@ class StoredReplay(QObject):
     def _on_refused(self, what: str, then: str) -> None:
         if not self.is_on or self._form is None:
             return
-        self._form.tell(what, then)
+        self._form.show_message(what, then)
         self.changed.emit()
         self._focus()
 

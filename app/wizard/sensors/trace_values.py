@@ -23,16 +23,16 @@ class TraceValues:
 
     def _values(self, block: ImuBlock, now_s: float) -> FloatArray:
         time_s = np.linspace(now_s - TRACE_S, now_s, TRACE_POINTS)
-        heard = np.isfinite(block.gyr_rad_s).all(axis=1)
-        if np.count_nonzero(heard) < 2:
+        received = np.isfinite(block.gyr_rad_s).all(axis=1)
+        if np.count_nonzero(received) < 2:
             return np.full(TRACE_POINTS, np.nan)
-        rates = block.gyr_rad_s[heard]
+        rates = block.gyr_rad_s[received]
         variance = rates.var(axis=0)
         most = int(np.argmax(variance))
         axis = self._axis.setdefault(block.sensor, most)
         if variance[most] > TURNS_MORE * variance[axis]:
             axis = self._axis[block.sensor] = most
-        known_s = block.time_s[heard]
+        known_s = block.time_s[received]
         values: FloatArray = np.rad2deg(np.interp(time_s, known_s, rates[:, axis], left=np.nan))
         values[time_s > known_s[-1] + SILENT_FROM_S / 2] = np.nan
         return values

@@ -1,1 +1,1 @@
-"""The patient stands still: page, step, and what is computed of the standing."""
+"""The patient is still: page, step, and what is computed of the standing."""

@@ -6,7 +6,7 @@ from dataclasses import dataclass, field
 import numpy as np
 
 from core.calibration.rest import MAX_SPREAD_RAD_S
-from core.live.standing import WANTED_S, LiveStanding, StandingState
+from core.live.standing import REQUIRED_S, LiveStanding, StandingState
 from core.samples import ImuBlock
 
 LIMIT_DEG_S = float(np.rad2deg(MAX_SPREAD_RAD_S))  # of the rate's spread: what rest may sway and tremble
@@ -21,7 +21,7 @@ class StandingView:
     movement_deg_s
         What each sensor moved in its last quarter of a second, on the scale whose limit is LIMIT_DEG_S: the spread of
         its rate, or what its specific force or its mean rate would amount to there, whichever is worst. A sensor moves
-        just when it reaches the limit; infinite where too little was heard.
+        just when it reaches the limit; infinite where too little was received.
     """
 
     standing: StandingState[str]
@@ -32,10 +32,10 @@ class StandingEstimator:
     """One attempt to stand still; another begins with another estimator. Nobody waits for what is `optional`."""
 
     def __init__(
-        self, sensors: Iterable[str], wanted_s: float = WANTED_S, optional: frozenset[str] = frozenset()
+        self, sensors: Iterable[str], required_s: float = REQUIRED_S, optional: frozenset[str] = frozenset()
     ) -> None:
         self._names = frozenset(sensors)
-        self._standing = LiveStanding(sorted(self._names), wanted_s, optional)
+        self._standing = LiveStanding(sorted(self._names), required_s, optional)
         self.state = StandingView(self._standing.state)
 
     def update(self, blocks: Mapping[str, ImuBlock]) -> None:

@@ -1,4 +1,4 @@
-"""Does the patient stand still, and at which angles? A count read from six metres, and what the goniometer says."""
+"""Does the patient stand still, and at which angles? A count read from six metres, and what the goniometer states."""
 
 import math
 from collections.abc import Mapping, Sequence
@@ -21,7 +21,7 @@ from app.widgets.themed import Themed
 from app.wording.translation import capitalised, name_of, tr, tr_n
 from core.body import LEG_JOINTS, Joint, Side, Site
 from core.calibration.rest import MAX_SPREAD_RAD_S
-from core.live.standing import WANTED_S
+from core.live.standing import REQUIRED_S
 
 KNEE_DEG, ANKLE_DEG = (-60.0, 150.0), (-60.0, 60.0)  # what a goniometer can be laid along
 MOVED_FOR_S = 1.0  # who moved is named until the count has come this far again
@@ -50,18 +50,18 @@ class StandStillView:
     movement_deg_s
         Of the worn sensors, by site, or by name where nobody knows the site yet: from the limit on they move.
     moved
-        Who made the count begin anew last.
+        Who made the count begin again last.
     silent
-        Who is not heard.
+        Who is not received.
     restarts
-        How often it began anew by itself.
+        How often it began again by itself.
     is_read_back
         Once it is done: whether what was recorded has been read back, and counts.
     """
 
     phase: StandPhase = StandPhase.READY
     still_s: float = 0.0
-    wanted_s: float = WANTED_S
+    required_s: float = REQUIRED_S
     movement_deg_s: Mapping[str, float] = field(default_factory=dict)
     limit_deg_s: float = math.degrees(MAX_SPREAD_RAD_S)
     moved: tuple[str, ...] = ()
@@ -80,7 +80,7 @@ class StandStillView:
 
     @property
     def is_known(self) -> bool:
-        """Whether enough was heard of all sensors to tell whether they move."""
+        """Whether enough was known of all sensors to show whether they move."""
         return bool(self.movement_deg_s) and all(map(math.isfinite, self.movement_deg_s.values()))
 
 
@@ -148,7 +148,7 @@ class StandStillPage(Themed):
         self.zero.show_zero(zero_deg)
 
     def show_state(self, view: StandStillView) -> None:
-        """Show how the standing goes; only what changed is painted anew."""
+        """Show how the standing goes; only what changed is painted again."""
         if view != self._view:
             self._view = view
             self._show()
@@ -161,7 +161,7 @@ class StandStillPage(Themed):
         self._limit.setText(tr("limit {limit:.1f} °/s").format(limit=view.limit_deg_s))
         self.bars.show_movement(view.movement_deg_s, view.limit_deg_s, view.moving, view.silent)
         icon, what, then, is_caution = verdict(view, self._is_compact)
-        self.verdict.tell(icon, what, then, is_caution)
+        self.verdict.show_message(icon, what, then, is_caution)
         self.zero.show_standing(view)
 
     def resizeEvent(self, event: QResizeEvent) -> None:
@@ -218,7 +218,7 @@ class StandStillPage(Themed):
 
 
 class _ZeroCard(Card):
-    """The angles at which the patient stands, and the way round the standing. The fields scroll where they must."""
+    """The angles at which the patient is, and the way round the standing. The fields scroll where they must."""
 
     edited = Signal(object, object)
 
@@ -302,7 +302,7 @@ class _ZeroCard(Card):
         self.button.setAccessibleName(tr("Patient can stand still") if is_skipped else cannot)
         self.button.updateGeometry()
         icon, what, then, is_caution = way_round(self._view, self._is_compact)
-        self.note.tell(icon, what, then, is_caution)
+        self.note.show_message(icon, what, then, is_caution)
 
     def _add_joint(self, name: str, sign: str, label: str, range_deg: tuple[float, float], is_knee: bool) -> None:
         row = self._grid.rowCount()
@@ -315,7 +315,7 @@ class _ZeroCard(Card):
             joint = next(joint for joint in LEG_JOINTS if joint.side is side and joint.is_knee == is_knee)
             low, high = range_deg
             one = _ZeroField(self._look, joint, label, low, high)
-            one.told.connect(self.edited)
+            one.reported.connect(self.edited)
             self.fields[joint] = one
             self._grid.addWidget(one, row + 1, column, Qt.AlignmentFlag.AlignTop)
 
@@ -338,9 +338,9 @@ class _Fields(QScrollArea):
 
 
 class _ZeroField(NumberField):
-    """One joint's angle; tells the joint with it."""
+    """One joint's angle; reports the joint with it."""
 
-    told = Signal(object, object)
+    reported = Signal(object, object)
 
     def __init__(self, look: ThemeNotifier, joint: Joint, label: str, low: float, high: float) -> None:
         super().__init__(look, label, low=low, high=high, decimals=1, unit="°", side=joint.side, has_label=False)
@@ -349,7 +349,7 @@ class _ZeroField(NumberField):
 
     def _on_committed(self) -> None:
         if not self.is_wrong:
-            self.told.emit(self._joint, self.value)
+            self.reported.emit(self._joint, self.value)
 
 
 def title(view: StandStillView) -> str:
@@ -362,10 +362,10 @@ def instruction(view: StandStillView) -> str:
     if view.phase is StandPhase.SKIPPED:
         return tr("The patient cannot stand. Range of motion is reported, absolute angles are not.")
     if view.phase is StandPhase.DONE:
-        said = tr("{still:.1f} s still. Gyroscope offset and standing reference are set.")
+        stated = tr("{still:.1f} s still. Gyroscope offset and standing reference are set.")
         if not view.is_read_back:
-            said = tr("{still:.1f} s still. The recording is being loaded.")
-        return said.format(still=view.still_s)
+            stated = tr("{still:.1f} s still. The recording is being loaded.")
+        return stated.format(still=view.still_s)
     return tr("Both feet flat, looking ahead. Holding a rail is fine.")
 
 
@@ -376,9 +376,9 @@ def ring_face(view: StandStillView) -> RingFace:
     if view.phase is StandPhase.DONE:
         return RingFace(share=1.0, icon=Icon.CHECK)
     if view.phase is StandPhase.READY:
-        return RingFace(figure=f"{math.ceil(view.wanted_s)}", word=tr("starts"), key=tr("Space"))
-    left_s = max(1, math.ceil(view.wanted_s - view.still_s - 1e-9))
-    share = round(min(view.still_s / view.wanted_s, 1.0) * STEPS) / STEPS
+        return RingFace(figure=f"{math.ceil(view.required_s)}", word=tr("starts"), key=tr("Space"))
+    left_s = max(1, math.ceil(view.required_s - view.still_s - 1e-9))
+    share = round(min(view.still_s / view.required_s, 1.0) * STEPS) / STEPS
     return RingFace(share, f"{left_s}", word=tr("second") if left_s == 1 else tr("seconds"))
 
 
@@ -436,8 +436,8 @@ def _names(sensors: Sequence[str]) -> str:
     names = [name_of(Site(sensor)) if sensor in set(Site) else sensor for sensor in sensors]
     if len(names) > 2:  # more cannot be read in the time
         return tr("{count} sensors").format(count=len(names))
-    said = tr("{first} and {last}").format(first=names[0], last=names[1]) if len(names) == 2 else names[0]
-    return capitalised(said) if sensors[0] in set(Site) else said
+    stated = tr("{first} and {last}").format(first=names[0], last=names[1]) if len(names) == 2 else names[0]
+    return capitalised(stated) if sensors[0] in set(Site) else stated
 
 
 def _no_field(joints: Sequence[Joint]) -> str:

@@ -1,4 +1,4 @@
-"""Three seconds of standing: each sensor's bias, and the angles at which the patient stands."""
+"""Three seconds of standing: each sensor's bias, and the angles at which the patient is."""
 
 import math
 from dataclasses import replace
@@ -19,7 +19,7 @@ from app.wizard.standing.page import StandPhase, StandStillPage, StandStillView
 from app.wizard.step import Step, StepId
 from app.wording.translation import tr
 from core.body import LEG_JOINTS, Joint, Site
-from core.live.standing import WANTED_S
+from core.live.standing import REQUIRED_S
 from core.samples import RecordingKind
 
 if TYPE_CHECKING:
@@ -41,7 +41,7 @@ class StandStillStep(Step):
         self._estimator: StandingEstimator | None = None
         self._phase = StandPhase.READY
         self._moved: tuple[str, ...] = ()
-        self._heard = 0  # the second that was sounded last
+        self._received = 0  # the second that was sounded last
         self._ticks = 0
         self._is_entered = False
         self._shown_zero: dict[Joint, float] = {}  # as the page has it
@@ -73,12 +73,12 @@ class StandStillStep(Step):
             return tr("skipped, in report")
         if not self._has_stood:
             return ""
-        said = (
+        stated = (
             tr("{seconds:.1f} s, standing reference set")
             if self._visit.recordings.standing is not None
             else tr("being loaded")
         )
-        return said.format(seconds=self._stood_s)
+        return stated.format(seconds=self._stood_s)
 
     @property
     def state(self) -> StepState:
@@ -121,7 +121,7 @@ class StandStillStep(Step):
         if self._ticks % TICKS == 0 and self._estimator is not None:
             standing = self._estimator.state.standing
             self._moved = standing.moved or self._moved
-            self._sound(standing.wanted_s - standing.still_s)
+            self._sound(standing.required_s - standing.still_s)
             is_counting = self._phase is StandPhase.COUNTING
             if is_counting and standing.is_done and self._is_recording and self._visit.recordings.has_begun:
                 self._finish()
@@ -129,7 +129,7 @@ class StandStillStep(Step):
 
     def bar(self) -> BarState:
         space, enter = tr("Space"), tr("Enter")
-        again = BarAction(tr("Restart count"), self._start, space, Icon.REPEAT, is_wished=False)
+        again = BarAction(tr("Restart count"), self._start, space, Icon.REPEAT, is_requested=False)
         go_on = BarAction(tr("Continue to free motion"), self._go_on, enter, Icon.NEXT)
         if self._phase is StandPhase.COUNTING:
             return BarState(primary=again, note=tr("Continues automatically when done."))
@@ -157,7 +157,7 @@ class StandStillStep(Step):
         """For as long as it takes, and recorded: what a crash cut short was recovered, and is not enough."""
         recordings = self._visit.recordings
         is_kept = recordings.standing is not None or recordings.awaits(RecordingKind.STANDING)
-        return is_kept and self._stood_s > WANTED_S - SLACK_S and not recordings.is_restrapped
+        return is_kept and self._stood_s > REQUIRED_S - SLACK_S and not recordings.is_restrapped
 
     @property
     def _stood_s(self) -> float:
@@ -169,7 +169,7 @@ class StandStillStep(Step):
         return StandPhase.DONE if self._has_stood else StandPhase.READY
 
     def _start(self) -> None:
-        """Begin to count, anew if need be; what is being recorded goes on."""
+        """Begin to count, again if need be; what is being recorded goes on."""
         acquisition, recordings = self._visit.sensors.acquisition, self._visit.recordings
         if acquisition is None or self._visit.session is None or recordings.is_stopping:
             return
@@ -185,10 +185,10 @@ class StandStillStep(Step):
         self.changed.emit()
 
     def _sound(self, left_s: float) -> None:
-        """Let each second of the count be heard."""
+        """Let each second of the count be received."""
         left = math.ceil(left_s)
-        if self._phase is StandPhase.COUNTING and self._is_recording and left != self._heard:
-            self._heard = left
+        if self._phase is StandPhase.COUNTING and self._is_recording and left != self._received:
+            self._received = left
             sounds.play(Sound.COUNT)
 
     def _watch(self) -> None:
@@ -230,7 +230,7 @@ class StandStillStep(Step):
             StandStillView(
                 phase=self._phase,
                 still_s=self._stood_s if self._phase is StandPhase.DONE else standing.still_s,
-                wanted_s=standing.wanted_s,
+                required_s=standing.required_s,
                 movement_deg_s={
                     site_of.get(name, name): value for name, value in estimator.state.movement_deg_s.items()
                 },

@@ -1,4 +1,4 @@
-"""The alignments walked so far, each with what was changed, and the next change as it is told before its walk."""
+"""The alignments walked so far, each with what was changed, and the next change as it is reported before its walk."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -53,12 +53,12 @@ class AlignmentCard(Card):
     -------
     chosen
         The number of an alignment from 0, and whether it is to stand beside the one shown.
-    told
-        Something of the next change was told: `entry` holds it.
+    reported
+        Something of the next change was reported: `entry` holds it.
     """
 
     chosen = Signal(int, bool)
-    told = Signal()
+    reported = Signal()
 
     def __init__(self, look: ThemeNotifier, entry: ChangeEntry) -> None:
         self._entry = entry
@@ -86,7 +86,7 @@ class AlignmentCard(Card):
 
     @property
     def rows(self) -> tuple[AlignmentRow, ...]:
-        return tuple(row.told for row in self._rows)
+        return tuple(row.reported for row in self._rows)
 
     @property
     def tab_order(self) -> list[QWidget]:
@@ -101,20 +101,20 @@ class AlignmentCard(Card):
             row.pressed.connect(self.chosen)
             self._rows_column.insertWidget(len(self._rows), row)
             self._rows.append(row)
-        for widget, told in zip(self._rows, rows, strict=True):
-            widget.show_row(told)
+        for widget, reported in zip(self._rows, rows, strict=True):
+            widget.show_row(reported)
         self._show_the_shown()
 
     def _show_the_shown(self) -> None:
         """Scroll the list to the alignment that is shown."""
-        shown = [row for row in self._rows if row.told.role is RowRole.SHOWN]
+        shown = [row for row in self._rows if row.reported.role is RowRole.SHOWN]
         if shown:
             top = sum(row.height() + self._rows_column.spacing() for row in self._rows[: self._rows.index(shown[0])])
             self._scroll.verticalScrollBar().setValue(top)
 
     def set_compact(self, is_compact: bool) -> None:
-        """Tell the change in two rows where the card has the width of the window, and little height."""
-        self._head_row.setVisible(not is_compact)  # the tab says it, and the sentence above whose it is
+        """Report the change in two rows where the card has the width of the window, and little height."""
+        self._head_row.setVisible(not is_compact)  # the tab states it, and the sentence above whose it is
         self._scroll.setMinimumHeight(self._look.theme.px(LEAST_LIST_COMPACT if is_compact else LEAST_LIST))
         steppers = [*self.steppers.values()]
         bottom = Qt.AlignmentFlag.AlignBottom
@@ -134,7 +134,7 @@ class AlignmentCard(Card):
             self._grid.addWidget(self.written, 4, 0, 1, 2)
 
     def show_entry(self, title: str) -> None:
-        """Show the next change as `entry` holds it; `title` says from where."""
+        """Show the next change as `entry` holds it; `title` states from where."""
         entry = self._entry
         self.next_title.setText(title)
         if self.parts.currentData() != entry.part:
@@ -150,8 +150,8 @@ class AlignmentCard(Card):
             caption, unit = shown[name]
             value = entry.figure(name)
             sign = "+" if value > 0 else MINUS if value < 0 else ""
-            said = turns_words(value) if name == "turns" and value else sign + figure_text(abs(value), "g") + unit
-            stepper.show_value(caption, said)
+            stated = turns_words(value) if name == "turns" and value else sign + figure_text(abs(value), "g") + unit
+            stepper.show_value(caption, stated)
         self.words.set_text(entry.text)
         line = change_in_words(entry.parts)
         self.written.setText(tr("Recorded as: {change}").format(change=line) if line else tr("Nothing changed yet."))
@@ -186,20 +186,20 @@ class AlignmentCard(Card):
 
     def _on_part_chosen(self, index: int) -> None:
         self._entry.part = list(ProsthesisPart)[index]
-        self.told.emit()
+        self.reported.emit()
 
     def _on_stepped(self, by: int) -> None:
         name = next(name for name, stepper in self.steppers.items() if stepper is self.sender())
         self._entry.step(name, by)
-        self.told.emit()
+        self.reported.emit()
 
     def _on_words_edited(self, text: str) -> None:
         self._entry.say(text)
-        self.told.emit()
+        self.reported.emit()
 
 
 class _AlignmentRow(Themed):
-    """One alignment; pressed it is shown, with Shift it stands beside."""
+    """One alignment; pressed it is shown, with Shift it is beside."""
 
     accessible_role = QAccessible.Role.ListItem
 
@@ -208,16 +208,16 @@ class _AlignmentRow(Themed):
     def __init__(self, look: ThemeNotifier, number: int) -> None:
         super().__init__()
         self._look, self._number = look, number
-        self.told = AlignmentRow("", "", "", (), RowRole.NONE)
+        self.reported = AlignmentRow("", "", "", (), RowRole.NONE)
         self.setSizePolicy(QSizePolicy.Policy.Expanding, QSizePolicy.Policy.Fixed)
         self.setCursor(Qt.CursorShape.PointingHandCursor)
 
-    def show_row(self, told: AlignmentRow) -> None:
-        self.told = told
-        lines = "; ".join(f"{name}: {words}" for name, words in told.lines)
-        role = {RowRole.SHOWN: tr("shown"), RowRole.BESIDE: tr("compared"), RowRole.NONE: ""}[told.role]
-        said = [f"{told.letter} {told.title}", told.note, lines, role]
-        self.setAccessibleName(", ".join(filter(None, said)))
+    def show_row(self, reported: AlignmentRow) -> None:
+        self.reported = reported
+        lines = "; ".join(f"{name}: {words}" for name, words in reported.lines)
+        role = {RowRole.SHOWN: tr("shown"), RowRole.BESIDE: tr("compared"), RowRole.NONE: ""}[reported.role]
+        stated = [f"{reported.letter} {reported.title}", reported.note, lines, role]
+        self.setAccessibleName(", ".join(filter(None, stated)))
         self.setAccessibleDescription(tr("Key {key}").format(key=str(self._number + 1)))
         self._on_look_changed()
 
@@ -232,17 +232,17 @@ class _AlignmentRow(Themed):
     def painted_texts(self) -> list[PaintedText]:
         theme, px = self._look.theme, self._look.theme.px
         left, width = px(PADDING + BADGE + GAP), self.width()
-        badge_tone = "inv_ink" if self.told.role is RowRole.SHOWN else "ink"
-        role = {RowRole.SHOWN: tr("shown"), RowRole.BESIDE: tr("compared"), RowRole.NONE: ""}[self.told.role]
+        badge_tone = "inv_ink" if self.reported.role is RowRole.SHOWN else "ink"
+        role = {RowRole.SHOWN: tr("shown"), RowRole.BESIDE: tr("compared"), RowRole.NONE: ""}[self.reported.role]
         aside = QFontMetrics(theme.font(12, MEDIUM)).horizontalAdvance(role) + px(PADDING) + 2
         right = QRectF(width - aside, px(PADDING), aside - px(PADDING), px(LINE))
         texts = [
-            PaintedText(self.told.letter, self._badge, theme.font(14, SEMIBOLD), badge_tone, CENTRE),
+            PaintedText(self.reported.letter, self._badge, theme.font(14, SEMIBOLD), badge_tone, CENTRE),
             PaintedText(
-                self.told.title, QRectF(left, px(PADDING), width - left - aside, px(LINE)), theme.font(14, SEMIBOLD)
+                self.reported.title, QRectF(left, px(PADDING), width - left - aside, px(LINE)), theme.font(14, SEMIBOLD)
             ),
             PaintedText(
-                self.told.note,
+                self.reported.note,
                 QRectF(left, px(PADDING + LINE), width - left - px(PADDING), px(LINE)),
                 theme.font(12),
                 "ink2",
@@ -266,7 +266,7 @@ class _AlignmentRow(Themed):
     def paintEvent(self, _event: QPaintEvent) -> None:
         theme = self._look.theme
         c, painter = theme.colours, QPainter(self)
-        is_shown = self.told.role is RowRole.SHOWN
+        is_shown = self.reported.role is RowRole.SHOWN
         if is_shown:
             theme.paint_box(painter, QRectF(self.rect()), c.sunken, None, 0, CONTROL_RADIUS)
         fill, line = (c.inv, None) if is_shown else (c.surface, c.ink)
@@ -275,7 +275,7 @@ class _AlignmentRow(Themed):
             text.paint(painter, c)
 
     def _line_words(self) -> list[str]:
-        return [f"{name}: {words}" for name, words in self.told.lines]
+        return [f"{name}: {words}" for name, words in self.reported.lines]
 
     def _line_heights(self) -> list[int]:
         px, font = self._look.theme.px, self._look.theme.font(12)

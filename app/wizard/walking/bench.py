@@ -15,11 +15,11 @@ from core.alignment import (
 )
 from core.samples import Recording, RecordingKind
 
-NOTHING_TOLD = dict.fromkeys(FIGURES, 0.0)
+NOTHING_REPORTED = dict.fromkeys(FIGURES, 0.0)
 
 
 class ChangeEntry:
-    """The next change while it is told: each part has its figures and words, and `part` is the one in hand."""
+    """The next change while it is reported: each part has its figures and words, and `part` is the one in hand."""
 
     def __init__(self) -> None:
         self.part = ProsthesisPart.FOOT_FRONT_SCREW
@@ -28,7 +28,7 @@ class ChangeEntry:
 
     def figure(self, name: str) -> float:
         """Of the part in hand: `angle_deg`, `turns`, `shift_mm` or `height_mm`."""
-        return self._figures.get(self.part, NOTHING_TOLD)[name]
+        return self._figures.get(self.part, NOTHING_REPORTED)[name]
 
     @property
     def text(self) -> str:
@@ -38,7 +38,7 @@ class ChangeEntry:
         """Add so many steps to a figure of the part in hand, up to its limit."""
         limits = FIGURES[name]
         value = self.figure(name) + steps * limits.step
-        own = self._figures.setdefault(self.part, dict(NOTHING_TOLD))
+        own = self._figures.setdefault(self.part, dict(NOTHING_REPORTED))
         own[name] = min(max(value, -limits.most), limits.most)
 
     def say(self, text: str) -> None:
@@ -46,16 +46,16 @@ class ChangeEntry:
 
     @property
     def parts(self) -> tuple[PartChange, ...]:
-        """All that was told so far."""
-        told = []
+        """All that was reported so far."""
+        reported = []
         for part in ProsthesisPart:
-            figures, text = self._figures.get(part, NOTHING_TOLD), self._texts.get(part, "").strip()
+            figures, text = self._figures.get(part, NOTHING_REPORTED), self._texts.get(part, "").strip()
             if text or any(figures.values()):
-                told.append(PartChange(part, **figures, text=text))
-        return tuple(told)
+                reported.append(PartChange(part, **figures, text=text))
+        return tuple(reported)
 
     def load(self, parts: Sequence[PartChange]) -> None:
-        """Tell all of a change again; empty: nothing."""
+        """Report all of a change again; empty: nothing."""
         self._figures = {one.part: {name: getattr(one, name) for name in FIGURES} for one in parts}
         self._texts = {one.part: one.text for one in parts}
 
@@ -98,7 +98,7 @@ def chain_of(recordings: Sequence[Recording], returned_to: str) -> AlignmentChai
 
 
 def next_walk(chain: AlignmentChain, entry: ChangeEntry, new_condition: str) -> tuple[str, AlignmentChange | None]:
-    """What the next walk is called and what was changed before it: with nothing told, the same condition again."""
+    """What the next walk is called and what was changed before it: with nothing reported, the same condition again."""
     if entry.parts:
         return new_condition, AlignmentChange(chain.base, entry.parts)
     return chain.base, chain.changes.get(chain.base)

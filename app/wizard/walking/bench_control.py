@@ -40,10 +40,10 @@ class Bench(QObject):
         super().__init__(parent)
         self._visit = visit
         self.entry = ChangeEntry()
-        self.is_wished = True  # else the list of walks stands there
+        self.is_requested = True  # else the list of walks is there
         self._returned_to = ""
         self._shown = self._beside = ""  # letters; empty: the latest, and what it was changed from
-        self._to_undo = ""  # in words, as long as the prosthesis is said to be put back
+        self._to_undo = ""  # in words, as long as the prosthesis is stated to be put back
         self._discarded = ""  # the name of the latest walk, if it was discarded and the next is as it was
         self._may_undo_return = False
 
@@ -64,12 +64,12 @@ class Bench(QObject):
 
     @property
     def is_shown(self) -> bool:
-        """Whether it stands in the place of the walks, while none is recorded."""
-        return self.is_wished and self.is_offered
+        """Whether it is in the place of the walks, while none is recorded."""
+        return self.is_requested and self.is_offered
 
     def turn(self) -> None:
         """Show it, or all walks in its place."""
-        self.is_wished = not self.is_wished
+        self.is_requested = not self.is_requested
         self.changed.emit()
 
     @property
@@ -82,13 +82,13 @@ class Bench(QObject):
         return next_walk(chain, self.entry, new_alignment(chain.next_letter, list(chain.changes)))
 
     def begun(self) -> None:
-        """The next walk begins: what was told of it is its own now."""
+        """The next walk begins: what was given of it is its own now."""
         self.entry.load(())
         self._returned_to = self._shown = self._beside = self._to_undo = self._discarded = ""
         self._may_undo_return = False
 
     def discarded(self, walk: Recording) -> None:
-        """A walk does not count, but the prosthesis is still as it was then: what was changed is told of the next."""
+        """A walk does not count, but the prosthesis is still as it was then: what was changed is given of the next."""
         known, change, walks = self.chain.changes, walk.alignment, self._visit.recordings.walks
         is_latest = bool(walks) and walks[-1].details.name == walk.name
         if is_latest and walk.condition in known:
@@ -100,7 +100,7 @@ class Bench(QObject):
         self.changed.emit()
 
     def counts_again(self, walk: Recording) -> None:
-        """A walk counts that was discarded: what was told of the next for its sake is its own again."""
+        """A walk counts that was discarded: what was given of the next for its sake is its own again."""
         if walk.name != self._discarded:
             return
         self._returned_to = self._discarded = ""
@@ -181,8 +181,8 @@ class Bench(QObject):
         if self.entry.parts:
             return tr("{letter}: changed from {base}").format(letter=chain.next_letter, base=base)
         if self._to_undo:
-            said = tr("Next change, from {base}. Undo first: {changes}")
-            return said.format(base=base, changes=self._to_undo)
+            stated = tr("Next change, from {base}. Undo first: {changes}")
+            return stated.format(base=base, changes=self._to_undo)
         return tr("Next change, from {base}").format(base=base)
 
     @property

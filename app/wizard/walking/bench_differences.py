@@ -1,6 +1,6 @@
 """What differs between two alignments: the prosthetic side, the sound side's reaction, and both legs together."""
 
-from app.results.compared_words import change_in_words, is_judged, why_not_told
+from app.results.compared_words import change_in_words, is_judged, why_not_reported
 from app.summary.comparison import Compared, Comparison
 from app.summary.measures import FITTED
 from app.summary.numbers_in_words import DAGGER, judged_in_words
@@ -43,14 +43,14 @@ class BenchDifferences(Card):
         """How wide it has to be, px of the screen."""
         return self.table.minimumWidth() + self._look.theme.px(2 * PADDING + 2)
 
-    def show_pair(self, found: Comparison | None, prosthetic: Side, told: str) -> None:
+    def show_pair(self, found: Comparison | None, prosthetic: Side, reported: str) -> None:
         """Show how the pair differs; None: one alignment was walked with, and nothing is beside it."""
         self.table.setVisible(found is not None)
         self.title.setText(tr("Nothing to compare yet"))
         if found is None:
             return
         self.title.setText(f"{found.parts[1].letter} \N{MINUS SIGN} {found.against.letter}")
-        self.table.setAccessibleDescription(told)
+        self.table.setAccessibleDescription(reported)
         head = TextCell(tr("grey: error"), align=CENTRE, size=12, tone="ink2")
         columns = [TableColumn(share=3), TableColumn(share=1), TableColumn(head, share=2)]
         rows = [_heading(tr("Prosthetic side"), prosthetic), *_rows(found, OF_PROSTHETIC, prosthetic)]
@@ -81,7 +81,7 @@ def _fitted_beyond_error(found: Comparison, prosthetic: Side) -> list[Compared]:
 
 def _row(row: Compared) -> TableRow:
     weight = SEMIBOLD if row.exceeds else REGULAR
-    change = change_in_words(row.difference.difference, row.measure) if row.is_told else why_not_told(row)
+    change = change_in_words(row.difference.difference, row.measure) if row.is_reported else why_not_reported(row)
     if is_judged(row) and row.difference.is_unverified:
         change += DAGGER
     mark = Icon.WARNING if row.exceeds else None
@@ -96,7 +96,7 @@ def _row(row: Compared) -> TableRow:
 
 def _strip(row: Compared) -> TableCell:
     found = row.difference
-    if not row.is_told:
+    if not row.is_reported:
         return EMPTY
     if not is_judged(row):
         word = tr("too few strides") if found.judgement is Judgement.TOO_FEW_STRIDES else tr("no published error")

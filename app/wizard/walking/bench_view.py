@@ -8,7 +8,7 @@ from PySide6.QtGui import QAccessible
 from PySide6.QtWidgets import QBoxLayout, QHBoxLayout, QVBoxLayout, QWidget
 
 from app.plots.compared_chart import ComparedChart, ComparedFrame
-from app.results.compared_words import withheld_in_words
+from app.results.compared_words import not_reported_in_words
 from app.summary.answer import Answer, Outcome
 from app.summary.beside import changes_on_curves
 from app.summary.comparison import Comparison
@@ -36,7 +36,7 @@ ALIGNMENTS, CURVES, CHANGES = "alignments", "curves", "changes"
 
 @dataclass(frozen=True, slots=True)
 class BenchState:
-    """All that the bench shows. `parts`: what is drawn, the earlier first; `found` None where one stands alone."""
+    """All that the bench shows. `parts`: what is drawn, the earlier first; `found` None where one is alone."""
 
     answer: Answer
     rows: Sequence[AlignmentRow]
@@ -52,14 +52,14 @@ class BenchView(Themed):
 
     Signals
     -------
-    chosen, told
+    chosen, reported
         As of `AlignmentCard`.
     """
 
     accessible_role = QAccessible.Role.Grouping
 
     chosen = Signal(int, bool)
-    told = Signal()
+    reported = Signal()
 
     def __init__(self, look: ThemeNotifier, entry: ChangeEntry) -> None:
         super().__init__()
@@ -78,7 +78,7 @@ class BenchView(Themed):
         self._frames: dict[tuple[Side, JointKind], ComparedFrame] = {}
         self._build()
         self.alignments.chosen.connect(self.chosen)
-        self.alignments.told.connect(self.told)
+        self.alignments.reported.connect(self.reported)
         self.tabs.chosen.connect(self._arrange)
         self._on_look_changed()
         self._arrange()
@@ -131,7 +131,7 @@ class BenchView(Themed):
             joint = kind.of(state.side)
             measured = [part for part in state.parts if joint in part.joints]
             curves = [part.curve(joint, is_about_mean=not has_one_zero) for part in measured if part.is_drawn(joint)]
-            notes = [withheld_in_words(part, joint) for part in measured if not part.is_drawn(joint)]
+            notes = [not_reported_in_words(part, joint) for part in measured if not part.is_drawn(joint)]
             frame = self._frame(state.side, kind)
             frame.chart.deviations = tuple(
                 one for one in marks if one.kind is kind and one.first.joint is joint and has_one_zero

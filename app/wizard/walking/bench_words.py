@@ -1,4 +1,4 @@
-"""What the bench says of two alignments: one sentence of the prosthetic side, and what must be known to read it."""
+"""What the bench states of two alignments: one sentence of the prosthetic side, and what must be known to read it."""
 
 import math
 
@@ -6,7 +6,7 @@ from app.results.compared_words import error_in_sentence, is_judged
 from app.summary.answer import Answer, Outcome
 from app.summary.comparison import Compared, Comparison
 from app.summary.conditions import Part
-from app.summary.measure_sentences import Told, change_sentence, likely_sentence, similar_sentence
+from app.summary.measure_sentences import Reported, change_sentence, likely_sentence, similar_sentence
 from app.summary.numbers_in_words import fixed
 from app.summary.what_stands_out import FAMILIES
 from app.wording.translation import tr
@@ -17,7 +17,7 @@ SPEED = "speed_m_s"
 
 
 def bench_answer(found: Comparison, prosthetic: Side) -> Answer:
-    """Tell what of the prosthetic side changed most errors from the other alignment, with its error."""
+    """Report what of the prosthetic side changed most errors from the other alignment, with its error."""
     shown, other = found.parts[1], found.against
     few = [part for part in (shown, other) if part.strides(prosthetic) < MIN_STRIDES_FOR_SD]
     if few:
@@ -31,7 +31,7 @@ def bench_answer(found: Comparison, prosthetic: Side) -> Answer:
         count = few[0].strides(prosthetic)
         then = then.format(letter=few[0].letter, count=count, required=MIN_STRIDES_FOR_SD)
         return Answer(Outcome.OPEN, first, then)
-    own = [row for row in found.rows if _is_told_of(row) and row.side is prosthetic]
+    own = [row for row in found.rows if _is_reported_of(row) and row.side is prosthetic]
     if not own:
         first = tr("Prosthetic side: nothing can be compared between {one} and {other}.")
         return Answer(Outcome.OPEN, first.format(one=shown.letter, other=other.letter), _beside(found, prosthetic))
@@ -42,9 +42,9 @@ def bench_answer(found: Comparison, prosthetic: Side) -> Answer:
         error = tr("Beyond measurement error (±{error}).") if worth else tr("Just beyond measurement error (±{error}).")
         error = error.format(error=error_in_sentence(most))
         return Answer(Outcome.DIFFERS, change_sentence(*_of_side(most)), f"{error} {_beside(found, prosthetic)}")
-    column, _, size, *told = _of_side(most)
-    similar = similar_sentence(column, tr("Prosthetic side"), size, *told)
-    likely = likely_sentence(column, most.difference, *told)
+    column, _, size, *reported = _of_side(most)
+    similar = similar_sentence(column, tr("Prosthetic side"), size, *reported)
+    likely = likely_sentence(column, most.difference, *reported)
     return Answer(Outcome.NOTHING, similar, f"{likely} {_beside(found, prosthetic)}")
 
 
@@ -56,36 +56,36 @@ def speeds_in_words(shown: Part, other: Part) -> str:
     return tr("Walking speed {first} and {second} m/s.").format(first=fixed(values[0], 2), second=fixed(values[1], 2))
 
 
-def _is_told_of(row: Compared) -> bool:
-    """Whether a sentence may tell of it: judged, of one leg, and no height, which the standing zero is in."""
+def _is_reported_of(row: Compared) -> bool:
+    """Whether a sentence may report of it: judged, of one leg, and no height, which the standing zero is in."""
     return is_judged(row) and not row.measure.is_of_walk and not row.measure.needs_height
 
 
 def _without_family(rows: list[Compared]) -> list[Compared]:
-    """A range and the excursion that makes most of it are one movement: the excursion is told."""
-    told = {(row.measure.column, row.difference.difference > 0) for row in rows}
-    return [row for row in rows if (FAMILIES.get(row.measure.column), row.difference.difference > 0) not in told]
+    """A range and the excursion that makes most of it are one movement: the excursion is reported."""
+    reported = {(row.measure.column, row.difference.difference > 0) for row in rows}
+    return [row for row in rows if (FAMILIES.get(row.measure.column), row.difference.difference > 0) not in reported]
 
 
-def _of_side(row: Compared) -> tuple[str, str, float, Told, Told]:
+def _of_side(row: Compared) -> tuple[str, str, float, Reported, Reported]:
     """The prosthetic side's measure, whose it is, its difference, and both values with their alignments."""
     joint = row.measure.joint(row.side)
     who = tr("Prosthetic side")
     if joint is not None:
         who = tr("Prosthetic-side {joint}").format(joint=tr(joint.kind))
     now, before = (tr("with {part}").format(part=part.letter) for part in (row.part, row.against))
-    told = Told(now, row.value.mean), Told(before, row.other.mean)
-    return row.measure.column, who, row.difference.difference, *told
+    reported = Reported(now, row.value.mean), Reported(before, row.other.mean)
+    return row.measure.column, who, row.difference.difference, *reported
 
 
 def _beside(found: Comparison, prosthetic: Side) -> str:
     """What the sound side does, whether the sensors stayed on, and the speeds."""
-    sound = [row for row in found.rows if _is_told_of(row) and row.side is not prosthetic]
+    sound = [row for row in found.rows if _is_reported_of(row) and row.side is not prosthetic]
     beyond = [row for row in sound if row.exceeds]
-    said = tr("The sound side could not be compared.")
+    stated = tr("The sound side could not be compared.")
     if beyond:
-        said = tr("The sound side also changes beyond measurement error.")
+        stated = tr("The sound side also changes beyond measurement error.")
     elif sound:
-        said = tr("The sound side does not change beyond measurement error.")
+        stated = tr("The sound side does not change beyond measurement error.")
     straps = tr("Sensors stayed on.") if found.is_one_attachment else tr("Sensors were reattached in between.")
-    return " ".join([said, straps, speeds_in_words(found.parts[1], found.against)])
+    return " ".join([stated, straps, speeds_in_words(found.parts[1], found.against)])

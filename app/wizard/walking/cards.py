@@ -1,4 +1,4 @@
-"""What stands beside and between the live curves: strides and cadence, the walk just stopped, and the one to come."""
+"""What is beside and between the live curves: strides and cadence, the walk just stopped, and the one to come."""
 
 import math
 from collections.abc import Mapping
@@ -77,12 +77,12 @@ class WalkFigures(Card):
             count = str(strides.get(side, 0))
             if self._counts[side].text() != count:
                 self._counts[side].setText(count)
-        said = [tr("{count} strides.").format(count=shown)] if strides else []
+        stated = [tr("{count} strides.").format(count=shown)] if strides else []
         words = {Side.LEFT: tr("Left {count}."), Side.RIGHT: tr("Right {count}.")}
-        said += [words[side].format(count=strides[side]) for side in Side if side in strides]
+        stated += [words[side].format(count=strides[side]) for side in Side if side in strides]
         if math.isfinite(cadence_steps_min):
-            said.append(tr("Cadence {cadence} steps per minute.").format(cadence=cadence))
-        self.in_words = " ".join(said)
+            stated.append(tr("Cadence {cadence} steps per minute.").format(cadence=cadence))
+        self.in_words = " ".join(stated)
 
     def set_size(self, size: float) -> None:
         self._strides.set_size(size)

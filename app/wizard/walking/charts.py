@@ -99,17 +99,17 @@ class WalkingCharts(Card):
 
     def _say_provisional(self, sides: list[Side]) -> None:
         words = tr("{sides} provisional") if self._is_compact else tr("{sides} provisional until five strides")
-        said = words.format(sides=", ".join(side.letter for side in sides)) if sides else ""
-        if said != self._provisional.text():
-            self._provisional.setText(said)
+        stated = words.format(sides=", ".join(side.letter for side in sides)) if sides else ""
+        if stated != self._provisional.text():
+            self._provisional.setText(stated)
 
     def _say_of_hips(self, provisional: list[Side], are_known: bool) -> None:
         words = tr("{sides} provisional") if self._is_compact else tr("{sides} provisional until calibrated by walking")
-        said = words.format(sides=", ".join(side.letter for side in provisional)) if provisional else ""
+        stated = words.format(sides=", ".join(side.letter for side in provisional)) if provisional else ""
         if not are_known:
-            said = tr("not known yet") if self._is_compact else tr("not known before the first strides")
-        if said != self._hip_note.text():
-            self._hip_note.setText(said)
+            stated = tr("not known yet") if self._is_compact else tr("not known before the first strides")
+        if stated != self._hip_note.text():
+            self._hip_note.setText(stated)
 
     def _build(self) -> None:
         hip = self._head(Text(self._look, tr("Hip"), size=16, weight=SEMIBOLD), tr("flexion + (°)"))
@@ -204,12 +204,12 @@ def last_angles_in_words(live: WalkingReadout) -> str:
     hips = {Side.LEFT: tr("Left hip {angle}."), Side.RIGHT: tr("Right hip {angle}.")}
     knees = {Side.LEFT: tr("Left knee {angle}."), Side.RIGHT: tr("Right knee {angle}.")}
     ankles = {Side.LEFT: tr("Left ankle {angle}."), Side.RIGHT: tr("Right ankle {angle}.")}
-    said = []
+    stated = []
     for traces, words in ((live.hips, hips), (live.knees, knees), (live.ankles, ankles)):
         for side in Side:
             if side in traces:
                 angles = traces[side].angle_rad
                 last = math.degrees(angles[-1]) if len(angles) else math.nan
                 known = degrees_in_words(last, 0) if math.isfinite(last) else tr("missing")
-                said.append(words[side].format(angle=known))
-    return " ".join(said)
+                stated.append(words[side].format(angle=known))
+    return " ".join(stated)

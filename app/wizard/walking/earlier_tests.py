@@ -1,4 +1,5 @@
-"""What the patient's earlier visits tell of timed tests, as it was kept for the course: nothing is evaluated for it."""
+"""What the patient's earlier visits report of timed tests, as it was kept for the course: nothing is evaluated for
+it."""
 
 import datetime
 from typing import TYPE_CHECKING
@@ -56,7 +57,7 @@ class EarlierTests(QObject):
         for visit in reversed(self._visits):
             walked = visit.course.condition(condition) if visit.course is not None else None
             test = walked.test(column) if walked is not None else None
-            if test is not None and test.is_told:
+            if test is not None and test.is_reported:
                 return visit, test
         return None
 
@@ -78,5 +79,5 @@ class EarlierTests(QObject):
             self.changed.emit()
 
     def _on_refused(self, _what: str, _remedy: str) -> None:
-        """No harm: what was before is not told. It is asked for again when the step is entered anew."""
+        """No harm: what was before is not reported. It is asked for again when the step is entered again."""
         self._session_id = None

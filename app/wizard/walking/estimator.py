@@ -26,7 +26,7 @@ from core.timed.live import LiveTest
 
 KEPT_S = 15.0
 SILENT_S = 0.5
-# Beyond, a knee or ankle is not where its sensors are said to be. Of 12 ankles of people walking after a stroke three
+# Beyond, a knee or ankle is not where its sensors are stated to be. Of 12 ankles of people walking after a stroke three
 # left it, for 0.2 s in all at most: such samples are left out, and only where they are more so is the whole joint.
 PLAUSIBLE_RAD = np.deg2rad(-40.0), np.deg2rad(160.0)
 OUTSIDE_S = 0.5
@@ -47,7 +47,7 @@ class WalkingEstimator:
     Attributes
     ----------
     calibrated
-        The joints with a calibration whose two sensors are worn and heard.
+        The joints with a calibration whose two sensors are worn and received.
     on_value
         Called by the estimator's thread whenever `state` has a new value of a stride, so that nobody has to look.
     test
@@ -72,13 +72,13 @@ class WalkingEstimator:
             joint: _Curve(self._steps_s[joint.proximal]) for joint in LEG_JOINTS if joint in self.calibrated
         }
         self._feet = {site.leg_side: _Foot() for site in sensors if site.segment is Segment.FOOT}
-        self._heard_s: dict[Site, float] = {}
+        self._received_s: dict[Site, float] = {}
         self._first_s: float | None = None
         self._now_s = -np.inf
         self._count_from_s = -np.inf  # set by the screen
         self._values = StrideValues()
-        self._told: deque[StrideValue] = deque(maxlen=KEPT_VALUES)
-        self._values_told = 0
+        self._reported: deque[StrideValue] = deque(maxlen=KEPT_VALUES)
+        self._values_reported = 0
         self.on_value: Callable[[], None] | None = None
         self.test: LiveTest | None = None  # set by the screen
         self._wishes: deque[tuple[Joint, JointCalibration]] = deque()  # put in by the screen, taken by the estimator
@@ -115,13 +115,13 @@ class WalkingEstimator:
         if not worn:
             return
         self._hear(worn)
-        told = self._walking.update(worn)
+        reported = self._walking.update(worn)
         test = self.test
         if test is not None:
-            test.update(told.turned)
+            test.update(reported.turned)
         kept_from_s = self._now_s - KEPT_S
         joints = {}
-        for joint, new in told.joints.items():
+        for joint, new in reported.joints.items():
             if joint not in self._curves:
                 self._curves[joint] = _Curve(self._steps_s[joint.proximal], HIP_RAD)
             joints[joint] = self._curves[joint].add(new)
@@ -129,21 +129,21 @@ class WalkingEstimator:
         implausible = tuple(joint for joint, curve in self._curves.items() if curve.outside_s > OUTSIDE_S)
         values = tuple(
             one
-            for one in self._values.update(replace(told, joints=joints))
+            for one in self._values.update(replace(reported, joints=joints))
             if one.measure is not TargetMeasure.KNEE_SWING_PEAK or knee_of(one.side) not in implausible
         )
-        self._told.extend(values)
-        self._values_told += len(values)
+        self._reported.extend(values)
+        self._values_reported += len(values)
         missing = tuple(site for site in self._walking_sites() if self._is_silent(site))
         lanes, cadences, strides = {}, [], {}
         for side, foot in self._feet.items():
             site = Site(f"{side}_{Segment.FOOT}")
-            foot.take(told.feet[side], worn.get(site))
+            foot.take(reported.feet[side], worn.get(site))
             lanes[side] = foot.lane(kept_from_s, is_silent=site in missing)
             count = foot.strides_since(self._count_from_s, kept_from_s)
             if not foot.is_doubtful:
                 strides[side] = count
-            cadence = told.feet[side].cadence_steps_min
+            cadence = reported.feet[side].cadence_steps_min
             if np.isfinite(cadence) and site not in missing:
                 cadences.append(cadence)
         self.state = WalkingReadout(
@@ -152,13 +152,13 @@ class WalkingEstimator:
             lanes=lanes,
             strides=strides,
             cadence_steps_min=float(np.mean(cadences)) if cadences else math.nan,
-            slips=told.slips,
-            corrections=told.corrections,
+            slips=reported.slips,
+            corrections=reported.corrections,
             missing=missing,
             implausible=implausible,
-            doubtful=tuple(Site(f"{side}_{Segment.FOOT}") for side, foot in told.feet.items() if foot.is_doubtful),
-            stride_values=tuple(self._told),
-            values_told=self._values_told,
+            doubtful=tuple(Site(f"{side}_{Segment.FOOT}") for side, foot in reported.feet.items() if foot.is_doubtful),
+            stride_values=tuple(self._reported),
+            values_reported=self._values_reported,
             test=None if test is None else test.state,
         )
         if values and (on_value := self.on_value) is not None:
@@ -166,17 +166,17 @@ class WalkingEstimator:
 
     def _hear(self, worn: Mapping[Site, ImuBlock]) -> None:
         for site, block in worn.items():
-            self._heard_s[site] = float(block.time_s[-1])
+            self._received_s[site] = float(block.time_s[-1])
         if self._first_s is None:
             self._first_s = min(float(block.time_s[0]) for block in worn.values())
-        self._now_s = max(self._heard_s.values())
+        self._now_s = max(self._received_s.values())
 
     def _walking_sites(self) -> list[Site]:
         return [site for site in Site if site in self._site_of.values()]
 
     def _is_silent(self, site: Site) -> bool:
         assert self._first_s is not None
-        return self._now_s - self._heard_s.get(site, self._first_s) > SILENT_S
+        return self._now_s - self._received_s.get(site, self._first_s) > SILENT_S
 
 
 class _Curve:
@@ -247,7 +247,7 @@ class _Foot:
     def __init__(self) -> None:
         self._phases: list[tuple[Phase, float]] = []  # each lasts until the next
         self._silent_s: list[tuple[float, float]] = []
-        self._heard_s: float | None = None
+        self._received_s: float | None = None
         self._contacts_s: list[float] = []  # of the last seconds
         self._from_s = -np.inf
         self._passed = 0  # strides since `_from_s` whose beginning is not among them any more
@@ -256,11 +256,11 @@ class _Foot:
     def take(self, foot: LiveFoot, block: ImuBlock | None) -> None:
         self.is_doubtful |= foot.is_doubtful and foot.doubtful_from_s >= self._from_s
         if block is not None:
-            before = block.time_s[:1] if self._heard_s is None else np.array([self._heard_s])
+            before = block.time_s[:1] if self._received_s is None else np.array([self._received_s])
             time_s = np.concatenate([before, block.time_s])
             ends = np.flatnonzero(np.diff(time_s) > SILENT_S)
             self._silent_s += zip(time_s[ends].tolist(), time_s[ends + 1].tolist(), strict=True)
-            self._heard_s = float(time_s[-1])
+            self._received_s = float(time_s[-1])
         for events, change in _by_sample(foot.events, foot.changes):
             for event in events:
                 self._begin(PHASE_AFTER[event.event], event.time_s)
@@ -287,19 +287,19 @@ class _Foot:
         while len(self._phases) > 1 and self._phases[1][1] < from_s:
             del self._phases[0]
         self._silent_s = [span for span in self._silent_s if span[1] >= from_s]
-        following = [*self._phases[1:], (Phase.UNKNOWN, self._heard_s if is_silent else None)]
+        following = [*self._phases[1:], (Phase.UNKNOWN, self._received_s if is_silent else None)]
         spans = tuple(
             PhaseSpan(phase, start_s, end_s)
             for (phase, start_s), (_, end_s) in zip(self._phases, following, strict=False)
             if phase is not Phase.UNKNOWN
         )
         silent: tuple[tuple[float, float | None], ...] = tuple(self._silent_s)
-        if is_silent and self._heard_s is not None:
-            silent = (*silent, (self._heard_s, None))
+        if is_silent and self._received_s is not None:
+            silent = (*silent, (self._received_s, None))
         return LiveLane(spans, silent)
 
     def _begin(self, phase: Phase, at_s: float) -> None:
-        """An event told since when the foot is in a phase: what was shown after that instant was premature."""
+        """An event reported since when the foot is in a phase: what was shown after that instant was premature."""
         while self._phases and self._phases[-1][1] >= at_s:
             self._phases.pop()
         if not self._phases or self._phases[-1][0] is not phase:
@@ -317,8 +317,8 @@ class _Foot:
 def _by_sample(
     events: tuple[LiveEvent, ...], changes: tuple[PhaseChange, ...]
 ) -> list[tuple[list[LiveEvent], PhaseChange]]:
-    """Events and the change that one sample told; every event comes with a change."""
-    return [([event for event in events if event.told_s == change.told_s], change) for change in changes]
+    """Events and the change that one sample reported; every event comes with a change."""
+    return [([event for event in events if event.reported_s == change.reported_s], change) for change in changes]
 
 
 def _read_only(part: FloatArray) -> FloatArray:

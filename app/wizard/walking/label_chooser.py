@@ -53,7 +53,7 @@ class LabelChooser(Themed):
         return [option for option in self._options if option.focusPolicy() is Qt.FocusPolicy.TabFocus]
 
     def show_labels(self, labels: tuple[str, ...], choice: str) -> None:
-        """Offer `labels`; a choice that is none of them stands in the field."""
+        """Offer `labels`; a choice that is none of them is in the field."""
         while len(self._options) > len(labels):
             self._options.pop().deleteLater()
         while len(self._options) < len(labels):
@@ -119,8 +119,8 @@ class LabelChooser(Themed):
     def _flow(self, width: int) -> list[QRect]:
         """Where each label lies, and the field last, in lines of `width`."""
         px = self._look.theme.px
-        wanted = [*(option.sizeHint().width() for option in self._options), px(FIELD_WIDTH)]
-        return flow(wanted, width, px(GAP), px(HEIGHT))
+        required = [*(option.sizeHint().width() for option in self._options), px(FIELD_WIDTH)]
+        return flow(required, width, px(GAP), px(HEIGHT))
 
     def _height_for(self, width: int) -> int:
         return self._flow(width)[-1].bottom() + 1
@@ -140,9 +140,9 @@ class LabelChooser(Themed):
         self._take(clicked.text())
 
     def _on_own_committed(self) -> None:
-        said = self.own.text.strip()
-        if said:
-            self._take(said)
+        stated = self.own.text.strip()
+        if stated:
+            self._take(stated)
 
 
 class _Option(QAbstractButton):

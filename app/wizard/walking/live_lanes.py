@@ -1,7 +1,7 @@
 """When was which foot on the floor, while the patient walks? One lane per leg under the live curves, on their time.
 
 The phases look as in the results: loading full, foot flat pale, pre-swing hatched, swing empty on a base line. What a
-foot did may be told a moment late, so the end of a lane is drawn anew as far back as its phases have changed.
+foot did may be given a moment late, so the end of a lane is drawn again as far back as its phases have changed.
 """
 
 from collections.abc import Iterator, Mapping
@@ -76,7 +76,7 @@ class LiveLanes(Themed):
         self.redraw()
 
     def redraw(self) -> None:
-        """Draw everything anew, the next time it is in sight."""
+        """Draw everything again, the next time it is in sight."""
         self._picture = None
         self.update()
 
@@ -152,11 +152,11 @@ class LiveLanes(Themed):
         c = theme.colours
         right = (picture.columns if end_s is None else picture.x_of(end_s)) / ratio
         left = max(left, 0.0)
-        said = tr("{side} foot: no signal").format(side=side.letter)
+        stated = tr("{side} foot: no signal").format(side=side.letter)
         painter.setFont(theme.font(12, MEDIUM))
-        wanted = painter.fontMetrics().horizontalAdvance(said) + theme.px(16)
+        required = painter.fontMetrics().horizontalAdvance(stated) + theme.px(16)
         if end_s is None:
-            left = min(left, right - wanted)
+            left = min(left, right - required)
         if right <= 0:
             return
         box = QRectF(place.left() + left, self._top(side), right - left, theme.px(LANE))
@@ -164,9 +164,9 @@ class LiveLanes(Themed):
         painter.setBrush(QColor(c.caution))
         radius = CHIP_RADIUS * theme.scale
         painter.drawRoundedRect(box.adjusted(0.5, 0.5, -0.5, -0.5), radius, radius)
-        if box.width() >= wanted:
+        if box.width() >= required:
             painter.setPen(QColor(c.caution_ink))
-            painter.drawText(box, Qt.AlignmentFlag.AlignCenter, said)
+            painter.drawText(box, Qt.AlignmentFlag.AlignCenter, stated)
 
     def _paint_frame(self, painter: QPainter) -> None:
         """Chips and time axis, which stand still."""
@@ -182,12 +182,12 @@ class LiveLanes(Themed):
             top = place.bottom() + px(4)
             painter.setPen(theme.pen(c.control, 1))
             painter.drawLine(QPointF(x, top), QPointF(x, top + px(TICK)))
-            said = tr("now") if ago_s == 0 else tr("\N{MINUS SIGN}{seconds:.0f} s").format(seconds=ago_s)
-            width = painter.fontMetrics().horizontalAdvance(said) + 2
+            stated = tr("now") if ago_s == 0 else tr("\N{MINUS SIGN}{seconds:.0f} s").format(seconds=ago_s)
+            width = painter.fontMetrics().horizontalAdvance(stated) + 2
             left = min(x - width / 2, self.width() - width)
             painter.setPen(QColor(c.ink2))
             label = QRectF(left, top + px(TICK), width, self.height() - top - px(TICK))
-            painter.drawText(label, Qt.AlignmentFlag.AlignCenter, said)
+            painter.drawText(label, Qt.AlignmentFlag.AlignCenter, stated)
 
     def _on_look_changed(self) -> None:
         self.updateGeometry()

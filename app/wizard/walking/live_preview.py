@@ -1,4 +1,4 @@
-"""What is live while somebody walks: the estimator with all that is known, told amid a walk what that walk adds.
+"""What is live while somebody walks: the estimator with all that is known, reported amid a walk what that walk adds.
 
 Free motion alone leaves the ankles' axes unsure, and may not have shown the hips. So the walk that goes on is looked at
 twice, once each foot has made enough strides and once a turn has come by, together with what was recorded before; what
@@ -42,7 +42,7 @@ class LivePreview(QObject):
         super().__init__(parent)
         self._visit = visit
         self._estimator: WalkingEstimator | None = None
-        self._seen: WalkingReadout | None = None  # as the estimator has told `shown`
+        self._seen: WalkingReadout | None = None  # as the estimator has reported `shown`
         self.shown: WalkingReadout | None = None
         self._counted_before: dict[Side, int] = {}  # by estimators before this one, amid this walk
         self._is_ankle_asked = self._are_hips_asked = False
@@ -68,7 +68,7 @@ class LivePreview(QObject):
             self._estimator.count_from(began_s)
 
     def look(self) -> "WalkingReadout | None":
-        """What the estimator tells now, time going on also while no sensor is heard; None where none works."""
+        """What the estimator reports now, time going on also while no sensor is received; None where none works."""
         if self._estimator is None:
             return None
         view, sensors = self._estimator.state, self._visit.sensors
@@ -77,7 +77,7 @@ class LivePreview(QObject):
         return view
 
     def follow(self, view: "WalkingReadout") -> bool:
-        """Take what is told amid a walk; whether it is something new to be shown."""
+        """Take what is reported amid a walk; whether it is something new to be shown."""
         if view is self._seen or math.isnan(view.now_s):
             return False
         self._seen = view
@@ -135,6 +135,13 @@ class LivePreview(QObject):
         """The last seconds of the walk that goes on, as if it had ended."""
         seconds = min(acquisition.now_s - walk.began_s, LOOKED_BACK_S)
         latest = {site: acquisition.latest(name, seconds) for name, site in self._visit.sensors.site_of.items()}
-        heard = {site: block for site, block in latest.items() if len(block)}
-        told = walk.details
-        return Recording(told.name, told.kind, told.folder, heard, condition=told.condition, alignment=told.alignment)
+        received = {site: block for site, block in latest.items() if len(block)}
+        reported = walk.details
+        return Recording(
+            reported.name,
+            reported.kind,
+            reported.folder,
+            received,
+            condition=reported.condition,
+            alignment=reported.alignment,
+        )

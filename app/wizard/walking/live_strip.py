@@ -33,8 +33,8 @@ KEPT_S = 15.0  # more than any width shows
 ROOM = 8192  # rows: twenty seconds at 400 Hz; a faster sensor's take more
 DEG_PER_RAD = 180 / np.pi
 BREAK_S = 0.1  # without a sample for longer, the line ends; a radio's bursts lie closer
-MISSING_S = 0.5  # without a sample for longer, it is said in words
-FIRST_ANGLE_S = 5.0  # the filters may look for the vertical for so long before they tell a first angle
+MISSING_S = 0.5  # without a sample for longer, it is stated in words
+FIRST_ANGLE_S = 5.0  # the filters may look for the vertical for so long before they report a first angle
 LEAST_BETWEEN_TICKS = 18  # figures of 12 px
 
 
@@ -151,7 +151,7 @@ class LiveStrip(pg.GraphicsView):  # type: ignore[misc]  # pyqtgraph has no type
 class _Trace:
     """What one leg has shown: rows (n,) with a NaN row where the line breaks, and the gaps that count as missing.
 
-    `length_px` is how long the line is up to each row: it tells where in its pattern a dash begins, so that dashes
+    `length_px` is how long the line is up to each row: it gives where in its pattern a dash begins, so that dashes
     stand still in time. New rows are written behind the last; when there is no room left, those kept move to the front.
     """
 
@@ -159,7 +159,7 @@ class _Trace:
         self._rows = np.zeros((4, ROOM))
         self._count = 0
         self.last_s = -np.inf  # of all rows
-        self.heard_s = -np.inf  # of the rows with an angle
+        self.received_s = -np.inf  # of the rows with an angle
         self.gaps: tuple[tuple[float, float], ...] = ()
         self._name_columns()
 
@@ -212,13 +212,13 @@ class _Trace:
         """Note where, before or among these new instants with an angle, there was none for long."""
         if not len(known_s):
             return
-        if self.heard_s > -np.inf and known_s[0] - self.heard_s > MISSING_S:
-            self.gaps += ((self.heard_s, float(known_s[0])),)
+        if self.received_s > -np.inf and known_s[0] - self.received_s > MISSING_S:
+            self.gaps += ((self.received_s, float(known_s[0])),)
         for row in np.flatnonzero(known_s[1:] - known_s[:-1] > MISSING_S).tolist():
             self.gaps += ((float(known_s[row]), float(known_s[row + 1])),)
-        self.heard_s = float(known_s[-1])
+        self.received_s = float(known_s[-1])
         if self.gaps:
-            self.gaps = tuple(gap for gap in self.gaps if gap[1] > self.heard_s - KEPT_S)
+            self.gaps = tuple(gap for gap in self.gaps if gap[1] > self.received_s - KEPT_S)
 
     def lines_from(self, time_s: float) -> list[tuple[slice, bool]]:
         """Give the pieces of the line from the row before `time_s` on, and whether each is thin."""
@@ -247,7 +247,7 @@ class _History(QWidget):
         self._picture: ScrollingPicture | None = None
         self._now_s, self._began_s = 0.0, np.nan
         self._traces: dict[Side, _Trace] = {}
-        self._dirty_s = np.inf  # what is later must be drawn anew
+        self._dirty_s = np.inf  # what is later must be drawn again
         self._drawn: tuple[MissingSpan, ...] = ()
         self.missing: tuple[MissingSpan, ...] = ()
 
@@ -261,7 +261,7 @@ class _History(QWidget):
             self.redraw()
 
     def redraw(self) -> None:
-        """Draw everything anew from the history, the next time it is in sight."""
+        """Draw everything again from the history, the next time it is in sight."""
         self._picture = None
         self._pens = {}
         self.update()
@@ -351,19 +351,19 @@ class _History(QWidget):
         taken: list[tuple[float, float]] = []
         for span in self.missing:
             left, right = (end / ratio for end in self._ends(span, picture))
-            said = tr("{side} missing").format(side=span.side.letter)
-            wanted = metrics.horizontalAdvance(said) + px(16)
+            stated = tr("{side} missing").format(side=span.side.letter)
+            required = metrics.horizontalAdvance(stated) + px(16)
             left = max(left, 0.0)
-            if right - left < wanted:
+            if right - left < required:
                 if span.end_s is not None:
                     continue
-                left = right - wanted
+                left = right - required
             row = sum(begin < right and left < end for begin, end in taken)
             taken.append((left, right))
-            plate = QRectF(left, row * px(20), wanted, px(24))
+            plate = QRectF(left, row * px(20), required, px(24))
             painter.fillRect(plate, QColor(theme.colours.caution))
             painter.setPen(QColor(theme.colours.caution_ink))
-            painter.drawText(plate, Qt.AlignmentFlag.AlignCenter, said)
+            painter.drawText(plate, Qt.AlignmentFlag.AlignCenter, stated)
 
     def _ends(self, span: MissingSpan, picture: ScrollingPicture) -> tuple[float, float]:
         left = picture.x_of(span.start_s)
@@ -374,9 +374,9 @@ class _History(QWidget):
             for start_s, end_s in trace.gaps:
                 if end_s > self._now_s - self._seconds:
                     yield MissingSpan(side, start_s, end_s)
-            if np.isfinite(trace.heard_s) and self._now_s - trace.heard_s > MISSING_S:
-                yield MissingSpan(side, trace.heard_s, None)
-            elif np.isinf(trace.heard_s) and self._now_s - self._began_s > FIRST_ANGLE_S:
+            if np.isfinite(trace.received_s) and self._now_s - trace.received_s > MISSING_S:
+                yield MissingSpan(side, trace.received_s, None)
+            elif np.isinf(trace.received_s) and self._now_s - self._began_s > FIRST_ANGLE_S:
                 yield MissingSpan(side, self._began_s, None)
 
     def _widen(self, angle_deg: FloatArray) -> None:

@@ -1,4 +1,4 @@
-"""Walks in the sensors' own memories: made ready before them, told of while they last, fetched after them."""
+"""Walks in the sensors' own memories: made ready before them, informed of while they last, fetched after them."""
 
 from typing import TYPE_CHECKING
 
@@ -27,7 +27,7 @@ class MemoryControl(QObject):
     lives
         The sensors send again what they measure, as was asked.
     done
-        No further walk is wanted.
+        No further walk is required.
     """
 
     changed = Signal()
@@ -65,7 +65,7 @@ class MemoryControl(QObject):
 
     @property
     def shown(self) -> ProgressShown | None:
-        """What stands in the place of the curves; None: they do."""
+        """What is in the place of the curves; None: they do."""
         sensors, recordings = self._visit.sensors, self._visit.recordings
         if self.is_synchronising:
             return progress_of(sensors.sync, sensors.acquisition.sensors if sensors.acquisition is not None else ())
@@ -92,9 +92,9 @@ class MemoryControl(QObject):
         has_failed = bool(self._visit.sensors.sync.failure[0])
         words = tr("Try again") if has_failed else tr("Prepare the sensors")
         ready = BarAction(words, self._make_ready, tr("Enter"), Icon.REPEAT if has_failed else None)
-        others = [BarAction(tr("Record walks live"), self.send_live, is_wished=False)]
+        others = [BarAction(tr("Record walks live"), self.send_live, is_requested=False)]
         if any(recording.details.is_kept for recording in recordings.walks):
-            others.append(BarAction(tr("Results"), self.done.emit, icon=Icon.NEXT, is_wished=False))
+            others.append(BarAction(tr("Results"), self.done.emit, icon=Icon.NEXT, is_requested=False))
         return BarState(primary=ready, others=tuple(others))
 
     def quiet(self, *, wants_live: bool) -> BarAction | None:
@@ -107,7 +107,7 @@ class MemoryControl(QObject):
         if sensors.dots is not None and sensors.dots.record_hz is None and sensors.are_loose:
             return BarAction(tr("Synchronise again"), self.send_live)
         is_wish = wants_live and sensors.are_in_memory
-        return BarAction(tr("Record walks live"), self.send_live, is_wished=False) if is_wish else None
+        return BarAction(tr("Record walks live"), self.send_live, is_requested=False) if is_wish else None
 
     def _make_ready(self) -> None:
         self._synchronise(SyncPurpose.MEMORIES)

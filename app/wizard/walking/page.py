@@ -37,15 +37,15 @@ from core.timed.protocols import TimedProtocol
 
 MARGIN, BETWEEN = 24, 12
 MARGIN_COMPACT, BETWEEN_COMPACT = 8, 8
-NOTICE = 64  # reserved above the charts while a walk is recorded, so that nothing jumps when something is to be said
+NOTICE = 64  # reserved above the charts while a walk is recorded, so that nothing jumps when something is to be stated
 SIDE_WIDTH, SIDE_WIDTH_WIDE = 244, 320
 FIGURE_WIDE, FIGURE_COMPACT = 72, 36
-NARROW_BELOW = 660  # of the page: a question stands above its answers, a word above its figure
+NARROW_BELOW = 660  # of the page: a question is above its answers, a word above its figure
 WIDE_FROM = 1400  # of the page
 MOST_WIDTH = 1600
 HIPS_FROM = 680  # of the page
 SECONDS, SECONDS_WIDE = 8.0, 12.0
-DESCRIBED_EVERY_S = 1.0  # who listens is not told every frame
+DESCRIBED_EVERY_S = 1.0  # who listens is not reported every frame
 ANY_WIDTH = 16777215  # what Qt calls no limit
 
 
@@ -128,10 +128,10 @@ class WalkingPage(Themed):
         self.figures.show_figures(live.strides, live.cadence_steps_min)
         if not 0.0 <= live.now_s - self._described_s < DESCRIBED_EVERY_S:
             self._described_s = live.now_s
-            said = [self.figures.in_words, last_angles_in_words(live)]
-            self.charts.setAccessibleDescription(" ".join(filter(None, said)))
+            stated = [self.figures.in_words, last_angles_in_words(live)]
+            self.charts.setAccessibleDescription(" ".join(filter(None, stated)))
 
-    def count_anew(self) -> None:
+    def count_again(self) -> None:
         """Show no stride of a walk that begins: those of the one before are not its own."""
         self.figures.show_figures(dict.fromkeys(self.live.strides, 0), math.nan)
 
@@ -209,15 +209,16 @@ class WalkingPage(Themed):
         return not self.is_recording and self.next.chooser.choose_digit(digit)
 
     def show_message(self, what: str, then: str = "", *, is_caution: bool = True) -> None:
-        """Say what happened and what to do or what follows; nothing takes it back. No caution: it is as was told."""
+        """Say what happened and what to do or what follows; nothing takes it back. No caution: it is as was
+        reported."""
         if (what, then) == self._message:
             return
         self._message = what, then
         self._has_message = bool(what)
         if what:
-            self.notice.tell(Icon.WARNING if is_caution else Icon.INFO, what, then, is_caution=is_caution)
+            self.notice.show_message(Icon.WARNING if is_caution else Icon.INFO, what, then, is_caution=is_caution)
         else:
-            self.notice.tell(
+            self.notice.show_message(
                 Icon.INFO,
                 tr("A standard deviation needs ten strides per leg"),
                 tr("Starting, turning and stopping are excluded automatically."),

@@ -1,7 +1,8 @@
-"""Joins the patient's screen to a walk: values of the live estimator go to its bar and tone as soon as they are told.
+"""Joins the patient's screen to a walk: values of the live estimator go to its bar and tone as soon as they are
+reported.
 
-A value does not wait for the next of the thirty looks a second at the estimator: its thread says that there is one, and
-the screen's thread takes it. What was reached is counted while a walk is recorded, for each target that was set.
+A value does not wait for the next of the thirty looks a second at the estimator: its thread states that there is one,
+and the screen's thread takes it. What was reached is counted while a walk is recorded, for each target that was set.
 """
 
 import contextlib
@@ -33,9 +34,9 @@ if TYPE_CHECKING:
 
 
 class PatientFeedback(QObject):
-    """`run_wished`: Space was pressed on the patient's screen."""
+    """`run_requested`: Space was pressed on the patient's screen."""
 
-    run_wished = Signal()
+    run_requested = Signal()
     _news = Signal()
 
     def __init__(self, look: ThemeNotifier, visit: "Visit", controls: ControlsCard, parent: QObject) -> None:
@@ -75,7 +76,7 @@ class PatientFeedback(QObject):
         self.show_reasons()
         window = self.window = PatientWindow(self._look)
         window.closed.connect(self.close)
-        window.run_wished.connect(self.run_wished)
+        window.run_requested.connect(self.run_requested)
         self._controls.setVisible(True)
         self._controls.focus()
         window.show_view(self.view)
@@ -97,12 +98,12 @@ class PatientFeedback(QObject):
             self.window.toggle_full_screen()
 
     def watch(self, estimator: "WalkingEstimator | None") -> None:
-        """Take values from here on from `estimator`, which begins to count them anew."""
+        """Take values from here on from `estimator`, which begins to count them again."""
         if self._estimator is not None:
             self._estimator.on_value = None
         self._estimator, self._seen = estimator, 0
         if estimator is not None:
-            estimator.on_value = self._tell_news
+            estimator.on_value = self._show_news
         self.show_reasons()
 
     def begin_walk(self) -> None:
@@ -127,7 +128,7 @@ class PatientFeedback(QObject):
             self._show()
 
     def show_reasons(self) -> None:
-        """Judge anew what can be a target; what no longer can is none from here on."""
+        """Judge again what can be a target; what no longer can is none from here on."""
         sensors = self._visit.sensors
         rested = {site for sensor, site in sensors.site_of.items() if sensor in self._visit.rests}
         reasons = reasons_against(
@@ -143,7 +144,7 @@ class PatientFeedback(QObject):
             self._last.clear()  # a slip is found later than it happens, so what came before is in doubt too
         self._show()
 
-    def _tell_news(self) -> None:
+    def _show_news(self) -> None:
         """Called by the estimator's thread."""
         with contextlib.suppress(RuntimeError):  # the visit was closed meanwhile
             self._news.emit()
@@ -153,13 +154,13 @@ class PatientFeedback(QObject):
         if self._estimator is None:
             return
         state = self._estimator.state
-        new, self._seen = state.values_told - self._seen, state.values_told
+        new, self._seen = state.values_reported - self._seen, state.values_reported
         if not self.is_open or self.target is None or new <= 0:
             return
         self.judge(state)
-        wanted = self.target.measure, self.target.side
+        required = self.target.measure, self.target.side
         for one in state.stride_values[-new:]:
-            if (one.measure, one.side if one.measure.has_side else None) == wanted and not self._is_waiting:
+            if (one.measure, one.side if one.measure.has_side else None) == required and not self._is_waiting:
                 self._take(self.target, shown_value(one.value))
         self._show()
 
@@ -209,7 +210,7 @@ def reasons_against(
     reasons = {}
     for measure, side in choices():
         found = assess_target(measure, side, worn, calibration, prosthetic_sides)
-        if not found.is_told:
+        if not found.is_reported:
             sentences = [gate_sentence(reason) for reason in found.reasons[:1]]
             reasons[measure, side] = sentences[0] if sentences else _not_measured(measure, side, worn)
         elif measure is TargetMeasure.KNEE_SWING_PEAK and side is not None:
@@ -236,8 +237,8 @@ def _is_gated(target: Target, view: "WalkingReadout", worn: Collection[Site]) ->
     doubtful = slipped | set(view.missing) | set(view.doubtful)
     feet = {Site(f"{side}_{Segment.FOOT}") for side in Side}
     if target.side is None:
-        heard = {site for site in feet if site in worn} - doubtful
-        return not heard
+        received = {site for site in feet if site in worn} - doubtful
+        return not received
     if target.measure is TargetMeasure.KNEE_SWING_PEAK:
         is_silent = bool(doubtful & {Site(f"{target.side}_{segment}") for segment in LEG_SEGMENTS})
         return is_silent or knee_of(target.side) in view.implausible

@@ -61,11 +61,11 @@ class WalkingReadout:
         Sites that are silent; feet whose events disagree with their knees now.
     implausible
         Knees and ankles whose angle left what a joint can do within the last seconds, so that they are not in `joints`.
-    stride_values, values_told
+    stride_values, values_reported
         The values of the last strides in the order of telling, for a target; and how many there were of them so far,
         those that are no longer among them included.
     test
-        How the timed test stands that the walk is; None of other walks.
+        How the timed test is that the walk is; None of other walks.
     """
 
     now_s: float = math.nan
@@ -79,7 +79,7 @@ class WalkingReadout:
     implausible: tuple[Joint, ...] = ()
     doubtful: tuple[Site, ...] = ()
     stride_values: tuple[StrideValue, ...] = ()
-    values_told: int = 0
+    values_reported: int = 0
     test: LiveReadout | None = None
 
     @property
@@ -95,7 +95,8 @@ class WalkingReadout:
         return {joint.side: trace for joint, trace in self.joints.items() if joint.is_hip}
 
     def while_silent(self, now_s: float, sites: Collection[Site]) -> "WalkingReadout":
-        """The same at `now_s` while no sensor is heard: time goes on, what came last ends there, nothing is made up."""
+        """The same at `now_s` while no sensor is received: time goes on, what came last ends there, nothing is made
+        up."""
         if math.isnan(self.now_s) or now_s <= self.now_s:
             return self
         lanes = {side: _silent_since(lane, self.now_s) for side, lane in self.lanes.items()}

@@ -82,7 +82,7 @@ class WalkingStep(Step):
 
             page = self._page = WalkingPage(self._look, self.bench.entry)
             page.bench.chosen.connect(self.bench.choose)
-            page.bench.told.connect(self._on_change_told)
+            page.bench.reported.connect(self._on_change_reported)
             page.label_chosen.connect(self._on_label_chosen)
             page.next.test.chosen.connect(self._timed.on_chosen)
             page.keep_pressed.connect(self._on_keep_pressed)
@@ -92,7 +92,7 @@ class WalkingStep(Step):
             page.restrapped_pressed.connect(self._on_restrapped_pressed)
             page.memory.stop_pressed.connect(self.memory.stop)
             self.feedback = PatientFeedback(self._look, self._visit, page.patient_controls, self)
-            self.feedback.run_wished.connect(self.run)
+            self.feedback.run_requested.connect(self.run)
             self._preview.renewed.connect(self.feedback.watch)
         return self._page
 
@@ -199,11 +199,11 @@ class WalkingStep(Step):
 
     def return_to_first(self) -> None:
         """Say that the prosthesis is put back to where it began."""
-        if said := self.bench.return_to_first():
+        if stated := self.bench.return_to_first():
             self._kept = self._discarded = None
             self._label = self.bench.returned_to
             self._show()
-            self.offered.emit(said)
+            self.offered.emit(stated)
 
     def toggle_patient_screen(self) -> None:
         if self.feedback is not None:
@@ -281,7 +281,7 @@ class WalkingStep(Step):
         assert acquisition is not None
         self._notice.is_troubled = self._visit.controller.is_gone
         self._at_stop = None
-        self.page.count_anew()
+        self.page.count_again()
         label, alignment = self._label, None
         if self.bench.is_shown:
             label, alignment = self.bench.next_walk()
@@ -319,11 +319,11 @@ class WalkingStep(Step):
             self.offered.emit(tr("{walk} excluded.").format(walk=called))
         self._show()
 
-    # what is to be said
+    # what is to be stated
 
     @property
     def _are_sensors(self) -> tuple[bool, bool, bool]:
-        """What changes by itself, and what can be done with it: nothing is heard, or clocks have drifted apart."""
+        """What changes by itself, and what can be done with it: nothing is received, or clocks have drifted apart."""
         sensors = self._visit.sensors
         return sensors.are_silent, sensors.are_loose, sensors.are_ready_for_walks
 
@@ -393,7 +393,7 @@ class WalkingStep(Step):
         self._page.show_memory(self.memory.shown)
         self.changed.emit()
 
-    # what the page and the visit tell
+    # what the page and the visit report
 
     @Slot()
     def _on_begun(self) -> None:
@@ -416,11 +416,13 @@ class WalkingStep(Step):
         if self.feedback is not None and not self._visit.recordings.is_recording:
             tallies += self.feedback.end_walk()  # of a walk that ended by itself
         if tallies:
-            self._visit.recordings.change(recording, lambda told: replace(told, note=with_tallies(told.note, tallies)))
+            self._visit.recordings.change(
+                recording, lambda reported: replace(reported, note=with_tallies(reported.note, tallies))
+            )
 
     @Slot()
     def _on_troubled(self) -> None:
-        self._notice.is_troubled = True  # the words change with what the counters tell
+        self._notice.is_troubled = True  # the words change with what the counters report
 
     @Slot(str)
     def _on_label_chosen(self, label: str) -> None:
@@ -429,8 +431,8 @@ class WalkingStep(Step):
         self.changed.emit()
 
     @Slot()
-    def _on_change_told(self) -> None:
-        """Show what was told of the next change, without drawing anything else anew."""
+    def _on_change_reported(self) -> None:
+        """Show what was given of the next change, without drawing anything else again."""
         self.page.bench.show_entry(self.bench.next_title)
         self.changed.emit()
 
@@ -447,7 +449,7 @@ class WalkingStep(Step):
     @Slot(str, str)
     def _on_renamed(self, identity: str, condition: str) -> None:
         if (recording := self._recording(UUID(identity))) is not None:
-            self._visit.recordings.change(recording, lambda told: replace(told, condition=condition))
+            self._visit.recordings.change(recording, lambda reported: replace(reported, condition=condition))
 
     @Slot()
     def _on_restrapped_pressed(self) -> None:

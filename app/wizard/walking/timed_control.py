@@ -57,7 +57,7 @@ class TimedControl(QObject):
 
     @property
     def planned(self) -> PlannedTest | None:
-        """What the next walk is, as its recording says it."""
+        """What the next walk is, as its recording states it."""
         return None if self.protocol is None else PlannedTest(self.protocol)
 
     @property
@@ -66,7 +66,7 @@ class TimedControl(QObject):
 
     @property
     def readout(self) -> LiveReadout | None:
-        """How the test that is recorded stands; None where none is."""
+        """How the test that is recorded is; None where none is."""
         return None if self._live is None else self._live.state
 
     @property
@@ -109,7 +109,7 @@ class TimedControl(QObject):
             estimator.test = self._live
 
     def press(self) -> bool:
-        """Take a key; whether the test wanted it. One that it does not want stops the recording."""
+        """Take a key; whether the test required it. One that it does not want stops the recording."""
         live = self._live
         if live is None or not self._visit.recordings.has_begun or math.isfinite(self._pressed_end_s):
             return False
@@ -124,7 +124,7 @@ class TimedControl(QObject):
         return True
 
     def tick(self) -> bool:
-        """Let start and end be heard; whether the test is over and its run-out too."""
+        """Let start and end be received; whether the test is over and its run-out too."""
         live = self._live
         if live is None:
             return False
@@ -142,7 +142,7 @@ class TimedControl(QObject):
 
     @property
     def end_s(self) -> float:
-        """When the clock stopped; NaN while it runs. A set time passes whether or not a sensor is heard."""
+        """When the clock stopped; NaN while it runs. A set time passes whether or not a sensor is received."""
         live = self._live
         if live is None:
             return math.nan
@@ -153,7 +153,7 @@ class TimedControl(QObject):
         return due_s if self.now_s >= due_s else math.nan
 
     def end(self) -> bool:
-        """The recording has ended; whether it was heard that the test was over."""
+        """The recording has ended; whether it was received that the test was over."""
         self._live = None
         self.watch(self._estimator)
         return self._is_over
@@ -196,13 +196,13 @@ class TimedControl(QObject):
 
     def before(self, condition: str) -> dict[TimedProtocol, str]:
         """What came of each test at the latest earlier visit under a condition: "3 Oct: 11.4 s"."""
-        said = {}
+        stated = {}
         for protocol, column in COLUMNS.items():
             if (found := self.earlier.latest(column, condition)) is not None:
                 visit, test = found
                 value = fixed(test.found.mean, decimals(column)) + short_unit(column)
-                said[protocol] = f"{short_date(visit.day)}: {value}"
-        return said
+                stated[protocol] = f"{short_date(visit.day)}: {value}"
+        return stated
 
     def next_words(self, label: str) -> str:
         """What the next walk is."""

@@ -42,7 +42,7 @@ MOST_LAPS = 12  # more do not fit; the table in the files has all
 
 @dataclass(frozen=True, slots=True)
 class TimedAttempt:
-    """One test that was recorded: which walk it is, and what the analysis tells; None until it does."""
+    """One test that was recorded: which walk it is, and what the analysis reports; None until it does."""
 
     name: str
     protocol: TimedProtocol
@@ -97,7 +97,7 @@ class TimedResultView(Themed):
             self.then.setText("")
         else:
             self.first.setText(result_sentence(found))
-            said = [
+            stated = [
                 changes_since_in_words(state.lane, state.visits) if state.lane is not None else "",
                 why_sentence(found),
                 tape_sentence(found),
@@ -105,7 +105,7 @@ class TimedResultView(Themed):
                 course_sentence(found),
                 pauses_sentence(found),
             ]
-            self.then.setText(" ".join(filter(None, said)))
+            self.then.setText(" ".join(filter(None, stated)))
         self.then.setVisible(bool(self.then.text()))
         self._mark.set_icon(Icon.CHECK if found is not None and not found.missing else Icon.INFO)
         self.setAccessibleDescription(f"{self.first.text()} {self.then.text()}")
@@ -180,8 +180,8 @@ def _attempts(state: TimedResult) -> tuple[list[TableColumn], list[TableRow]]:
         figures = _texts([float(np.mean(of_attempts)) for of_attempts in zip(*kept, strict=True)])
         figures[TURNS] = ""
         name = tr("Mean of {count}").format(count=len(kept))
-        told = [TextCell(one, align=RIGHT, weight=SEMIBOLD) for one in figures[:shown]]
-        rows.append(TableRow((TextCell(name, weight=SEMIBOLD), *told)))
+        reported = [TextCell(one, align=RIGHT, weight=SEMIBOLD) for one in figures[:shown]]
+        rows.append(TableRow((TextCell(name, weight=SEMIBOLD), *reported)))
     return columns, rows
 
 
@@ -215,8 +215,8 @@ def _parts(found: TimedTest) -> list[TableRow]:
     if found.definition.rises > 1:
         for k, one in enumerate(found.rises, 1):
             from_s, to_s = one.left_seat_s - found.start_s, one.upright_s - found.start_s
-            told = [number(from_s, 1), number(to_s, 1), "", "", ""]
-            rows.append(_row(tr("Rise {number}").format(number=k), told))
+            reported = [number(from_s, 1), number(to_s, 1), "", "", ""]
+            rows.append(_row(tr("Rise {number}").format(number=k), reported))
     return rows
 
 

@@ -72,7 +72,7 @@ def status_words(state: TimedViewState) -> str:
 
 
 def distance_words(state: TimedViewState) -> tuple[str, str]:
-    """The distance and, where it cannot be told, why."""
+    """The distance and, where it cannot be reported, why."""
     found = state.readout
     if not found.has_begun:
         return figure_text(0.0, ".1f"), ""
@@ -92,7 +92,7 @@ class TimedView(Themed):
 
     def __init__(self, look: ThemeNotifier) -> None:
         super().__init__()
-        self._look, self._is_compact, self._said_s = look, False, -1
+        self._look, self._is_compact, self._stated_s = look, False, -1
         self._title = Text(look, size=24, weight=SEMIBOLD)
         self._note = Text(look, size=16, tone="ink2")
         self.status = _Status(look)
@@ -129,17 +129,17 @@ class TimedView(Themed):
         self._say(state, metres, why)
 
     def _say(self, state: TimedViewState, metres: str, why: str) -> None:
-        """Tell who listens, once a second and with the last figure."""
+        """Report who listens, once a second and with the last figure."""
         elapsed_s = state.elapsed_s
         whole = time_text(elapsed_s) if math.isfinite(state.end_s) else str(int(elapsed_s))
         if not math.isfinite(state.end_s) or elapsed_s < LONG_S:
             whole = f"{whole} s"
         distance = "" if state.protocol is TimedProtocol.SIT_TO_STAND or metres == NO_FIGURE else f"{metres} m."
-        said = " ".join(filter(None, [f"{status_words(state)}.", f"{whole}.", distance, why]))
-        if int(elapsed_s) != self._said_s or math.isfinite(state.end_s):
-            self._said_s = int(elapsed_s)
-            if said != self.accessibleDescription():
-                self.setAccessibleDescription(said)
+        stated = " ".join(filter(None, [f"{status_words(state)}.", f"{whole}.", distance, why]))
+        if int(elapsed_s) != self._stated_s or math.isfinite(state.end_s):
+            self._stated_s = int(elapsed_s)
+            if stated != self.accessibleDescription():
+                self.setAccessibleDescription(stated)
 
     def set_compact(self, is_compact: bool) -> None:
         self._is_compact = is_compact
@@ -356,8 +356,8 @@ def _share(state: TimedViewState) -> float:
     if definition.rises > 1:
         return min(1.0, _rises(state) / definition.rises)
     metres = found.distance_m if math.isfinite(found.distance_m) else 0.0
-    wanted_m = definition.length_m or (UP_AND_GO_M if definition.rises else 0.0)
-    return min(0.99, metres / wanted_m) if wanted_m else 0.0
+    required_m = definition.length_m or (UP_AND_GO_M if definition.rises else 0.0)
+    return min(0.99, metres / required_m) if required_m else 0.0
 
 
 def _rises(state: TimedViewState) -> int:
@@ -371,7 +371,7 @@ def _middle_words(state: TimedViewState) -> str:
     if definition.length_m is not None:
         return tr("{length:.0f} m timed").format(length=definition.length_m)
     if definition.rises > 1:
-        return tr("{count} of {wanted} rises").format(count=_rises(state), wanted=definition.rises)
+        return tr("{count} of {required} rises").format(count=_rises(state), required=definition.rises)
     if definition.rises:
         return tr("3 m, turn, 3 m back") if not turns else tr("turned")
     laps = tr("Lap {lap}").format(lap=turns + 1)

@@ -46,9 +46,9 @@ def is_alignment(label: str) -> bool:
 
 def new_alignment(letter: str, used: Sequence[str]) -> str:
     """Give what an alignment is called that was not walked with before: by its letter, or the first label not used."""
-    wanted = tr("Alignment {letter}").format(letter=letter)
+    required = tr("Alignment {letter}").format(letter=letter)
     free = [label for label in _alignments(len(LETTERS)) if label not in used]
-    return wanted if wanted in free else next(iter(free), wanted)
+    return required if required in free else next(iter(free), required)
 
 
 def _alignments(count: int) -> list[str]:

@@ -30,7 +30,7 @@ from app.wording.translation import tr, tr_n
 BADGE = 28
 ROW, BETWEEN = 56, 4
 LEAST_WIDTH = 180
-LEAST_ROWS = 1.5  # in sight: half a row says that there are more
+LEAST_ROWS = 1.5  # in sight: half a row states that there are more
 
 
 class WalkState(StrEnum):
@@ -46,7 +46,7 @@ class WalkState(StrEnum):
 class WalkRow:
     """One walk as it is called everywhere: `letter` is its condition's, with the walk's number from the second on.
 
-    `strides` is None while nobody has counted them. `is_of_old_straps`: sensors were strapped anew since.
+    `strides` is None while nobody has counted them. `is_of_old_straps`: sensors were strapped again since.
     """
 
     id: str

@@ -1,4 +1,4 @@
-"""The walks of a session as the list on the page shows them, and what is said of the one that is asked about."""
+"""The walks of a session as the list on the page shows them, and what is stated about the one that is asked about."""
 
 import math
 from typing import TYPE_CHECKING
@@ -38,9 +38,9 @@ def rows_of(visit: "Visit") -> tuple[WalkRow, ...]:
         name, is_old = names[recording.details.name], recording.id not in strapped_last
         rows.append(WalkRow(str(recording.id), name.letter, name.words, state, strides, is_old))
     ongoing = ongoing_walk(recordings)
-    fetched_later = [told for told in recordings.in_sensors if told.kind is RecordingKind.WALKING]
-    for told in fetched_later:
-        name = names[told.name]
+    fetched_later = [reported for reported in recordings.in_sensors if reported.kind is RecordingKind.WALKING]
+    for reported in fetched_later:
+        name = names[reported.name]
         rows.append(WalkRow("", name.letter, name.words, WalkState.IN_SENSORS))
     if ongoing is not None and ongoing.details not in fetched_later:
         name = names[ongoing.details.name]
@@ -51,11 +51,11 @@ def rows_of(visit: "Visit") -> tuple[WalkRow, ...]:
 def facts_of(visit: "Visit", recording: "SessionRecording", cadence_steps_min: float) -> str:
     """Of the walk that is asked about: its strides, its cadence where it is known, its length."""
     strides = strides_of(visit, recording)
-    said = []
+    stated = []
     if strides:
         counts = ", ".join(f"{side.letter} {strides[side]}" for side in Side if side in strides)
-        said.append(tr("Strides: {counts}").format(counts=counts))
+        stated.append(tr("Strides: {counts}").format(counts=counts))
     if math.isfinite(cadence_steps_min):
-        said.append(tr("{cadence:.0f} steps/min").format(cadence=cadence_steps_min))
-    said.append(clock(length_s(recording)))
-    return " · ".join(said)
+        stated.append(tr("{cadence:.0f} steps/min").format(cadence=cadence_steps_min))
+    stated.append(clock(length_s(recording)))
+    return " · ".join(stated)

@@ -1,4 +1,4 @@
-"""What can be done on the Walking step, as the bar below it says: while a walk is recorded, and between two walks."""
+"""What can be done on the Walking step, as the bar below it states: while a walk is recorded, and between two walks."""
 
 import math
 from collections.abc import Iterator
@@ -80,8 +80,8 @@ class WalkingBar:
         if walk is not None:
             return BarState(primary=self._start_action, note=tr("The walk is being loaded."))
         if recordings.ongoing is not None:  # of the step before
-            said = f"{capitalised(recordings.called(recordings.ongoing.details.name))}: {tr('being loaded')}"
-            return BarState(primary=self._start_action, note=said)
+            stated = f"{capitalised(recordings.called(recordings.ongoing.details.name))}: {tr('being loaded')}"
+            return BarState(primary=self._start_action, note=stated)
         if self._bench.is_shown:
             return self._at_bench()
         return self._between_walks(label)
@@ -118,8 +118,8 @@ class WalkingBar:
             )
         elif definition.length_m is not None:
             verb = tr("End at the tape")
-            said = tr("Press Space at the end of the tape. The distance then counts as {length:.2f} m.")
-            note = said.format(length=definition.length_m)
+            stated = tr("Press Space at the end of the tape. The distance then counts as {length:.2f} m.")
+            note = stated.format(length=definition.length_m)
         else:
             verb, note = (
                 tr("End the test"),
@@ -127,7 +127,7 @@ class WalkingBar:
             )
         return BarState(
             primary=BarAction(verb, self._walks.run, tr("Space"), Icon.STOP),
-            others=(BarAction(tr("Cancel"), self._walks.stop, tr("Esc"), is_wished=False),),
+            others=(BarAction(tr("Cancel"), self._walks.stop, tr("Esc"), is_requested=False),),
             recording=RecordingNote(
                 tr("Recording the full test: {test}").format(test=name_of_test(readout.planned.protocol)),
                 note,
@@ -142,10 +142,10 @@ class WalkingBar:
         chain, is_new = self._bench.chain, bool(self._bench.entry.parts)
         letter = chain.next_letter if is_new else chain.letters.get(chain.base, "")
         words = (tr("Walk with {letter}") if is_new else tr("Repeat {letter}")).format(letter=letter)
-        others = [replace(self._start_action, text=self._test_words or words, is_wished=False)]
+        others = [replace(self._start_action, text=self._test_words or words, is_requested=False)]
         if chain.way_back(chain.first):
             words = tr("Return to {letter}").format(letter=chain.letters.get(chain.first, ""))
-            others.insert(0, BarAction(words, self._walks.return_to_first, icon=Icon.REPEAT, is_wished=False))
+            others.insert(0, BarAction(words, self._walks.return_to_first, icon=Icon.REPEAT, is_requested=False))
         primary = self._results_action
         if (asked := asked_walk(self._visit.recordings)) is not None:
             letter = self._visit.recordings.shown_names[asked.details.name].letter
@@ -161,10 +161,10 @@ class WalkingBar:
             words = tr("Include, start next")
             if test := self._timed.planned:
                 words = tr("Include, start {test}").format(test=within_sentence(name_of_test(test.protocol)))
-            both = replace(start, text=words, is_wished=False)
+            both = replace(start, text=words, is_requested=False)
             return BarState(primary=both, note=missing or self._timed.next_words(label))
         if any(recording.details.is_kept for recording in recordings.walks):
-            others = (replace(start, is_wished=False),)
+            others = (replace(start, is_requested=False),)
             return BarState(primary=self._results_action, others=others, note=missing or self._armed(label))
         note = self._timed.next_words(label)
         if not recordings.has_moved:

@@ -1,7 +1,7 @@
 """Knee flexion and ankle dorsiflexion from markers of hip, knee, ankle, heel and toe, in the plane of walking.
 
 The plane holds the vertical and the mean direction of the feet, so it is right for straight walks only. Zero is where
-thigh and shank lie in line, and where the shank stands upright on a level line from heel to toe.
+thigh and shank lie in line, and where the shank is upright on a level line from heel to toe.
 """
 
 import re

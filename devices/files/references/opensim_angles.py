@@ -37,7 +37,7 @@ def read_opensim(path: Path) -> ReferenceFile:
     Raises
     ------
     FileRefusedError
-        None of them, no time, or a table that is not what it says it is.
+        None of them, no time, or a table that is not what it states it is.
     """
     lines = lines_of(path)
     end = next((k for k, line in enumerate(lines) if line.strip().lower() == END), None)
@@ -62,8 +62,8 @@ def read_opensim(path: Path) -> ReferenceFile:
     values = numbers_below(lines, end + 2, [0, *found.values()], len(names), path.name)
     time_s = values[:, 0]
     check_ascending(time_s, path.name)
-    said = IN_DEGREES.search(header)
-    to_rad = np.deg2rad(1.0) if said and said[1].lower() == "yes" else 1.0  # OpenSim's own default is radians
+    stated = IN_DEGREES.search(header)
+    to_rad = np.deg2rad(1.0) if stated and stated[1].lower() == "yes" else 1.0  # OpenSim's own default is radians
     angles = {joint: (time_s, _rad(values[:, k], to_rad)) for k, joint in enumerate(found, 1)}
     return ReferenceFile(FORMAT, SOURCE, (ReferenceTrial(angles=angles),))
 

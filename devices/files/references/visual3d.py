@@ -38,7 +38,7 @@ def read_visual3d(path: Path) -> ReferenceFile:
     Raises
     ------
     FileRefusedError
-        No angle of them, no TIME, or a table that is not what it says it is.
+        No angle of them, no TIME, or a table that is not what it states it is.
     """
     lines = lines_of(path)
     header = [[cell.strip() for cell in line.split("\t")] for line in lines[:HEADER_LINES]]
@@ -46,19 +46,19 @@ def read_visual3d(path: Path) -> ReferenceFile:
     files, signals, _, _, components = ([*row, *[""] * (count - len(row))] for row in header)
     while count > 1 and not (signals[count - 1] or components[count - 1]):
         count -= 1
-    wanted: dict[str, dict[Joint | str, int]] = {}
+    required: dict[str, dict[Joint | str, int]] = {}
     for k in range(1, count):
         what = TIME if signals[k].upper() == TIME else joint_of_name(signals[k])
         if what is not None and (components[k].upper() in BENDS or what == TIME):
-            wanted.setdefault(files[k], {}).setdefault(what, k)
-    trials = {name: columns for name, columns in wanted.items() if any(what != TIME for what in columns)}
+            required.setdefault(files[k], {}).setdefault(what, k)
+    trials = {name: columns for name, columns in required.items() if any(what != TIME for what in columns)}
     if not trials:
         raise FileRefusedError(
             f"{path.name}, line 2",
             "no signal is a hip, knee or ankle angle",
             "Export joint angles with such names, as in LKneeAngle, with all components",
         )
-    shared = next((columns[TIME] for columns in wanted.values() if TIME in columns), None)
+    shared = next((columns[TIME] for columns in required.values() if TIME in columns), None)
     if shared is None:
         raise FileRefusedError(
             f"{path.name}, line 2", "signal TIME is missing, so the frames have no times", "Include TIME in the export"

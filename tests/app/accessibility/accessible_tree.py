@@ -1,7 +1,7 @@
 """What does assistive technology get of a page? Its elements in their order, and what is wrong with them, in words.
 
 All is read through Qt's accessibility interface, which is what the bridges to AT-SPI, UI Automation and NSAccessibility
-read. No screen reader is heard here.
+read. No screen reader is received here.
 """
 
 import re
@@ -39,7 +39,7 @@ class Element:
     is_checked: bool
 
     @property
-    def said(self) -> str:
+    def stated(self) -> str:
         return f"{self.kind or 'element'} ({self.role.name}) “{self.name}”"
 
 
@@ -50,7 +50,7 @@ def elements(page: QWidget) -> list[Element]:
 
 def complaints(page: QWidget) -> list[str]:
     """Say what is wrong with the elements of a page; an empty list where nothing is."""
-    return [f"{one.said} {wrong}" for one in elements(page) for wrong in _wrong_with(one)]
+    return [f"{one.stated} {wrong}" for one in elements(page) for wrong in _wrong_with(one)]
 
 
 def tab_stops(window: QWidget) -> list[QWidget]:
@@ -83,9 +83,10 @@ def wrong_order(window: QWidget) -> list[str]:
 
 
 def wrong_hearing(page: QWidget) -> list[str]:
-    """Say what is heard after what stands before it, of the parts of one widget; legs may each be told as a whole."""
-    heard = [[_widget(one.child(k)) for k in range(one.childCount())] for one in _interfaces(_interface(page))]
-    shown = [[part for part in parts if part is not None and part.window() is page.window()] for parts in heard]
+    """Say what is received after what is before it, of the parts of one widget; legs may each be reported as a
+    whole."""
+    received = [[_widget(one.child(k)) for k in range(one.childCount())] for one in _interfaces(_interface(page))]
+    shown = [[part for part in parts if part is not None and part.window() is page.window()] for parts in received]
     return [
         f"{_called(other)} is heard after {_called(one)} and stands before it"
         for parts in shown
@@ -147,7 +148,7 @@ def _place(one: QWidget) -> QRect:
 
 
 def _is_before(one: QRect, other: QRect) -> bool:
-    """Whether one is read before the other: it ends above it and begins no further right, or stands left in its row."""
+    """Whether one is read before the other: it ends above it and begins no further right, or is left in its row."""
     is_above = one.bottom() < other.top() and one.left() <= other.right()
     is_in_row = min(one.bottom(), other.bottom()) - max(one.top(), other.top()) > min(one.height(), other.height()) / 2
     return is_above or (is_in_row and one.right() < other.left())

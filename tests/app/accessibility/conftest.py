@@ -1,17 +1,17 @@
-"""What tests of accessibility get: the roles of our widgets, which the application tells Qt when it starts."""
+"""What tests of accessibility get: the roles of our widgets, which the application reports Qt when it starts."""
 
 from collections.abc import Iterator
 
 import pytest
 from PySide6.QtWidgets import QApplication
 
-from app.widgets.accessible_role import tell_roles
+from app.widgets.accessible_role import show_roles
 from app.wording.translation import use_language
 
 
 @pytest.fixture(scope="session", autouse=True)
 def _roles(qapp: QApplication) -> None:
-    tell_roles()
+    show_roles()
 
 
 @pytest.fixture(params=["en", "de"])

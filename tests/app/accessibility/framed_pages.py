@@ -209,7 +209,7 @@ def framed(look: ThemeNotifier, name: str) -> WizardShell:
     shell.strip.show_tiles({site: tile(site, is_moving=True, is_worn=True) for site in LEG_SITES})
     shell.set_strip_mode(StripMode.SHOWN if step in WITH_TILES else StripMode.FOLDED)
     note = tr("If you stop now, angles are unreliable for the left knee.")
-    stop = idle(tr("Stop early"), tr("Space"), Icon.STOP, is_wished=False)
+    stop = idle(tr("Stop early"), tr("Space"), Icon.STOP, is_requested=False)
     shell.bar.show_state(BarState(stop, quiet=(idle(tr("Repeat one leg"), icon=Icon.REPEAT),), note=note))
     if name == "recording":
         recorded = RecordingNote(tr("Recording {walk}").format(walk="3"), "", 24.0, has_sound=True)

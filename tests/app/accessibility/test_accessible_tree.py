@@ -19,7 +19,7 @@ Role = QAccessible.Role
 
 
 class Drawn(QWidget):
-    """A chart that nobody told of."""
+    """A chart that nobody informed of."""
 
     accessible_role = QAccessible.Role.Chart
 
@@ -65,13 +65,13 @@ def named(widget: QWidget, name: str, description: str = "") -> QWidget:
 def test_a_button_without_a_word_for_people_is_complained_of(
     qtbot: QtBot, page: QWidget, name: str, wrong: str
 ) -> None:
-    said = complaints(shown(qtbot, page, named(QPushButton(), name)))
-    assert said == ([f"QPushButton (Button) “{name}” {wrong}"] if wrong else [])
+    stated = complaints(shown(qtbot, page, named(QPushButton(), name)))
+    assert stated == ([f"QPushButton (Button) “{name}” {wrong}"] if wrong else [])
 
 
 def test_a_button_of_the_house_without_words_is_complained_of(qtbot: QtBot, page: QWidget, look: ThemeNotifier) -> None:
-    bare, told = Button(look, "", icon=Icon.PLAY), Button(look, "Play", icon=Icon.PLAY)
-    assert complaints(shown(qtbot, page, bare, told)) == ["Button (Button) “” has no name"]
+    bare, reported = Button(look, "", icon=Icon.PLAY), Button(look, "Play", icon=Icon.PLAY)
+    assert complaints(shown(qtbot, page, bare, reported)) == ["Button (Button) “” has no name"]
 
 
 def test_what_takes_the_focus_needs_a_role_and_a_chart_a_description(qtbot: QtBot, page: QWidget) -> None:
@@ -84,13 +84,13 @@ def test_what_takes_the_focus_needs_a_role_and_a_chart_a_description(qtbot: QtBo
     ]
 
 
-def test_a_choice_says_what_is_chosen(qtbot: QtBot, page: QWidget, look: ThemeNotifier) -> None:
-    bare, told = QComboBox(), Choice(look, "Display size")
-    for box in (bare, told):
+def test_a_choice_states_what_is_chosen(qtbot: QtBot, page: QWidget, look: ThemeNotifier) -> None:
+    bare, reported = QComboBox(), Choice(look, "Display size")
+    for box in (bare, reported):
         box.addItems(["80 %", "100 %"])
-    assert [one.partition(" ")[0] for one in complaints(shown(qtbot, page, bare, told))] == ["QComboBox"]
-    (heard,) = (one for one in elements(page) if one.kind == "Choice")
-    assert "Display size" in (heard.name, heard.description)
+    assert [one.partition(" ")[0] for one in complaints(shown(qtbot, page, bare, reported))] == ["QComboBox"]
+    (received,) = (one for one in elements(page) if one.kind == "Choice")
+    assert "Display size" in (received.name, received.description)
 
 
 def test_what_changes_on_the_screen_changes_in_the_tree(qtbot: QtBot, page: QWidget, look: ThemeNotifier) -> None:
@@ -98,10 +98,10 @@ def test_what_changes_on_the_screen_changes_in_the_tree(qtbot: QtBot, page: QWid
     ways = Segmented(look, "Motion", [("system", "System setting", ""), ("less", "Reduced", "")])
     shown(qtbot, page, toggle, button, ways)
 
-    def told() -> list[tuple[QAccessible.Role, bool, bool]]:
+    def reported() -> list[tuple[QAccessible.Role, bool, bool]]:
         return [(one.role, one.is_checked, one.is_enabled) for one in elements(page) if one.is_focusable]
 
-    before = told()
+    before = reported()
     toggle.click()
     button.setEnabled(False)
     ways.choose("less")
@@ -111,9 +111,9 @@ def test_what_changes_on_the_screen_changes_in_the_tree(qtbot: QtBot, page: QWid
         (Role.RadioButton, True, True),
         (Role.RadioButton, False, True),
     ]
-    assert told()[0] == (Role.CheckBox, True, True)
-    assert [one[1] for one in told() if one[0] is Role.RadioButton] == [False, True]
-    assert not any(enabled for role, _, enabled in told() if role is Role.Button)
+    assert reported()[0] == (Role.CheckBox, True, True)
+    assert [one[1] for one in reported() if one[0] is Role.RadioButton] == [False, True]
+    assert not any(enabled for role, _, enabled in reported() if role is Role.Button)
 
 
 def test_a_button_is_pressed_through_the_tree(qtbot: QtBot, page: QWidget, look: ThemeNotifier) -> None:

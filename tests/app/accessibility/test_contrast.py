@@ -17,7 +17,7 @@ from tests.app.accessibility.contrast import contrast, over
 TEXT, GRAPHIC = 4.5, 3.0  # success criteria 1.4.3 and 1.4.11
 SCHEMES = {"light": LIGHT, "dark": DARK}
 PAGES = ("ground", "surface", "sunken")
-# text, and the grounds it stands on
+# text, and the grounds it is on
 TEXTS: dict[str, tuple[str, ...]] = {
     "ink": (*PAGES, "track", "left_pale", "right_pale", "left_soft", "right_soft", "band_1sd", "band_2sd"),
     "ink2": (*PAGES, "track", "band_2sd"),
@@ -56,12 +56,12 @@ FREE = {
 }
 
 
-def pairs(wanted: dict[str, tuple[str, ...]]) -> list[tuple[str, str]]:
-    return [(one, ground) for one, grounds in wanted.items() for ground in grounds]
+def pairs(required: dict[str, tuple[str, ...]]) -> list[tuple[str, str]]:
+    return [(one, ground) for one, grounds in required.items() for ground in grounds]
 
 
-def too_faint(colours: Colours, wanted: dict[str, tuple[str, ...]], least: float) -> list[str]:
-    found = [(*pair, contrast(*(getattr(colours, name) for name in pair))) for pair in pairs(wanted)]
+def too_faint(colours: Colours, required: dict[str, tuple[str, ...]], least: float) -> list[str]:
+    found = [(*pair, contrast(*(getattr(colours, name) for name in pair))) for pair in pairs(required)]
     return [f"{one} on {ground}: {ratio:.2f}" for one, ground, ratio in found if ratio < least]
 
 
@@ -73,7 +73,7 @@ def test_the_ratio_is_that_of_the_definition() -> None:
 
 
 @pytest.mark.parametrize("scheme", SCHEMES)
-def test_text_is_read_on_every_ground_it_stands_on(scheme: str) -> None:
+def test_text_is_read_on_every_ground_it_is_on(scheme: str) -> None:
     assert too_faint(SCHEMES[scheme], TEXTS, TEXT) == []
 
 
@@ -92,7 +92,7 @@ def test_a_pair_that_is_too_faint_is_named() -> None:
 
 
 def test_every_colour_has_a_pair_or_a_reason() -> None:
-    named = {name for wanted in (TEXTS, GRAPHICS) for one, grounds in wanted.items() for name in (one, *grounds)}
+    named = {name for required in (TEXTS, GRAPHICS) for one, grounds in required.items() for name in (one, *grounds)}
     assert {one.name for one in fields(Colours)} - named - set(FREE) == set()
 
 

@@ -12,7 +12,7 @@ from tests.app.room import settle
 
 @pytest.mark.endurance
 @pytest.mark.parametrize("name", FRAMED)
-def test_a_page_of_a_visit_is_heard_and_worked_by_tab_alone(qtbot: QtBot, look: ThemeNotifier, name: str) -> None:
+def test_a_page_of_a_visit_is_received_and_worked_by_tab_alone(qtbot: QtBot, look: ThemeNotifier, name: str) -> None:
     shell = framed(look, name)
     qtbot.addWidget(shell)
     shell.resize(1280, 800)

@@ -28,7 +28,7 @@ WAIT_MS = 2000
 @pytest.fixture(autouse=True)
 def _moving_system(monkeypatch: pytest.MonkeyPatch, look: ThemeNotifier) -> Iterator[None]:
     """A system that was not asked for less motion, whatever the machine of the test was."""
-    monkeypatch.setattr(motion, "_is_motion_wanted", lambda: True)
+    monkeypatch.setattr(motion, "_is_motion_required", lambda: True)
     yield
     look.set_less_motion(False)
 
@@ -41,7 +41,7 @@ def settings(tmp_path: Path) -> Settings:
 def test_either_the_setting_or_the_system_takes_the_time_of_a_transition(monkeypatch: pytest.MonkeyPatch) -> None:
     assert motion.duration_ms(120, Theme()) == 120
     assert motion.duration_ms(120, Theme(has_less_motion=True)) == 0
-    monkeypatch.setattr(motion, "_is_motion_wanted", lambda: False)
+    monkeypatch.setattr(motion, "_is_motion_required", lambda: False)
     assert motion.duration_ms(120, Theme()) == 0
 
 
@@ -78,7 +78,7 @@ def frames_of(qtbot: QtBot, bar: QProgressBar) -> int:
 
 
 @pytest.mark.parametrize("is_less", [False, True])
-def test_a_bar_of_unknown_length_stands_in_the_middle(qtbot: QtBot, look: ThemeNotifier, is_less: bool) -> None:
+def test_a_bar_of_unknown_length_is_in_the_middle(qtbot: QtBot, look: ThemeNotifier, is_less: bool) -> None:
     look.set_less_motion(is_less)
     bar = QProgressBar()
     qtbot.addWidget(bar)
@@ -117,7 +117,7 @@ def test_legs_move_only_when_somebody_plays_them(qtbot: QtBot, look: ThemeNotifi
     assert not legs.is_playing
 
 
-def test_the_setting_is_chosen_by_keys_and_said(qtbot: QtBot, look: ThemeNotifier) -> None:
+def test_the_setting_is_chosen_by_keys_and_stated(qtbot: QtBot, look: ThemeNotifier) -> None:
     page = SettingsPage(look, 12, [])
     qtbot.addWidget(page)
     with qtbot.waitActive(page):
@@ -126,9 +126,9 @@ def test_the_setting_is_chosen_by_keys_and_said(qtbot: QtBot, look: ThemeNotifie
     page.motion.focus()
     focused = QApplication.focusWidget()
     assert focused is not None
-    with qtbot.waitSignal(page.motion_chosen) as told:
+    with qtbot.waitSignal(page.motion_chosen) as reported:
         QTest.keyClick(focused, Qt.Key.Key_Right)
-    assert told.args == [True]
+    assert reported.args == [True]
     assert page.motion.segments[1].accessibleName() == "Reduced"
 
 

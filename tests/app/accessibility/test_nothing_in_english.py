@@ -1,6 +1,7 @@
-"""In German, is anything in sight or heard still in English? On every page of a visit and all others that are filled.
+"""In German, is anything in sight or received still in English? On every page of a visit and all others that are
+filled.
 
-A sentence is found that `tr` did not pass: it stands in the catalogue and its German says otherwise. So is what never
+A sentence is found that `tr` did not pass: it is in the catalogue and its German states otherwise. So is what never
 was in the catalogue, by the little words that every English sentence has.
 """
 
@@ -20,8 +21,8 @@ from tests.app.results.filled_pages import PAGES
 from tests.app.room import settle
 from tests.app.test_german import ENGLISH, pairs
 
-FEWEST_LETTERS = 6  # beside the fields of a message: fewer tell no language
-# what the tests themselves fill in as typed, read or said elsewhere
+FEWEST_LETTERS = 6  # beside the fields of a message: fewer report no language
+# what the tests themselves fill in as typed, read or stated elsewhere
 FILLED_IN = re.compile(
     "|".join(
         [
@@ -41,8 +42,8 @@ def german() -> Iterator[None]:
     use_language("en")
 
 
-def said_on(page: QWidget) -> Iterator[str]:
-    """Everything that a page shows or tells who hears it."""
+def stated_on(page: QWidget) -> Iterator[str]:
+    """Everything that a page shows or gives who receives it."""
     for widget in [page, *page.findChildren(QWidget)]:
         yield from (widget.accessibleName(), widget.accessibleDescription(), widget.toolTip())
         if isinstance(widget, (QLabel, QAbstractButton)):
@@ -58,7 +59,7 @@ def said_on(page: QWidget) -> Iterator[str]:
 
 
 def known_english() -> list[re.Pattern[str]]:
-    """What the catalogue says in English and otherwise in German, each as what its fields may be filled into."""
+    """What the catalogue states in English and otherwise in German, each as what its fields may be filled into."""
     found = []
     for pair in pairs():
         parts = [(literal, field) for literal, field, _, _ in Formatter().parse(pair.english)]
@@ -68,35 +69,35 @@ def known_english() -> list[re.Pattern[str]]:
     return found
 
 
-def english_in(said: set[str]) -> list[str]:
-    wanted = {FILLED_IN.sub("", text) for text in said}
+def english_in(stated: set[str]) -> list[str]:
+    required = {FILLED_IN.sub("", text) for text in stated}
     known = known_english()
     german = {re.sub(r"\{[^}]*\}", "", pair.german) for pair in pairs()}
     return sorted(
-        text for text in wanted - german if ENGLISH.search(text) or any(pattern.fullmatch(text) for pattern in known)
+        text for text in required - german if ENGLISH.search(text) or any(pattern.fullmatch(text) for pattern in known)
     )
 
 
 @pytest.mark.endurance
 def test_nothing_on_a_page_is_in_english(qtbot: QtBot, look: ThemeNotifier) -> None:
-    said: set[str] = set()
+    stated: set[str] = set()
     for name in FRAMED:
         shell = framed(look, name)
         qtbot.addWidget(shell)
         shell.resize(1280, 800)
         shell.show()
         settle()
-        said |= set(said_on(shell))
+        stated |= set(stated_on(shell))
         shell.close()
     for name in PAGES.keys() - FRAMED.keys():
         page = PAGES[name](look)
         qtbot.addWidget(page)
         page.show()
         settle()
-        said |= set(said_on(page))
+        stated |= set(stated_on(page))
         page.close()
-    assert len(said) > 500
-    assert english_in(said) == []
+    assert len(stated) > 500
+    assert english_in(stated) == []
 
 
 def test_what_is_in_english_is_found() -> None:

@@ -50,9 +50,9 @@ def home(
     with qtbot.waitActive(home):
         home.show()
         home.activateWindow()
-    with qtbot.waitSignal(controller.opened, timeout=WAIT_MS) as told:
+    with qtbot.waitSignal(controller.opened, timeout=WAIT_MS) as reported:
         controller.open(Path(shutil.copytree(untouched, tmp_path / "library")), PASSPHRASE)
-    home.show_library((told.args or [])[0])
+    home.show_library((reported.args or [])[0])
     qtbot.waitUntil(lambda: bool(home.page.sessions.lines), timeout=WAIT_MS)
     yield home
     home.finish()
@@ -79,8 +79,8 @@ def ways(home: Home) -> dict[str, Callable[[], object]]:
         "home": home.focus,
         "settings": home.show_settings,
         "questions": lambda: home.rail.step_pressed.emit(QUESTIONS),
-        "goals": home.page.panel.goals_wished.emit,
-        "analyse again": home.page.panel.analysing_wished.emit,
+        "goals": home.page.panel.goals_requested.emit,
+        "analyse again": home.page.panel.analysing_requested.emit,
     }
 
 
@@ -93,7 +93,7 @@ def test_home_and_what_opens_from_it(qtbot: QtBot, home: Home) -> None:
         found[name] = wrong_with(home)
         home.escape()
     assert len(pages) == len(found)
-    assert {name: said for name, said in found.items() if said} == {}
+    assert {name: stated for name, stated in found.items() if stated} == {}
 
 
 @pytest.mark.parametrize("size", [(1920, 1200), (1280, 800)])
@@ -109,7 +109,7 @@ def test_home_twice_as_large_has_all_its_words_and_controls(
         settle()
         found[name] = [*words_cut(home), *out_of_reach(home)]
         home.escape()
-    assert {name: said for name, said in found.items() if said} == {}
+    assert {name: stated for name, stated in found.items() if stated} == {}
 
 
 def test_the_first_start(qtbot: QtBot, look: ThemeNotifier, tmp_path: Path) -> None:
@@ -134,7 +134,7 @@ def test_the_manual(qtbot: QtBot, look: ThemeNotifier, topic: Topic) -> None:
         QTest.keyClick(QApplication.focusWidget() or page, Qt.Key.Key_Escape)
 
 
-def test_the_patients_screen_says_what_it_shows(qtbot: QtBot, look: ThemeNotifier) -> None:
+def test_the_patients_screen_states_what_it_shows(qtbot: QtBot, look: ThemeNotifier) -> None:
     window = patient_screen(look)
     opened(qtbot, window)
     assert complaints(window) == []

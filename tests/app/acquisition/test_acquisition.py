@@ -61,7 +61,7 @@ def start() -> Iterator[Start]:
 
 
 class Counting:
-    """Notes what it is given, and fails where it is told to."""
+    """Notes what it is given, and fails where it is given to."""
 
     def __init__(self) -> None:
         self.times_s: dict[str, list[float]] = {}
@@ -82,7 +82,7 @@ class Counting:
             raise ValueError("an odd block")
 
 
-def test_sensors_are_heard_shown_and_told(start: Start) -> None:
+def test_sensors_are_received_shown_and_reported(start: Start) -> None:
     acquisition = start(played("a", 2), played("b", 1))
     assert acquisition.sensors == ("a-left_thigh", "a-left_shank", "b-left_thigh")
     assert acquisition.is_simulated
@@ -167,14 +167,14 @@ def test_a_source_that_vanishes_costs_the_others_nothing_and_comes_back(start: S
     time.sleep(0.2)
     live = acquisition.status()
     decoded = read_back([acquisition.stop_recording().path])
-    wanted = {name: int(name.startswith("a")) for name in acquisition.sensors}
-    assert faults_of(decoded.sensors, wanted) == []
+    required = {name: int(name.startswith("a")) for name in acquisition.sensors}
+    assert faults_of(decoded.sensors, required) == []
     (gap,) = gaps_of(decoded.sensors["a-left_shank"])
     assert live["a-left_shank"].counts.lost == gap
 
 
 class Scripted:
-    """A source that gives what it is told to."""
+    """A source that gives what it is given to."""
 
     has_bytes = False
     sent: Sequence[bytes] = ()
@@ -194,10 +194,10 @@ class Scripted:
 
     def read(self, keep: Keep) -> Sequence[ImuBlock]:
         time.sleep(0.002)
-        told = self.blocks.pop(0) if self.blocks else []
-        if isinstance(told, Exception):
-            raise told
-        return told
+        reported = self.blocks.pop(0) if self.blocks else []
+        if isinstance(reported, Exception):
+            raise reported
+        return reported
 
     def close(self) -> None:
         self.closings += 1
@@ -233,7 +233,7 @@ def test_a_source_that_does_not_open_is_refused_and_the_others_are_closed() -> N
     assert first.closings == 1
 
 
-def test_any_exception_of_a_driver_is_a_loss_and_told_once(
+def test_any_exception_of_a_driver_is_a_loss_and_reported_once(
     start: Start, monkeypatch: pytest.MonkeyPatch, caplog: pytest.LogCaptureFixture
 ) -> None:
     monkeypatch.setattr("app.acquisition.reader.REOPEN_S", 0.01)
@@ -356,7 +356,7 @@ def test_the_live_work_gets_every_sample_once(start: Start) -> None:
     assert acquisition.dropped_from_preview == 0
 
 
-def test_live_work_that_fails_is_told_once_and_ends_nothing(
+def test_live_work_that_fails_is_reported_once_and_ends_nothing(
     start: Start, tmp_path: Path, caplog: pytest.LogCaptureFixture
 ) -> None:
     acquisition = start(played("a", 1))

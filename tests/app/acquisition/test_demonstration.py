@@ -1,4 +1,4 @@
-"""The simulated patient whom everyone sees first: nothing is said of it that is not so."""
+"""The simulated patient whom everyone sees first: nothing is stated about it that is not so."""
 
 from dataclasses import replace
 from itertools import pairwise

@@ -9,7 +9,9 @@ from tests.safety.dot_faults import run_often
 
 
 @pytest.mark.endurance
-def test_no_sample_is_lost_untold_nothing_is_a_dead_end_and_nothing_is_erased_that_was_not_kept(tmp_path: Path) -> None:
+def test_no_sample_is_lost_not_reported_nothing_is_a_dead_end_and_nothing_is_erased_that_was_not_kept(
+    tmp_path: Path,
+) -> None:
     every = run_often(3, 7000, tmp_path)
     assert every.faults == []
     assert every.seen["samples lost live, and told"] > 0

@@ -1,4 +1,4 @@
-"""A standstill of the process is told from a disk that is late, and sleep from being stopped."""
+"""A standstill of the process is distinguished from a disk that is late, and sleep from being stopped."""
 
 import signal
 
@@ -31,7 +31,7 @@ def test_a_process_that_beats_has_not_stood_still() -> None:
 
 
 @pytest.mark.parametrize("asleep_s", [0.0, 19.5])
-def test_a_standstill_is_told_with_what_was_lost_before_it(asleep_s: float) -> None:
+def test_a_standstill_is_reported_with_what_was_lost_before_it(asleep_s: float) -> None:
     clocks = Clocks()
     clocks.lost["a"] = 3
     clocks.go_on(0.1)
@@ -56,6 +56,6 @@ def test_before_the_first_beat_after_it_a_standstill_counts_no_more_than_after()
 @pytest.mark.endurance
 def test_a_recording_whose_process_was_stopped_blames_no_disk_and_counts_what_was_lost() -> None:
     """Longer and more often: tests/safety/standstill.py."""
-    told = stop_once(4.0)
-    assert faults_of(told, 4.0) == []
-    assert told["lost"]  # terminals hold a second or two
+    reported = stop_once(4.0)
+    assert faults_of(reported, 4.0) == []
+    assert reported["lost"]  # terminals hold a second or two

@@ -13,7 +13,7 @@ def block(sensor: str, from_s: float, to_s: float) -> ImuBlock:
 
 
 def test_a_look_waits_for_a_sensor_that_is_behind_until_it_is_left_out() -> None:
-    memory = MotionMemory(["thigh", "shank", "foot"])  # the foot is never heard
+    memory = MotionMemory(["thigh", "shank", "foot"])  # the foot is never received
     memory.feed({"thigh": block("thigh", 0.0, 2.0), "shank": block("shank", 0.0, 1.0)})
     assert memory.has_passed(0.9)
     assert not memory.has_passed(1.5)

@@ -123,8 +123,8 @@ def differences(one: object, other: object, where: str = "") -> list[str]:
 def test_a_visit_recorded_live_gives_the_same_results_whenever_it_is_read(opened: OpenedLibrary) -> None:
     """With losses, a sensor that was silent for a while, and one whose stamps are late."""
     clock = Clock()
-    wanted = (Standing(), FreeMotion(duration_s=9.0), Walk(strides=6))
-    simulated = simulate(WalkerSettings(seed=2, sites=(LEFT_THIGH, LEFT_SHANK, LEFT_FOOT), recordings=wanted))
+    required = (Standing(), FreeMotion(duration_s=9.0), Walk(strides=6))
+    simulated = simulate(WalkerSettings(seed=2, sites=(LEFT_THIGH, LEFT_SHANK, LEFT_FOOT), recordings=required))
     session = simulated.session
     late, silent = (block.sensor for block in list(session.recordings[0].imu.values())[1:3])
     faults = ReplayFaults(loss_share=0.01, lag_s={late: 0.02}, silent_s={silent: (6.0, 6.5)}, seed=4)
@@ -133,9 +133,9 @@ def test_a_visit_recorded_live_gives_the_same_results_whenever_it_is_read(opened
     acquisition.start()
     live: list[Recording] = []
     for played in session.recordings:
-        told = Recording(played.name, played.kind, played.folder, {})
+        reported = Recording(played.name, played.kind, played.folder, {})
         length_s = max(block.time_s[-1] for block in played.imu.values())
-        recorder = Recorder.begin(opened, acquisition, visit_id, told, room=ANY_ROOM)
+        recorder = Recorder.begin(opened, acquisition, visit_id, reported, room=ANY_ROOM)
         recorder.mark("go")
         acquisition.ask(played.kind)
         until_s = acquisition.now_s + length_s
@@ -229,7 +229,7 @@ def test_without_room_nothing_begins_and_the_name_stays_free(
 
 
 class Busy:
-    """A database that answers nobody who writes, until it is told to."""
+    """A database that answers nobody who writes, until it is given to."""
 
     def __init__(self, opened: OpenedLibrary, monkeypatch: pytest.MonkeyPatch) -> None:
         self.refuses = False
@@ -303,18 +303,18 @@ def test_a_database_that_stays_busy_leaves_a_journal_that_is_found(
     assert find_interrupted(opened) == ()
 
 
-def test_a_disk_that_fails_is_told_and_what_was_written_is_kept(
+def test_a_disk_that_fails_is_reported_and_what_was_written_is_kept(
     opened: OpenedLibrary, session_id: UUID, acquisition: Acquisition, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    said: list[Trouble] = []
-    recorder = Recorder.begin(opened, acquisition, session_id, walk(), said.append, room=ANY_ROOM)
+    stated: list[Trouble] = []
+    recorder = Recorder.begin(opened, acquisition, session_id, walk(), stated.append, room=ANY_ROOM)
     time.sleep(0.3)
 
     def fail(file: JournalFile, data: bytes) -> None:
         raise OSError(5, "Input/output error")
 
     monkeypatch.setattr(JournalFile, "append", fail)
-    wait_for(lambda: said == [Trouble.DISK_GONE])
+    wait_for(lambda: stated == [Trouble.DISK_GONE])
     stored, recording = recorder.stop(opened)
     assert stored.state is RecordingState.RECOVERED
     assert all(len(block) > 20 for block in recording.imu.values())

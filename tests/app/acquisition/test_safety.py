@@ -83,7 +83,7 @@ def test_twenty_sources_that_vanish_come_back_within_three_seconds(tmp_path: Pat
 @needs_proc
 @pytest.mark.endurance
 def test_ninety_seconds_lose_nothing_and_nothing_grows(tmp_path: Path) -> None:
-    run = record_long(tmp_path, 1.5 / 60, tell=lambda _: None)
+    run = record_long(tmp_path, 1.5 / 60, show_message=lambda _: None)
     assert run.faults == []
     assert run.dropped_from_preview == 0
 
@@ -166,7 +166,7 @@ def test_a_disk_that_stalls_loses_nothing_and_holds_up_no_view(
 def test_a_viewer_that_is_killed_loses_nothing(
     acquisition: Acquisition, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    """Nothing is said of it either: whose window is gone knows that."""
+    """Nothing is stated about it either: whose window is gone knows that."""
     seconds = 5.0
     monkeypatch.setenv("DISPLAY", ":0")
     program = tmp_path / "rerun"
@@ -215,11 +215,11 @@ def test_a_database_that_is_locked_loses_nothing(acquisition: Acquisition, opene
     sites = numbered_session("s", SENSORS).sensors
     worn = dict(zip(sites, (PlacedSensor(name, SensorInfo()) for name in acquisition.sensors), strict=True))
     opened.library.sessions.place(visit.id, worn)
-    told = Recording("walk 1", RecordingKind.WALKING, "walk_1", {})
+    reported = Recording("walk 1", RecordingKind.WALKING, "walk_1", {})
     room = Room(start_s=0.0, start_bytes=0, warn_s=0.0, kept_bytes=0)
     with locked(opened.folder / DATABASE, seconds):
         begin_s = time.monotonic()
-        recorder = Recorder.begin(opened, acquisition, visit.id, told, room=room)
+        recorder = Recorder.begin(opened, acquisition, visit.id, reported, room=room)
         assert time.monotonic() - begin_s < ROW_WAIT_S + 1.0
         time.sleep(seconds - ROW_WAIT_S)
     stored, recording = recorder.stop(opened)

@@ -1,4 +1,4 @@
-"""Is what emulated DOTs record in their memory fetched whole, or said to be not, and erased only once it is kept?"""
+"""Is what emulated DOTs record in their memory fetched whole, or stated to be not, and erased only once it is kept?"""
 
 from collections.abc import Iterator, Sequence
 from functools import cached_property
@@ -35,7 +35,7 @@ class MemorySession:
         self.group.make_ready_to_record()
         self.memory = MemoryRecording(self.group)
         self.writer = JournalWriter.create(folder, ID, KEY, room=NO_ROOM_ASKED, now_ns=radio.now_ns)
-        self.told: list[tuple[str, int, int]] = []
+        self.reported: list[tuple[str, int, int]] = []
         self.segments: tuple[Path, ...] = ()
 
     def record(self, seconds: float) -> None:
@@ -49,7 +49,7 @@ class MemorySession:
         return self.memory.fetching
 
     def fetch(self) -> None:
-        assert self.files.fetch(self.writer, lambda *one: self.told.append(one)) == {}
+        assert self.files.fetch(self.writer, lambda *one: self.reported.append(one)) == {}
 
     def erase(self, *, is_confirmed: bool = True, may_lack: bool = False) -> None:
         self.files.erase("DOT 0001", UTC_S, is_confirmed=is_confirmed, may_lack=may_lack)
@@ -124,13 +124,13 @@ def test_six_record_at_120_hz_and_are_fetched_through_lost_links_and_damage(
         assert np.array_equal(one.q_earth_from_sensor, file.q)
         assert session.lost(number) == 0
     assert max(most for _, most in offs) - min(least for least, _ in offs) < 0.002
-    told = [one for one in session.told if one[0] == "DOT 0001"]
-    done = [one[1] for one in told]
+    reported = [one for one in session.reported if one[0] == "DOT 0001"]
+    done = [one[1] for one in reported]
     assert done == sorted(done)
-    assert done[-1] <= told[-1][2]
+    assert done[-1] <= reported[-1][2]
 
 
-def test_what_cannot_be_had_is_a_gap_that_is_said_by_number(radio: VirtualRadio, tmp_path: Path) -> None:
+def test_what_cannot_be_had_is_a_gap_that_is_stated_by_number(radio: VirtualRadio, tmp_path: Path) -> None:
     session = MemorySession(radio, tmp_path, [DotFaults(), DotFaults()])
     session.record(10.0)
     session.dots[0].memory.unreadable = {300, 301, 302, 900}
@@ -150,13 +150,13 @@ def test_what_cannot_be_had_is_a_gap_that_is_said_by_number(radio: VirtualRadio,
     assert not session.dots[0].memory.files
 
 
-def test_the_last_samples_are_asked_for_until_the_sensor_says_that_there_are_no_more(
+def test_the_last_samples_are_asked_for_until_the_sensor_states_that_there_are_no_more(
     radio: VirtualRadio, tmp_path: Path
 ) -> None:
     session = MemorySession(radio, tmp_path, [DotFaults()])
     session.record(5.0)
     last = len(session.file(0).ticks) - 1
-    session.dots[0].memory.unheard = [last, last - 1]  # once each
+    session.dots[0].memory.not_received = [last, last - 1]  # once each
     session.fetch()
     assert session.files.results["DOT 0001"].samples == last + 1
     assert session.files.results["DOT 0001"].is_complete
@@ -166,7 +166,7 @@ def test_one_that_goes_on_only_while_it_sends_is_asked_then(radio: VirtualRadio,
     session = MemorySession(radio, tmp_path, [DotFaults(again=False)])
     session.record(5.0)
     last = len(session.file(0).ticks) - 1
-    session.dots[0].memory.unheard = [last - 1, last]
+    session.dots[0].memory.not_received = [last - 1, last]
     session.fetch()
     assert session.close() == {"DOT 0001": True}
     assert session.files.results["DOT 0001"].is_complete
@@ -246,7 +246,7 @@ def test_a_recording_that_ended_because_the_memory_was_full_is_fetched_to_there(
     assert results["DOT 0001"].is_complete
 
 
-def test_a_sensor_whose_end_could_not_be_fetched_is_not_said_to_have_ended_early(
+def test_a_sensor_whose_end_could_not_be_fetched_is_not_stated_to_have_ended_early(
     radio: VirtualRadio, tmp_path: Path
 ) -> None:
     session = MemorySession(radio, tmp_path, [DotFaults()])
@@ -260,7 +260,9 @@ def test_a_sensor_whose_end_could_not_be_fetched_is_not_said_to_have_ended_early
 
 
 @pytest.mark.parametrize("by_notice", [False, True], ids=["answered", "noticed"])
-def test_a_full_memory_is_understood_however_it_is_told(radio: VirtualRadio, tmp_path: Path, by_notice: bool) -> None:
+def test_a_full_memory_is_understood_however_it_is_reported(
+    radio: VirtualRadio, tmp_path: Path, by_notice: bool
+) -> None:
     session = MemorySession(radio, tmp_path, [DotFaults(full_by_notice=by_notice)])
     session.dots[0].memory.room = 0
     with pytest.raises(MemoryFullError):

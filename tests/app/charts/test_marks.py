@@ -1,4 +1,4 @@
-"""Marks of a chart: which points differ, where a curve leaves a limit, and what is said of them."""
+"""Marks of a chart: which points differ, where a curve leaves a limit, and what is stated about them."""
 
 import numpy as np
 import pytest
@@ -62,10 +62,10 @@ def test_a_band_laid_at_the_curves_height_judges_shape_alone() -> None:
     assert outside(curve, laid) == ()
 
 
-def test_only_what_is_larger_than_the_error_is_said_to_be() -> None:
+def test_only_what_is_larger_than_the_error_is_stated_to_be() -> None:
     other = Point(Joint.RIGHT_KNEE, 73.0, 61.0)
-    told = Deviation(POINT, other, "L 11° under R", "band 55 to 70°", is_larger_than_error=True)
-    assert told.in_words() == "L 11° under R, beyond measurement error; band 55 to 70°."
+    reported = Deviation(POINT, other, "L 11° under R", "band 55 to 70°", is_larger_than_error=True)
+    assert reported.in_words() == "L 11° under R, beyond measurement error; band 55 to 70°."
     assert Deviation(POINT, other, "L 3° under R").in_words() == "L 3° under R."
 
 

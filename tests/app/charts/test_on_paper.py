@@ -54,7 +54,7 @@ def test_a_bracket_reaches_from_one_extreme_to_the_other_and_has_its_size_and_nu
 
 
 @pytest.mark.parametrize("side", Side)
-def test_sides_are_told_by_letter_and_line_and_not_by_colour_alone(side: Side) -> None:
+def test_sides_are_reported_by_letter_and_line_and_not_by_colour_alone(side: Side) -> None:
     """As they print in grey: left is solid with its letter, right dashed with its."""
     curve = StrideCurve(side[0].upper(), side, KNEE, 60.0, toe_off_label=f"{side[0].upper()} toe-off 60.0 %")
     svg = draw(replace(CHART, curves=(curve,)), WIDTH).svg
@@ -100,25 +100,25 @@ def test_a_curve_that_is_compared_is_drawn_by_its_order() -> None:
     assert widths((0, 3), (1, 3), (2, 3)) == [0.95, 1.4, 2.1]
 
 
-def test_what_is_withheld_is_hatched_with_its_reason_and_has_no_curve() -> None:
+def test_what_is_not_reported_is_hatched_with_its_reason_and_has_no_curve() -> None:
     why = "81° of range; walking has no more than 60°. Foot and shank sensor do not move as neighbours."
-    drawn = draw(replace(MARKED, withheld=why), WIDTH)
+    drawn = draw(replace(MARKED, not_reported=why), WIDTH)
     words = re.findall(r">([^<>]+)</text>", drawn.svg)
     at = words.index("Not reported")
     assert why in " ".join(words[at:])
     assert "<path" not in drawn.svg
     assert uprights(drawn.svg) == []
     assert "SIMULATED" not in words
-    assert ">SIMULATED</text>" in draw(replace(MARKED, withheld=why, is_simulated=True), WIDTH).svg
+    assert ">SIMULATED</text>" in draw(replace(MARKED, not_reported=why, is_simulated=True), WIDTH).svg
     assert drawn.alt == f"Knee. Not reported. {why}"
     assert "Not reported" not in draw(MARKED, WIDTH).svg
 
 
 def test_hatching_stays_inside_the_plot() -> None:
-    withheld = replace(CHART, withheld="The sign is not known.")
-    frame = frame_of(withheld, WIDTH)
+    not_reported = replace(CHART, not_reported="The sign is not known.")
+    frame = frame_of(not_reported, WIDTH)
     hatches = re.findall(
-        r'<line x1="([\d.]+)" y1="([\d.]+)" x2="([\d.]+)" y2="([\d.]+)"[^>]*width="0.35"', draw(withheld, WIDTH).svg
+        r'<line x1="([\d.]+)" y1="([\d.]+)" x2="([\d.]+)" y2="([\d.]+)"[^>]*width="0.35"', draw(not_reported, WIDTH).svg
     )
     assert len(hatches) > 20
     for x, y in [end for hatch in hatches for end in (hatch[:2], hatch[2:])]:

@@ -40,7 +40,7 @@ def is_inside(place: MarkPlace) -> bool:
     )
 
 
-def test_two_peaks_in_swing_are_told_in_the_empty_middle_of_the_stride() -> None:
+def test_two_peaks_in_swing_are_reported_in_the_empty_middle_of_the_stride() -> None:
     ground = ground_of(KNEE, 0.8 * KNEE, uprights=(float(FRAME.x(60)), float(FRAME.x(62))))
     place = place_mark(ground, ends((73, 55), (73, 44)), [ONE_LINE, TWO_LINES], 50)
     assert place.bar_x == pytest.approx(float(FRAME.x(50)), abs=20)

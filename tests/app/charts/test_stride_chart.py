@@ -15,9 +15,9 @@ def cycle(n: int, toe_off_percent: float = 60.0) -> SideCycle:
     return SideCycle(mean_cycle(strides_deg), strides_deg, toe_off_percent)
 
 
-def only(n: int, *, is_withheld: bool = False, has_strides: bool = False) -> StrideCurve:
-    withheld = frozenset({Side.LEFT} if is_withheld else ())
-    (curve,) = curves_of_walk({Side.LEFT: cycle(n)}, withheld, has_strides=has_strides)
+def only(n: int, *, is_not_reported: bool = False, has_strides: bool = False) -> StrideCurve:
+    not_reported = frozenset({Side.LEFT} if is_not_reported else ())
+    (curve,) = curves_of_walk({Side.LEFT: cycle(n)}, not_reported, has_strides=has_strides)
     return curve
 
 
@@ -29,18 +29,18 @@ def test_spread_is_shown_of_ten_strides_and_not_under_single_strides() -> None:
     assert len(shown.strides_deg) == 10
 
 
-def test_of_a_withheld_curve_neither_mean_nor_toe_off_nor_spread_is_described() -> None:
-    withheld = only(12, is_withheld=True)
-    assert not withheld.is_known
-    assert np.isnan(withheld.toe_off_percent)
-    assert withheld.sd_deg is None
-    assert len(withheld.strides_deg) == 0
-    assert len(only(12, is_withheld=True, has_strides=True).strides_deg) == 12
-    assert len(only(2, is_withheld=True).strides_deg) == 2  # too few for a mean: they are all there is
+def test_of_a_not_reported_curve_neither_mean_nor_toe_off_nor_spread_is_described() -> None:
+    not_reported = only(12, is_not_reported=True)
+    assert not not_reported.is_known
+    assert np.isnan(not_reported.toe_off_percent)
+    assert not_reported.sd_deg is None
+    assert len(not_reported.strides_deg) == 0
+    assert len(only(12, is_not_reported=True, has_strides=True).strides_deg) == 12
+    assert len(only(2, is_not_reported=True).strides_deg) == 2  # too few for a mean: they are all there is
     assert only(12).is_known
 
 
-def test_the_earlier_toe_off_stands_first_as_far_as_it_is_written() -> None:
+def test_the_earlier_toe_off_is_first_as_far_as_it_is_written() -> None:
     curves = curves_of_walk({Side.LEFT: cycle(3, 60.4), Side.RIGHT: cycle(3, 60.2)}, frozenset(), has_strides=False)
     assert [curve.side for curve in toe_offs_in_order(curves, 0)] == [Side.LEFT, Side.RIGHT]
     assert [curve.side for curve in toe_offs_in_order(curves, 1)] == [Side.RIGHT, Side.LEFT]
@@ -57,5 +57,5 @@ def test_axes_are_the_usual_ones_and_their_labels_never_minus_zero() -> None:
 
 
 @pytest.mark.parametrize("order", [(0, 2), (1, 2)])
-def test_a_curve_that_is_not_known_says_so(order: tuple[int, int]) -> None:
+def test_a_curve_that_is_not_known_states_so(order: tuple[int, int]) -> None:
     assert not StrideCurve("A", Side.LEFT, np.full(101, np.nan), order=order).is_known

@@ -1,4 +1,4 @@
-"""Does `gaitwright agree` write what it says, and refuse in one line?"""
+"""Does `gaitwright agree` write what it states, and refuse in one line?"""
 
 import csv
 import json
@@ -29,19 +29,19 @@ def test_it_writes_tables_curves_figures_and_a_report(folder: Path, capsys: pyte
     out = folder / "out"
     arguments = ["agree", "--reference", str(folder / "ref.csv"), str(folder / "session"), "--out", str(out)]
     assert main(arguments) == 0
-    said = capsys.readouterr().out
-    assert "M: RMSE, mean removed, degrees" in said
-    assert "walk 2: no walk and trial match, so it was not compared" in said
-    assert said.rstrip().endswith("1 recording compared. Research use. Not a medical device.")
+    stated = capsys.readouterr().out
+    assert "M: RMSE, mean removed, degrees" in stated
+    assert "walk 2: no walk and trial match, so it was not compared" in stated
+    assert stated.rstrip().endswith("1 recording compared. Research use. Not a medical device.")
     assert json.loads((out / "agreement.json").read_text(encoding="utf-8"))["format"] == "gaitwright-agreement/1"
     with (out / "agreement.csv").open(newline="") as file:
         rows = list(csv.DictReader(file))
     with (out / "columns.csv").open(newline="") as file:
-        told = [(row["file"], row["column"]) for row in csv.DictReader(file)]
-    assert [column for name, column in told if name == "agreement.csv"] == list(rows[0])
+        reported = [(row["file"], row["column"]) for row in csv.DictReader(file)]
+    assert [column for name, column in reported if name == "agreement.csv"] == list(rows[0])
     with (out / "walk_1" / "curves.csv").open(newline="") as file:
         header = next(csv.reader(file))
-    assert {column for name, column in told if name == "curves.csv"} <= set(header)
+    assert {column for name, column in reported if name == "curves.csv"} <= set(header)
     assert (out / "figure_8_knee.svg").read_text(encoding="utf-8").startswith("<svg")
     pages = PdfReader(out / "agreement.pdf").pages
     words = pages[0].extract_text()
@@ -64,7 +64,14 @@ def test_a_file_that_is_no_reference_is_refused_in_one_line(
     folder: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
     (tmp_path / "x.csv").write_text("time_s,left_knee\n0.0,a\n", encoding="utf-8")
-    wanted = ["agree", str(folder / "session"), "--reference", str(tmp_path / "x.csv"), "--out", str(tmp_path / "out")]
-    assert main(wanted) == 2
+    required = [
+        "agree",
+        str(folder / "session"),
+        "--reference",
+        str(tmp_path / "x.csv"),
+        "--out",
+        str(tmp_path / "out"),
+    ]
+    assert main(required) == 2
     assert 'x.csv, line 2: "a" in column left_knee is not a number.' in capsys.readouterr().err
     assert not (tmp_path / "out").exists()

@@ -119,12 +119,12 @@ def test_progress_goes_to_stderr_and_the_result_to_stdout(
     session: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
     assert analyse(session, tmp_path / "out", "--no-rrd") == 0
-    said = capsys.readouterr()
-    percents = [int(line.split(" % ")[0]) for line in said.err.splitlines()]
+    stated = capsys.readouterr()
+    percents = [int(line.split(" % ")[0]) for line in stated.err.splitlines()]
     assert percents[0] == 0
     assert percents[-1] == 100
     assert percents == sorted(percents)
-    assert said.out.startswith(f"{tmp_path / 'out'}: left knee; 2 recordings.\n")
+    assert stated.out.startswith(f"{tmp_path / 'out'}: left knee; 2 recordings.\n")
 
 
 def test_a_session_without_any_joint_is_done_all_the_same(session: Path, tmp_path: Path) -> None:
@@ -195,7 +195,7 @@ def test_the_choices_are_those_of_the_core() -> None:
     assert cli.DEFAULT_TAU_S == DEFAULT_TAU_S
 
 
-def test_without_a_screen_the_window_says_so(
+def test_without_a_screen_the_window_states_so(
     monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
     monkeypatch.setattr(sys, "platform", "linux")
@@ -215,10 +215,10 @@ def test_on_a_terminal_progress_is_one_line_that_renews_itself(
     terminal = Terminal()
     monkeypatch.setattr(sys, "stderr", terminal)
     assert analyse(session, tmp_path / "out", "--no-rrd") == 0
-    said = terminal.getvalue()
-    assert "\n" not in said
-    assert "\r\x1b[K100 % writing" in said
-    assert said.endswith("\r\x1b[K")  # the line is cleared at the end
+    stated = terminal.getvalue()
+    assert "\n" not in stated
+    assert "\r\x1b[K100 % writing" in stated
+    assert stated.endswith("\r\x1b[K")  # the line is cleared at the end
 
 
 def test_what_files_say_cannot_steer_the_terminal(
@@ -229,9 +229,9 @@ def test_what_files_say_cannot_steer_the_terminal(
     header = (session / "walk_1" / "left_thigh.csv").read_text().splitlines()[0]
     (session / "walk_1" / "left_thigh.csv").write_text(header + "\n")  # a finding that names the recording
     analyse(session, tmp_path / "out", "--no-rrd")
-    said = capsys.readouterr()
-    assert "[2J" in said.out + said.err
-    assert "\x1b" not in said.out + said.err
+    stated = capsys.readouterr()
+    assert "[2J" in stated.out + stated.err
+    assert "\x1b" not in stated.out + stated.err
 
 
 # The demonstration
@@ -280,7 +280,7 @@ def test_a_demonstration_replaces_no_real_session(
     assert files_in(tmp_path / "out" / "session") == files_in(session)
 
 
-# What stands at OUT
+# What is at OUT
 
 
 def test_an_analysis_is_replaced_and_nothing_of_it_stays(session: Path, tmp_path: Path) -> None:
@@ -513,7 +513,7 @@ def test_an_import_makes_a_session_and_a_second_one_adds_to_it(
     assert analyse(out, tmp_path / "out", "--no-rrd") == 0
 
 
-def test_an_import_tells_the_program_by_the_content(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+def test_an_import_shows_the_program_by_the_content(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     mt = mt_file(tmp_path, "00B42D4B", 0).rename(tmp_path / "opal.csv")
     apdm = tmp_path / "MT_01-000_00B42D4B.txt"
     heads = ["Format=7,17,,,Left Thigh,,", "Time,Accelerometer,,,Gyroscope,,", ",X,Y,Z,X,Y,Z"]
@@ -557,7 +557,7 @@ def test_a_map_that_names_no_file_is_refused(tmp_path: Path, capsys: pytest.Capt
     assert not (tmp_path / "session").exists()
 
 
-def test_it_says_its_version(capsys: pytest.CaptureFixture[str]) -> None:
+def test_it_states_its_version(capsys: pytest.CaptureFixture[str]) -> None:
     with pytest.raises(SystemExit, match="0"):
         cli.main(["--version"])
     assert capsys.readouterr().out.strip() == f"gaitwright {importlib.metadata.version('gaitwright')}"

@@ -20,22 +20,22 @@ from tests.safety.port_vanishes import vanish_often
 pytestmark = pytest.mark.endurance  # minutes in all: the default run has three
 
 
-@pytest.mark.parametrize("kind", [kind for kind in EMULATED if kind != "csv"])  # whose columns have to be told
+@pytest.mark.parametrize("kind", [kind for kind in EMULATED if kind != "csv"])  # whose columns have to be reported
 def test_what_is_played_is_listed(kind: str, monkeypatch: pytest.MonkeyPatch) -> None:
-    told: list[str] = []
-    playing = threading.Thread(target=emulate, args=(kind, 2, 8.0, told.append, ["f"]))
+    reported: list[str] = []
+    playing = threading.Thread(target=emulate, args=(kind, 2, 8.0, reported.append, ["f"]))
     playing.start()
-    while len(told) < 5:
+    while len(reported) < 5:
         time.sleep(0.05)
-    assert all(Path(place).exists() for place in told[:2])
-    monkeypatch.setenv(MORE_PORTS, os.pathsep.join(told[:2]))
+    assert all(Path(place).exists() for place in reported[:2])
+    monkeypatch.setenv(MORE_PORTS, os.pathsep.join(reported[:2]))
     lines = list(list_devices())
     playing.join()
     assert lines[0] == "Sensors that were heard:"
-    assert "free motion 1: 6 s" in told
+    assert "free motion 1: 6 s" in reported
     assert sum(line.startswith("- ") and line.endswith(", simulated") for line in lines) == 2
     assert sum(driver.proof in line for driver in DRIVERS for line in lines) == len(DRIVERS)
-    assert not any(Path(place).exists() for place in told[:2])
+    assert not any(Path(place).exists() for place in reported[:2])
 
 
 def test_what_is_played_is_the_simulated_patient() -> None:

@@ -1,4 +1,4 @@
-"""Does `gaitwright query` answer, write what it says, and refuse in one line?"""
+"""Does `gaitwright query` answer, write what it states, and refuse in one line?"""
 
 from pathlib import Path
 
@@ -18,9 +18,9 @@ def path(tmp_path: Path) -> Path:
 
 def test_an_answer_is_csv_where_there_is_no_terminal(path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     assert main(["query", COUNT, "--in", str(path)]) == 0
-    said = capsys.readouterr()
-    assert said.out == "condition,n\n'=shoes,1\nbarefoot,2\n"
-    assert said.err == ""
+    stated = capsys.readouterr()
+    assert stated.out == "condition,n\n'=shoes,1\nbarefoot,2\n"
+    assert stated.err == ""
 
 
 def test_an_answer_is_aligned_on_a_terminal(
@@ -63,10 +63,10 @@ def test_a_refusal_is_one_line_that_names_it(
     before = path.read_bytes()
     places = {"{table}": str(path), "{folder}": str(path.parent)}
     assert main(["query", *(places.get(one, one) for one in arguments), "--in", str(path)]) == 2
-    said = capsys.readouterr()
-    assert said.out == ""
-    assert len(said.err.splitlines()) == 1
-    assert named in said.err
+    stated = capsys.readouterr()
+    assert stated.out == ""
+    assert len(stated.err.splitlines()) == 1
+    assert named in stated.err
     assert path.read_bytes() == before
 
 

@@ -1,4 +1,5 @@
-"""Who is in the demonstration's library: nobody real, each visit with what was said of it, in the screen's language."""
+"""Who is in the demonstration's library: nobody real, each visit with what was stated about it, in the screen's
+language."""
 
 import datetime
 
@@ -41,17 +42,17 @@ def test_visits_lie_behind_today_and_the_latest_of_the_first_patient_is_the_late
     assert [visit.is_reported for visit in knee] == [True, True, True, False]
 
 
-def test_of_every_walk_is_said_what_it_was_and_of_no_other(patients: dict[str, SimulatedPatient]) -> None:
+def test_of_every_walk_is_stated_what_it_was_and_of_no_other(patients: dict[str, SimulatedPatient]) -> None:
     for one in patients.values():
         for visit in one.visits:
             moved = {made.name: made for made in visit.settings.recordings}
             walks = {name for name, made in moved.items() if not isinstance(made, Standing | FreeMotion)}
-            assert set(visit.told) == walks
-            for name, told in visit.told.items():
+            assert set(visit.reported) == walks
+            for name, reported in visit.reported.items():
                 made = moved[name]
-                assert told.condition
-                assert (told.test is None) is isinstance(made, Walk)
-                assert told.test is None or (isinstance(made, TimedCourse) and str(made.kind) == str(told.test))
+                assert reported.condition
+                assert (reported.test is None) is isinstance(made, Walk)
+                assert reported.test is None or (isinstance(made, TimedCourse) and str(made.kind) == str(reported.test))
 
 
 def test_a_patient_is_the_same_body_at_each_visit_with_other_straps(patients: dict[str, SimulatedPatient]) -> None:
@@ -70,14 +71,14 @@ def test_goals_are_agreed_at_the_first_visit_so_that_the_later_ones_are_held_aga
     assert any(goal.column.startswith("sit_to_stand") for goal in knee.details.goals)
 
 
-def test_the_prosthesis_is_walked_as_it_was_said_to_be_changed_from_the_alignment_before(
+def test_the_prosthesis_is_walked_as_it_was_stated_to_be_changed_from_the_alignment_before(
     patients: dict[str, SimulatedPatient],
 ) -> None:
     (visit,) = patients["DEMO-AK"].visits
-    told = list(visit.told.values())
-    assert [one.condition for one in told] == ["Alignment A", "Alignment B", "Alignment C"]
-    changes = {one.condition: one.alignment for one in told}
-    assert [one.alignment.since if one.alignment else "" for one in told] == ["", "Alignment A", "Alignment B"]
+    reported = list(visit.reported.values())
+    assert [one.condition for one in reported] == ["Alignment A", "Alignment B", "Alignment C"]
+    changes = {one.condition: one.alignment for one in reported}
+    assert [one.alignment.since if one.alignment else "" for one in reported] == ["", "Alignment A", "Alignment B"]
     set_so = [made.prosthesis for made in visit.settings.recordings if isinstance(made, Walk)]
     assert set_so[0] == BUILT
     assert (set_so[1].plantar_deg, set_so[1].back_mm) == (4.0, 6.0)
@@ -90,13 +91,13 @@ def test_the_prosthesis_is_walked_as_it_was_said_to_be_changed_from_the_alignmen
 def test_conditions_are_words_of_the_language_on_the_screen() -> None:
     use_language("de")
     try:
-        told = simulated_patients(NOW)[0].visits[0].told["walk 1"]
-        assert told.condition == "Schuhe"
+        reported = simulated_patients(NOW)[0].visits[0].reported["walk 1"]
+        assert reported.condition == "Schuhe"
     finally:
         use_language("en")
 
 
 def test_a_stroke_is_seen_twice_with_both_tests(patients: dict[str, SimulatedPatient]) -> None:
     for visit in patients["DEMO-STROKE"].visits:
-        tests = {told.test for told in visit.told.values()}
+        tests = {reported.test for reported in visit.reported.values()}
         assert tests == {None, TimedProtocol.TEN_METRES, TimedProtocol.UP_AND_GO}

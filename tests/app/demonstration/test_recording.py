@@ -8,7 +8,7 @@ from pathlib import Path
 
 import pytest
 
-from app.demonstration.patients import SimulatedVisit, ToldOfWalk, simulated_patients
+from app.demonstration.patients import ReportedOfWalk, SimulatedVisit, simulated_patients
 from app.demonstration.recording import add_patients, record_visit, take_in
 from app.home.patients.reading import PatientReading, read_patient
 from app.storage.library import DEMONSTRATOR, Library
@@ -33,7 +33,7 @@ SHORT = SimulatedVisit(
     "DEMO-KNEE",
     NOW - datetime.timedelta(days=3),
     WalkerSettings(recordings=(Standing(), Walk(strides=4), Walk("walk 2", strides=3))),
-    {"walk 1": ToldOfWalk("Shoes", test=TimedProtocol.TEN_METRES), "walk 2": ToldOfWalk("Alignment B", CHANGE)},
+    {"walk 1": ReportedOfWalk("Shoes", test=TimedProtocol.TEN_METRES), "walk 2": ReportedOfWalk("Alignment B", CHANGE)},
     Limits(without_ankle=frozenset({Side.LEFT})),
 )
 
@@ -59,7 +59,7 @@ def test_patients_are_listed_with_the_first_one_first(opened: OpenedLibrary) -> 
     assert [one.details.code for one in opened.library.patients.search()] == ["DEMO-KNEE", "DEMO-STROKE", "DEMO-AK"]
 
 
-def test_a_visit_comes_out_of_its_journals_as_it_was_recorded_and_told(
+def test_a_visit_comes_out_of_its_journals_as_it_was_recorded_and_reported(
     opened: OpenedLibrary, recorded: Session
 ) -> None:
     assert recorded.is_simulated
@@ -86,7 +86,7 @@ def test_a_visit_comes_out_of_its_journals_as_it_was_recorded_and_told(
 
 
 @pytest.mark.endurance
-def test_a_report_is_said_to_be_written_of_those_visits_alone_of_which_it_is(
+def test_a_report_is_stated_to_be_written_of_those_visits_alone_of_which_it_is(
     opened: OpenedLibrary, recorded: Session
 ) -> None:
     written = take_in(opened, SHORT, recorded)
@@ -133,15 +133,15 @@ def _knee_is_replaced(reading: PatientReading) -> None:
     walked = _conditions(reading, "Shoes")
     assert len(walked) == 4
     assert len(_conditions(reading, "Shoes, stick")) == 2
-    assert [bool(one.withheld) for one in walked] == [False, True, False, False]
-    assert Joint.LEFT_KNEE in walked[1].withheld
+    assert [bool(one.not_reported) for one in walked] == [False, True, False, False]
+    assert Joint.LEFT_KNEE in walked[1].not_reported
     for column, side in ((SPEED, None), (KNEE, Side.LEFT), (COLUMNS[TimedProtocol.TEN_METRES], None)):
         found = change(walked[-1], walked[0], column, side)
         assert found is not None
         assert found.exceeds
         assert found.difference > 0
     right = [figure.verdict for one in walked if (figure := one.figure(KNEE, Side.RIGHT)) is not None]
-    assert Verdict.WITHHELD not in right
+    assert Verdict.NOT_REPORTED not in right
     rises = [test.found.mean for one in walked if (test := one.test(COLUMNS[TimedProtocol.SIT_TO_STAND])) is not None]
     assert rises == sorted(rises, reverse=True)
     step = reading.next_step(NOW)
@@ -158,7 +158,7 @@ def _is_after_stroke(reading: PatientReading) -> None:
         stance = one.between_legs("stance_percent")
         assert stance is not None
         assert stance.difference > 3.0
-        assert one.withheld == ()
+        assert one.not_reported == ()
     found = change(last, first, SPEED)
     assert found is not None
     assert 0.0 < found.difference < found.error

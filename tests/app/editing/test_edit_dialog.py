@@ -10,14 +10,14 @@ from pytestqt.qtbot import QtBot
 
 from app.editing.dialog import EditDialog
 from app.editing.question import EditQuestion
-from app.storage.three_way import Contest
+from app.storage.three_way import MergeConflict
 from app.theme.notifier import ThemeNotifier
 
 NOW = datetime.datetime(2026, 11, 23, 12, 0).astimezone()
 AT = NOW.replace(hour=10, minute=32)
 CONTESTS = (
-    Contest("height_m", 1.82, 1.80, "B. Berger", AT),
-    Contest("device", "", "knee K " + "with a long name " * 12, "", None),
+    MergeConflict("height_m", 1.82, 1.80, "B. Berger", AT),
+    MergeConflict("device", "", "knee K " + "with a long name " * 12, "", None),
 )
 LEFT, RIGHT, UP, DOWN = Qt.Key.Key_Left, Qt.Key.Key_Right, Qt.Key.Key_Up, Qt.Key.Key_Down
 ENTER, ESCAPE = Qt.Key.Key_Return, Qt.Key.Key_Escape
@@ -39,7 +39,7 @@ def press(dialog: EditDialog, *keys: Qt.Key) -> None:
         QTest.keyClick(dialog.focusWidget(), key)
 
 
-def test_each_line_says_both_values_and_whose_they_are(dialog: EditDialog) -> None:
+def test_each_line_states_both_values_and_whose_they_are(dialog: EditDialog) -> None:
     (mine, theirs), (nothing, unknown) = dialog.cells
     assert (mine.value, mine.whose) == ("182 cm", "Yours")
     assert (theirs.value, theirs.whose) == ("180 cm", "Theirs: B. Berger, today 10:32")

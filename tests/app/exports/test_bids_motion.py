@@ -132,10 +132,14 @@ def test_tables_are_as_bids_has_them(tmp_path: Path) -> None:
     assert len({row["name"] for row in rows}) == len(rows)
     assert {len(line.split("\t")) for line in motion.read_text().splitlines()} == {len(rows)}
     assert (rows[0]["type"], rows[0]["units"]) == ("LATENCY", "s")
-    told = json.loads(settings.read_text())
-    assert (told["TaskName"], told["SamplingFrequency"], told["TrackedPointsCount"]) == ("walking", 100.0, 2)
-    assert told["MotionChannelCount"] == len(rows) == 13
-    assert told["ACCELChannelCount"] == told["GYROChannelCount"] == 6
+    reported = json.loads(settings.read_text())
+    assert (reported["TaskName"], reported["SamplingFrequency"], reported["TrackedPointsCount"]) == (
+        "walking",
+        100.0,
+        2,
+    )
+    assert reported["MotionChannelCount"] == len(rows) == 13
+    assert reported["ACCELChannelCount"] == reported["GYROChannelCount"] == 6
     (scan,) = cells(next(folder.glob("sub-*/*_scans.tsv")))
     assert scan == {"filename": f"motion/{motion.name}", "acq_time": "2026-11-21T09:00:00.250000Z"}
     description = json.loads((folder / "dataset_description.json").read_text())
@@ -166,7 +170,7 @@ def test_what_was_discarded_or_is_empty_does_not_leave(tmp_path: Path) -> None:
 
 @pytest.mark.endurance
 @pytest.mark.parametrize(("born", "age"), [(1950, "76"), (1937, "89"), (1920, "89"), (None, "n/a")])
-def test_the_participant_is_told_without_a_name(
+def test_the_participant_is_reported_without_a_name(
     visit: tuple[Session, Analysis], tmp_path: Path, born: int | None, age: str
 ) -> None:
     session, analysis = visit

@@ -1,4 +1,4 @@
-"""Does columns.csv tell of every column of every table of a real analysis, and of no other?"""
+"""Does columns.csv report of every column of every table of a real analysis, and of no other?"""
 
 import csv
 import datetime
@@ -25,8 +25,8 @@ Row = dict[str, str]
 
 @pytest.fixture(scope="module")
 def visit() -> tuple[Session, Analysis]:
-    wanted = (Standing(), FreeMotion(), Walk(strides=5), Walk("walk 2", strides=5))
-    session = simulate(WalkerSettings(seed=5, recordings=wanted)).session
+    required = (Standing(), FreeMotion(), Walk(strides=5), Walk("walk 2", strides=5))
+    session = simulate(WalkerSettings(seed=5, recordings=required)).session
     conditions = {"walk 1": "shoes", "walk 2": "barefoot"}
     note = with_tallies("", [TargetTally(Target(TargetMeasure.CADENCE, None, 110), 2, 4)])
     turned = AlignmentChange("shoes", (PartChange(ProsthesisPart.PYLON, turns=0.5, height_mm=3.0, text="=1"),))
@@ -67,11 +67,11 @@ def columns_in(folder: Path) -> set[tuple[str, str]]:
     return found
 
 
-def test_every_column_of_every_table_is_told_of_and_no_other(out: Path) -> None:
-    told = [(row["file"], row["column"]) for row in rows_of_columns(out)]
-    assert len(told) == len(set(told))
-    assert set(told) == columns_in(out)
-    files = {file for file, _ in told}
+def test_every_column_of_every_table_is_reported_of_and_no_other(out: Path) -> None:
+    reported = [(row["file"], row["column"]) for row in rows_of_columns(out)]
+    assert len(reported) == len(set(reported))
+    assert set(reported) == columns_in(out)
+    files = {file for file, _ in reported}
     assert files == {
         *("angles.csv", "events.csv", "strides.csv", "cycles.csv"),
         *("peaks.csv", "alignments.csv", "differences.csv", "compared_cycles.csv", "sides.csv", "targets.csv"),
@@ -80,7 +80,7 @@ def test_every_column_of_every_table_is_told_of_and_no_other(out: Path) -> None:
     assert (COLUMNS,) in TAKEN
 
 
-def test_the_tables_of_an_earlier_visit_are_told_of_once_they_are_there(
+def test_the_tables_of_an_earlier_visit_are_reported_of_once_they_are_there(
     visit: tuple[Session, Analysis], out: Path, tmp_path: Path
 ) -> None:
     write_results(*visit, tmp_path)
@@ -89,9 +89,9 @@ def test_the_tables_of_an_earlier_visit_are_told_of_once_they_are_there(
     write_compared_cycles(found.parts, tmp_path / VISITS_CYCLES)
     assert {row["file"] for row in rows_of_columns(tmp_path)}.isdisjoint({VISITS, VISITS_CYCLES})
     describe_tables(visit[1], tmp_path)
-    told = {(row["file"], row["column"]) for row in rows_of_columns(tmp_path)}
-    assert told == columns_in(tmp_path)
-    assert {file for file, _ in told} == set(KNOWN)
+    reported = {(row["file"], row["column"]) for row in rows_of_columns(tmp_path)}
+    assert reported == columns_in(tmp_path)
+    assert {file for file, _ in reported} == set(KNOWN)
 
 
 @pytest.mark.parametrize(
@@ -137,7 +137,7 @@ def test_a_column_that_nobody_described_is_an_error() -> None:
     assert column_of("compared_cycles.csv", "1A_left_knee_mean_deg").definition.endswith("of 1A")
 
 
-def test_what_was_turned_is_told_in_a_table_and_beside_its_walk(out: Path) -> None:
+def test_what_was_turned_is_reported_in_a_table_and_beside_its_walk(out: Path) -> None:
     with (out / "alignments.csv").open(newline="", encoding="utf-8") as file:
         (row,) = csv.DictReader(file)
     assert (row["walk"], row["condition"], row["since"], row["part"]) == ("walk 2", "barefoot", "shoes", "pylon")

@@ -1,4 +1,4 @@
-"""What stands in the workbook, the C3D and the Bundle beside the numbers: cell by cell, as it was typed."""
+"""What is in the workbook, the C3D and the Bundle beside the numbers: cell by cell, as it was typed."""
 
 import json
 from dataclasses import replace
@@ -54,11 +54,11 @@ def book(typed: tuple[Session, Analysis], tmp_path_factory: pytest.TempPathFacto
     return openpyxl.load_workbook(path)
 
 
-def test_the_first_sheet_tells_who_was_measured_and_how(book: Any) -> None:
+def test_the_first_sheet_shows_who_was_measured_and_how(book: Any) -> None:
     rows = [row[:2] for row in book["About"].iter_rows(values_only=True)]
     assert book.sheetnames[0] == "About"
     assert rows[0] == ("what", "value")
-    told = dict(rows[2:])
+    reported = dict(rows[2:])
     assert rows[1][0].startswith("SIMULATED")
     expected = {
         "patient": "P 17",
@@ -76,9 +76,9 @@ def test_the_first_sheet_tells_who_was_measured_and_how(book: Any) -> None:
         "notes": "=2+3",
         "method": "robust",
     }
-    assert [item for item in told.items() if item[0] in expected] == list(expected.items())
-    assert told["software"].startswith("gaitwright")
-    assert "Not a medical device" in told["use"]
+    assert [item for item in reported.items() if item[0] in expected] == list(expected.items())
+    assert reported["software"].startswith("gaitwright")
+    assert "Not a medical device" in reported["use"]
 
 
 def test_what_was_not_typed_has_no_row(visit: tuple[Session, Analysis], tmp_path: Path) -> None:
@@ -122,7 +122,7 @@ def test_columns_have_the_unit_that_their_name_ends_with(book: Any) -> None:
     assert (of_summary["cadence_steps_min"], of_summary["knee_range_deg"]) == ("steps/min", "°")
 
 
-def test_findings_are_told_in_words_and_there_is_no_sheet_without(
+def test_findings_are_reported_in_words_and_there_is_no_sheet_without(
     book: Any, typed: tuple[Session, Analysis], tmp_path: Path
 ) -> None:
     header, *rows = book["Findings"].iter_rows(values_only=True)
@@ -186,7 +186,7 @@ def test_zero_has_no_sign(visit: tuple[Session, Analysis], tmp_path: Path) -> No
         assert "-0.0" not in file.read_text()
 
 
-def test_a_bundle_tells_who_where_and_what_as_it_was_typed(typed: tuple[Session, Analysis], tmp_path: Path) -> None:
+def test_a_bundle_shows_who_where_and_what_as_it_was_typed(typed: tuple[Session, Analysis], tmp_path: Path) -> None:
     session, analysis = typed
     recordings = tuple(replace(r, condition="barfuß") for r in session.recordings)
     export_from_folder(replace(session, recordings=recordings), analysis, [Format.FHIR], tmp_path, is_identified=True)
@@ -194,14 +194,14 @@ def test_a_bundle_tells_who_where_and_what_as_it_was_typed(typed: tuple[Session,
     assert "barfuß".encode() in written
     assert written.endswith(b"}\n")
     assert b'\n  "resourceType": "Bundle"' in written
-    told = json.loads(written)
-    assert told["type"] == "collection"
-    patient = told["entry"][0]["resource"]
+    reported = json.loads(written)
+    assert reported["type"] == "collection"
+    patient = reported["entry"][0]["resource"]
     assert patient["identifier"] == [{"system": "urn:x-gaitwright:patient", "value": "P 17"}]
     assert (patient["gender"], patient["birthDate"]) == ("female", "1950")
-    for entry in told["entry"][1:]:
+    for entry in reported["entry"][1:]:
         one = entry["resource"]
-        assert one["subject"] == {"reference": told["entry"][0]["fullUrl"]}
+        assert one["subject"] == {"reference": reported["entry"][0]["fullUrl"]}
         assert one["effectiveDateTime"] == "2026-11-21T10:00:00+01:00"
         assert one["code"]["coding"][0]["system"] == "urn:x-gaitwright:parameter"
         assert one["code"]["text"] == one["code"]["coding"][0]["code"].replace("_", " ")
@@ -229,17 +229,17 @@ def test_ten_strides_are_final_and_nine_are_not(
     )
     session = replace(session, recordings=recordings)
     export_from_folder(session, analyse(session), [Format.FHIR], tmp_path)
-    told = [entry["resource"] for entry in json.loads((tmp_path / "fhir_bundle.json").read_text())["entry"]]
+    reported = [entry["resource"] for entry in json.loads((tmp_path / "fhir_bundle.json").read_text())["entry"]]
     (stance,) = (
         one
-        for one in told[1:]
+        for one in reported[1:]
         if one["code"]["coding"][0]["code"] == "stance_percent" and one["bodySite"]["text"] == "left leg"
     )
     counts = [part["valueInteger"] for part in stance["component"] if "valueInteger" in part]
     assert (counts, stance["status"]) == ([strides], status)
 
 
-def test_a_patient_of_whom_nothing_is_told_has_neither_name_nor_sex(
+def test_a_patient_of_whom_nothing_is_reported_has_neither_name_nor_sex(
     visit: tuple[Session, Analysis], tmp_path: Path
 ) -> None:
     session, analysis = visit
@@ -248,27 +248,27 @@ def test_a_patient_of_whom_nothing_is_told_has_neither_name_nor_sex(
         export_from_folder(
             replace(session, patient=patient, started=""), analysis, [Format.FHIR], tmp_path, is_identified=True
         )
-        told = json.loads((tmp_path / "fhir_bundle.json").read_text())["entry"]
-        assert told[0]["resource"].keys() <= {"resourceType", "meta"}
-        assert all("effectiveDateTime" not in entry["resource"] for entry in told)
+        reported = json.loads((tmp_path / "fhir_bundle.json").read_text())["entry"]
+        assert reported[0]["resource"].keys() <= {"resourceType", "meta"}
+        assert all("effectiveDateTime" not in entry["resource"] for entry in reported)
 
 
 @pytest.mark.parametrize("sex", ["female", "male", "other"])
-def test_a_sex_that_fhir_knows_is_told(visit: tuple[Session, Analysis], tmp_path: Path, sex: str) -> None:
+def test_a_sex_that_fhir_knows_is_reported(visit: tuple[Session, Analysis], tmp_path: Path, sex: str) -> None:
     session, analysis = visit
     patient = Patient(code="P 17", sex=sex, birth_year=950)
     export_from_folder(replace(session, patient=patient), analysis, [Format.FHIR], tmp_path, is_identified=True)
-    told = json.loads((tmp_path / "fhir_bundle.json").read_text())["entry"][0]["resource"]
-    assert (told["gender"], told["birthDate"]) == (sex, "0950")
+    reported = json.loads((tmp_path / "fhir_bundle.json").read_text())["entry"][0]["resource"]
+    assert (reported["gender"], reported["birthDate"]) == (sex, "0950")
 
 
-def test_an_export_tells_how_far_it_is(visit: tuple[Session, Analysis], tmp_path: Path) -> None:
+def test_an_export_shows_how_far_it_is(visit: tuple[Session, Analysis], tmp_path: Path) -> None:
     folder = tmp_path / "library"
     folder.mkdir()
     key, _ = KeySlots(folder / KEYS, Cost(passes=1, memory_kib=64)).create("hk", "four short words here")
     opened = OpenedLibrary(Library.create(folder, key, Operator("hk", "H. Keller", Role.ADMINISTRATOR)), folder, key)
     session, analysis = visit
-    told: list[tuple[float, str]] = []
+    reported: list[tuple[float, str]] = []
     with opened:
         room = Room(start_bytes=0, kept_bytes=0)
         session_id = import_session(opened, session, lambda *_: None, code="DEMO", room=room).session_id
@@ -278,8 +278,8 @@ def test_an_export_tells_how_far_it_is(visit: tuple[Session, Analysis], tmp_path
             [Format.MOT],
             tmp_path,
             {},
-            lambda share, what: told.append((share, what)),
+            lambda share, what: reported.append((share, what)),
             analysed=lambda _: analysis,
         )
-    assert told[-2:] == [(0.5, "analysing"), (1.0, "writing")]
-    assert all(isinstance(what, str) and 0.0 <= share <= 1.0 for share, what in told)
+    assert reported[-2:] == [(0.5, "analysing"), (1.0, "writing")]
+    assert all(isinstance(what, str) and 0.0 <= share <= 1.0 for share, what in reported)

@@ -38,11 +38,11 @@ def knee_and_ankle() -> RecordingAnalysis:
     )
     time_s = np.array([12.3, 12.31, 0.1 + 0.2 + 13.0, 1e5 + 1 / 3, 123456789.01])
     walk = recording(time_s, {Joint.RIGHT_ANKLE: ankle, Joint.LEFT_KNEE: knee})
-    said = {
+    stated = {
         Joint.LEFT_KNEE: JointVerdicts(READ, Assessment(Verdict.CARE), READ),
-        Joint.RIGHT_ANKLE: JointVerdicts(READ, Assessment(Verdict.WITHHELD), READ),
+        Joint.RIGHT_ANKLE: JointVerdicts(READ, Assessment(Verdict.NOT_REPORTED), READ),
     }
-    return replace(walk, verdicts=Verdicts(said), slipped_from_s={Side.LEFT: 1000.0})
+    return replace(walk, verdicts=Verdicts(stated), slipped_from_s={Side.LEFT: 1000.0})
 
 
 def random_walk(n: int) -> RecordingAnalysis:
@@ -58,7 +58,7 @@ def test_angles_read_as_agreed(tmp_path: Path) -> None:
     assert (tmp_path / "angles.csv").read_bytes() == (GOLDEN / "angles.csv").read_bytes()
 
 
-def told(path: Path, column: str) -> list[str]:
+def reported(path: Path, column: str) -> list[str]:
     with path.open(newline="") as file:
         return [row[column] for row in csv.DictReader(file)]
 
@@ -76,32 +76,32 @@ def told(path: Path, column: str) -> list[str]:
         ("not_measured", "not_measured", "not_measured", ""),
     ],
 )
-def test_each_row_says_what_may_be_read_and_keeps_its_samples(
+def test_each_row_states_what_may_be_read_and_keeps_its_samples(
     tmp_path: Path, shape: str, height: str, sign: str, status: str
 ) -> None:
     walk, parts = random_walk(20), [Assessment(Verdict(one)) for one in (shape, height, sign)]
     walk = replace(walk, verdicts=Verdicts({Joint.LEFT_ANKLE: JointVerdicts(*parts)}))
     write_angles(walk, tmp_path / "angles.csv")
-    assert told(tmp_path / "angles.csv", "left_ankle_status") == [status] * 20
-    assert told(tmp_path / "angles.csv", "right_ankle_status") == [""] * 20
-    known = [bool(cell) for cell in told(tmp_path / "angles.csv", "left_ankle_deg")]
+    assert reported(tmp_path / "angles.csv", "left_ankle_status") == [status] * 20
+    assert reported(tmp_path / "angles.csv", "right_ankle_status") == [""] * 20
+    known = [bool(cell) for cell in reported(tmp_path / "angles.csv", "left_ankle_deg")]
     assert known == np.isfinite(walk.joints[Joint.LEFT_ANKLE].angle_rad).tolist()
 
 
-def test_from_where_a_strap_slipped_the_rows_of_its_leg_are_withheld(
+def test_from_where_a_strap_slipped_the_rows_of_its_leg_are_not_reported(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.setattr(csv_report, "ROWS_PER_BLOCK", 30)
     walk = random_walk(100)
-    said = Verdicts(dict.fromkeys(LEG_JOINTS, JointVerdicts(READ, READ, READ)))
-    slipped = replace(walk, verdicts=said, slipped_from_s={Side.RIGHT: float(walk.time_s[40])})
+    stated = Verdicts(dict.fromkeys(LEG_JOINTS, JointVerdicts(READ, READ, READ)))
+    slipped = replace(walk, verdicts=stated, slipped_from_s={Side.RIGHT: float(walk.time_s[40])})
     write_angles(slipped, tmp_path / "angles.csv")
     for joint in LEG_JOINTS:
         good = 40 if joint.side is Side.RIGHT else 100
-        assert told(tmp_path / "angles.csv", f"{joint}_status") == ["read"] * good + ["withheld"] * (100 - good)
+        assert reported(tmp_path / "angles.csv", f"{joint}_status") == ["read"] * good + ["withheld"] * (100 - good)
     never = replace(slipped, slipped_from_s={Side.RIGHT: -np.inf})
     write_angles(never, tmp_path / "angles.csv")
-    assert set(told(tmp_path / "angles.csv", "right_knee_status")) == {"withheld"}
+    assert set(reported(tmp_path / "angles.csv", "right_knee_status")) == {"withheld"}
 
 
 def test_a_table_without_samples_or_joints_keeps_its_heading(tmp_path: Path) -> None:

@@ -1,4 +1,4 @@
-"""Can a program read every table by its metadata alone? Columns in order, and cells of the type that is told."""
+"""Can a program read every table by its metadata alone? Columns in order, and cells of the type that is reported."""
 
 import csv
 import json
@@ -35,16 +35,16 @@ def tables(out: Path) -> dict[str, list[dict[str, Any]]]:
     return {table["url"]: table["tableSchema"]["columns"] for table in found["tables"]}
 
 
-def test_every_table_stands_in_it_with_its_columns_in_order(out: Path) -> None:
-    told = tables(out)
-    assert set(told) == {path.relative_to(out).as_posix() for path in out.rglob("*.csv")}
-    for url, columns in told.items():
+def test_every_table_is_in_it_with_its_columns_in_order(out: Path) -> None:
+    reported = tables(out)
+    assert set(reported) == {path.relative_to(out).as_posix() for path in out.rglob("*.csv")}
+    for url, columns in reported.items():
         with (out / url).open(newline="", encoding="utf-8") as file:
             assert next(csv.reader(file)) == [column["titles"] for column in columns], url
     assert (METADATA,) in TAKEN
 
 
-def test_every_cell_that_is_not_empty_has_the_type_that_is_told(out: Path) -> None:
+def test_every_cell_that_is_not_empty_has_the_type_that_is_reported(out: Path) -> None:
     parsed = 0
     for url, columns in tables(out).items():
         with (out / url).open(newline="", encoding="utf-8") as file:

@@ -23,9 +23,9 @@ from core.samples import RecordingKind, Session
 from core.verdicts.gates import judged
 from core.verdicts.model import READ, Assessment, GateReason, JointVerdicts, Verdict, assess
 
-NO_ZERO = assess([GateReason("zero", Verdict.WITHHELD)])
-NO_SIGN = assess([GateReason("sign", Verdict.WITHHELD, 0.1, 0.25)])
-NO_AXIS = assess([GateReason("axis", Verdict.WITHHELD, 12.0, 9.0, "deg")])
+NO_ZERO = assess([GateReason("zero", Verdict.NOT_REPORTED)])
+NO_SIGN = assess([GateReason("sign", Verdict.NOT_REPORTED, 0.1, 0.25)])
+NO_AXIS = assess([GateReason("axis", Verdict.NOT_REPORTED, 12.0, 9.0, "deg")])
 Bundled = dict[tuple[str, str], dict[str, Any]]
 
 
@@ -54,7 +54,7 @@ def mixed(walk: RecordingAnalysis) -> RecordingAnalysis:
     )
 
 
-def test_a_c3d_names_a_shape_and_leaves_out_what_may_be_mirrored_or_is_withheld(
+def test_a_c3d_names_a_shape_and_leaves_out_what_may_be_mirrored_or_is_not_reported(
     mixed: RecordingAnalysis, tmp_path: Path
 ) -> None:
     write_c3d(mixed, False, tmp_path / "angles.c3d")
@@ -69,17 +69,17 @@ def test_a_c3d_names_a_shape_and_leaves_out_what_may_be_mirrored_or_is_withheld(
         "x: knee flexion; y, z not measured",
         "x: ankle dorsiflexion less its mean, for there is no zero; y, z not measured",
     ]
-    said = read["parameters"]["PROCESSING"]["STATUS"]["value"]
-    assert [text.split(":")[0] for text in said] == ["left_knee", "right_knee", "left_ankle", "right_ankle"]
-    assert said[0] == "left_knee: read"
-    assert said[1].startswith(
+    stated = read["parameters"]["PROCESSING"]["STATUS"]["value"]
+    assert [text.split(":")[0] for text in stated] == ["left_knee", "right_knee", "left_ankle", "right_ankle"]
+    assert stated[0] == "left_knee: read"
+    assert stated[1].startswith(
         "right_knee: range_only: Flexion and extension could not be distinguished (margin 0.10, required 0.25)"
     )
-    assert said[2].startswith("left_ankle: no_zero: There is no standing reference")
-    assert said[3].startswith("right_ankle: withheld: Calibration certainty is only +/-12.0 deg")
+    assert stated[2].startswith("left_ankle: no_zero: There is no standing reference")
+    assert stated[3].startswith("right_ankle: withheld: Calibration certainty is only +/-12.0 deg")
 
 
-def test_a_motion_file_leaves_out_what_is_no_pose_and_says_why(mixed: RecordingAnalysis, tmp_path: Path) -> None:
+def test_a_motion_file_leaves_out_what_is_no_pose_and_states_why(mixed: RecordingAnalysis, tmp_path: Path) -> None:
     write_motion(mixed, False, tmp_path / "angles.mot")
     head, body = (tmp_path / "angles.mot").read_text(encoding="ascii").split("endheader\n")
     assert body.splitlines()[0] == "time\tknee_angle_l"
@@ -135,7 +135,7 @@ def changed(visit: tuple[Session, Analysis], walk: RecordingAnalysis) -> Analysi
     return replace(visit[1], recordings=recordings)
 
 
-def test_a_withheld_figure_has_its_reason_in_place_of_a_value(
+def test_a_not_reported_figure_has_its_reason_in_place_of_a_value(
     visit: tuple[Session, Analysis], mixed: RecordingAnalysis
 ) -> None:
     found = observations(visit[0], changed(visit, mixed))
@@ -159,8 +159,8 @@ def test_a_bundle_interprets_nothing(visit: tuple[Session, Analysis]) -> None:
     resources = [entry["resource"] for entry in bundle(*visit)["entry"]]
     observations = [one for one in resources if one["resourceType"] == "Observation"]
     assert len(observations) > 40
-    for told in (*observations, *(part for one in observations for part in one.get("component", ()))):
-        assert "interpretation" not in told
+    for reported in (*observations, *(part for one in observations for part in one.get("component", ()))):
+        assert "interpretation" not in reported
 
 
 def test_what_nobody_wore_was_not_performed(visit: tuple[Session, Analysis], walk: RecordingAnalysis) -> None:
@@ -185,18 +185,18 @@ def test_under_ten_strides_nothing_is_final(
     reason = (Reason.USED,) * used + (Reason.TURN,) * (len(gait.strides) - used)
     few = replace(walk, gait={**walk.gait, Side.LEFT: replace(gait, strides=replace(gait.strides, reason=reason))})
     found = observations(visit[0], judged(changed(visit, few)))
-    told = {name: one for (name, side), one in found.items() if side == "left leg" and "valueQuantity" in one}
-    assert len(told) > 10
-    assert {one["status"] for one in told.values()} == {status}
-    for one in told.values():
+    reported = {name: one for (name, side), one in found.items() if side == "left leg" and "valueQuantity" in one}
+    assert len(reported) > 10
+    assert {one["status"] for one in reported.values()} == {status}
+    for one in reported.values():
         notes = [note["text"] for note in one["note"]]
         assert any(text.startswith(f"Few strides ({used} used, 10 required)") for text in notes) == (status != "final")
         assert component(one, "strides_used")["valueInteger"] == used
 
 
 def test_the_error_of_a_figure_is_a_component_and_a_column(visit: tuple[Session, Analysis], tmp_path: Path) -> None:
-    told = summarise(visit[1])["walks"]
-    (walk,) = told.values()
+    reported = summarise(visit[1])["walks"]
+    (walk,) = reported.values()
     found = observations(*visit)
     write_spreadsheet(*visit, tmp_path / "book.xlsx")
     header, *rows = openpyxl.load_workbook(tmp_path / "book.xlsx")["Summary"].iter_rows(values_only=True)
@@ -207,25 +207,25 @@ def test_the_error_of_a_figure_is_a_component_and_a_column(visit: tuple[Session,
         assert component(found[name, "left leg"], "error")["valueQuantity"]["value"] == error
         assert sheet["left", name]["error"] == pytest.approx(error, rel=1e-14)
         assert sheet["left", name]["status"] == walk["left"][f"{name}_status"]
-    json.dumps(told, allow_nan=False)
+    json.dumps(reported, allow_nan=False)
 
 
-def test_a_workbook_has_no_number_where_a_figure_is_withheld(
+def test_a_workbook_has_no_number_where_a_figure_is_not_reported(
     visit: tuple[Session, Analysis], mixed: RecordingAnalysis, tmp_path: Path
 ) -> None:
     write_spreadsheet(visit[0], changed(visit, mixed), tmp_path / "book.xlsx")
     book = openpyxl.load_workbook(tmp_path / "book.xlsx")
     header, *rows = book["Strides"].iter_rows(values_only=True)
     for row in rows:
-        told = dict(zip(header, row, strict=True))
-        is_right = told["side"] == "right"
-        assert (told["ankle_range_deg"] == "withheld") == is_right
-        assert (told["knee_swing_peak_deg"] == "withheld") == is_right
-        assert told["knee_range_deg"] != "withheld"
+        reported = dict(zip(header, row, strict=True))
+        is_right = reported["side"] == "right"
+        assert (reported["ankle_range_deg"] == "withheld") == is_right
+        assert (reported["knee_swing_peak_deg"] == "withheld") == is_right
+        assert reported["knee_range_deg"] != "withheld"
     header, *rows = book["Cycles"].iter_rows(values_only=True)
     columns = dict(zip(header, zip(*rows, strict=True), strict=True))
-    withheld = {name for name, cells in columns.items() if set(cells) == {"withheld"}}
-    assert withheld == {
+    not_reported = {name for name, cells in columns.items() if set(cells) == {"withheld"}}
+    assert not_reported == {
         *("left_ankle_mean_deg", "right_knee_mean_deg", "right_knee_shape_deg"),
         *("right_ankle_mean_deg", "right_ankle_shape_deg", "right_ankle_stride_sd_deg", "right_ankle_status"),
     }

@@ -42,19 +42,19 @@ NAME = "Miller"
 
 
 def silent(share: float, what: str) -> None:
-    """Tell nobody."""
+    """Report nobody."""
 
 
 def everything_in(folder: Path) -> str:
     """Every file's path and content, that of a workbook unpacked."""
-    said = []
+    stated = []
     for file in sorted(path for path in folder.rglob("*") if path.is_file()):
         content = file.read_bytes()
         if content.startswith(b"PK"):
             archive = zipfile.ZipFile(io.BytesIO(content))
             content = b"".join(archive.read(name) for name in archive.namelist())
-        said.append(f"{file.relative_to(folder)}{content.decode('utf-8', 'replace')}")
-    return "".join(said)
+        stated.append(f"{file.relative_to(folder)}{content.decode('utf-8', 'replace')}")
+    return "".join(stated)
 
 
 def files_in(folder: Path) -> list[str]:
@@ -70,17 +70,17 @@ def opened(tmp_path: Path) -> OpenedLibrary:
 
 
 @pytest.mark.endurance
-@pytest.mark.parametrize("wanted", Format)
+@pytest.mark.parametrize("required", Format)
 def test_no_name_leaves_unless_identity_is_asked_for(
-    visit: tuple[Session, Analysis], tmp_path: Path, wanted: Format
+    visit: tuple[Session, Analysis], tmp_path: Path, required: Format
 ) -> None:
     for name in ("nameless", "again", "identified"):
         (tmp_path / name).mkdir()
-        export_from_folder(*visit, [wanted], tmp_path / name, is_identified=name == "identified")
-    said = everything_in(tmp_path / "nameless")
-    assert NAME not in said
-    assert "2026-11-21" not in said
-    assert "SIMULATED" in said
+        export_from_folder(*visit, [required], tmp_path / name, is_identified=name == "identified")
+    stated = everything_in(tmp_path / "nameless")
+    assert NAME not in stated
+    assert "2026-11-21" not in stated
+    assert "SIMULATED" in stated
     assert NAME in everything_in(tmp_path / "identified")
 
 
@@ -140,9 +140,9 @@ def test_what_is_typed_freely_leaves_only_where_it_is_ticked(
     export_from_folder(*planted, list(Format), tmp_path, kept=kept)
     write_session(Pseudonyms(bytes(32)).session(uuid4(), planted[0], kept), tmp_path / "session")
     shown = " ".join(str(value) for _, value in preview_from_folder(planted[0], kept))
-    for said in (everything_in(tmp_path), shown):
-        assert [one for one, word in PLANTED.items() if word in said] == list(kept)
-        assert not [word for word in NEVER if word in said]
+    for stated in (everything_in(tmp_path), shown):
+        assert [one for one, word in PLANTED.items() if word in stated] == list(kept)
+        assert not [word for word in NEVER if word in stated]
 
 
 def test_a_goal_leaves_with_its_figures_and_not_with_who_agreed_on_it(planted: tuple[Session, Analysis]) -> None:
@@ -156,8 +156,8 @@ def test_a_goal_leaves_with_its_figures_and_not_with_who_agreed_on_it(planted: t
 
 
 def test_what_was_turned_leaves_with_its_figures_and_not_with_the_words(planted: tuple[Session, Analysis]) -> None:
-    told = Pseudonyms(bytes(32)).session(uuid4(), planted[0]).recordings[0].alignment
-    assert told == AlignmentChange("condition 1", (PartChange(ProsthesisPart.PYLON, height_mm=3.0),))
+    reported = Pseudonyms(bytes(32)).session(uuid4(), planted[0]).recordings[0].alignment
+    assert reported == AlignmentChange("condition 1", (PartChange(ProsthesisPart.PYLON, height_mm=3.0),))
     words = AlignmentChange("", (PartChange(ProsthesisPart.OTHER, text="a wedge"),))
     only_words = replace(planted[0], recordings=(replace(planted[0].recordings[0], alignment=words),))
     assert Pseudonyms(bytes(32)).session(uuid4(), only_words).recordings[0].alignment is None
@@ -173,8 +173,8 @@ def test_which_test_a_walk_is_leaves_with_the_instants_of_its_keys(planted: tupl
 def test_all_that_was_typed_leaves_with_identity(planted: tuple[Session, Analysis], tmp_path: Path) -> None:
     """So that the words that must not leave above are words that could."""
     export_from_folder(*planted, [Format.XLSX, Format.FHIR], tmp_path, is_identified=True)
-    said = everything_in(tmp_path)
-    assert not [word for word in (*PLANTED.values(), NEVER[0], NEVER[1], "birth", NAME) if word not in said]
+    stated = everything_in(tmp_path)
+    assert not [word for word in (*PLANTED.values(), NEVER[0], NEVER[1], "birth", NAME) if word not in stated]
 
 
 def test_an_age_leaves_in_place_of_the_year_of_birth(planted: tuple[Session, Analysis], tmp_path: Path) -> None:
@@ -206,8 +206,8 @@ def test_conditions_without_their_words_are_numbered(planted: tuple[Session, Ana
     recordings = tuple(
         replace(session.recordings[0], name=str(number), condition=one) for number, one in enumerate(typed)
     )
-    told = Pseudonyms(bytes(32)).session(uuid4(), replace(session, recordings=recordings))
-    assert [one.condition for one in told.recordings] == ["condition 1", "", "condition 1", "condition 2"]
+    reported = Pseudonyms(bytes(32)).session(uuid4(), replace(session, recordings=recordings))
+    assert [one.condition for one in reported.recordings] == ["condition 1", "", "condition 1", "condition 2"]
 
 
 def code_of(session: Session) -> object:
@@ -219,13 +219,13 @@ def test_a_session_of_no_library_gets_the_same_pseudonym_in_every_export_of_this
     visit: tuple[Session, Analysis], tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     session, analysis = visit
-    said = []
+    stated = []
     for name in ("one", "other"):
         (tmp_path / name).mkdir()
         export_from_folder(session, analysis, [Format.FHIR, Format.BIDS], tmp_path / name)
-        said.append(everything_in(tmp_path / name))
-    assert said[0] == said[1]
-    assert str(code_of(session)) in said[0]
+        stated.append(everything_in(tmp_path / name))
+    assert stated[0] == stated[1]
+    assert str(code_of(session)) in stated[0]
     # it is of what was measured, and of this computer
     assert code_of(replace(session, patient=replace(session.patient, code="DEMO-7"))) == code_of(session)
     assert code_of(replace(session, recordings=session.recordings[1:])) != code_of(session)
@@ -250,20 +250,20 @@ def test_a_library_notes_what_left_it_and_gives_the_same_pseudonym(
     with opened:
         room = Room(start_bytes=0, kept_bytes=0)
         session_id = import_session(opened, session, silent, code=f"DEMO-{NAME}", room=room).session_id
-        said = []
+        stated = []
         for name in ("one", "other"):
             (tmp_path / name).mkdir()
             formats = [Format.FHIR, Format.MOT]
             export_from_library(opened, session_id, formats, tmp_path / name, {}, silent, analysed=lambda _: analysis)
-            said.append(everything_in(tmp_path / name))
-        assert said[0] == said[1]
-        assert NAME not in said[0]
+            stated.append(everything_in(tmp_path / name))
+        assert stated[0] == stated[1]
+        assert NAME not in stated[0]
         noted = opened.library.audit.entries(about("session", session_id))
-        told = [json.loads(entry.details) for entry in noted if entry.action == Action.EXPORT]
-        assert [one["format"] for one in told] == ["fhir", "mot", "fhir", "mot"]
-        assert not any(one["is_identified"] or one["typed"] for one in told)
+        reported = [json.loads(entry.details) for entry in noted if entry.action == Action.EXPORT]
+        assert [one["format"] for one in reported] == ["fhir", "mot", "fhir", "mot"]
+        assert not any(one["is_identified"] or one["typed"] for one in reported)
         shown = preview_from_library(opened, session_id)
-        assert all(str(value) in said[0] for name, value in shown if name in ("patient", "sex"))
+        assert all(str(value) in stated[0] for name, value in shown if name in ("patient", "sex"))
         assert NAME not in str(shown)
         export_from_library(
             opened,
@@ -307,7 +307,7 @@ def test_a_format_that_fails_takes_no_other_with_it(
         export_from_folder(*visit, [Format.C3D], tmp_path)
 
 
-def test_a_missing_library_is_told_before_anything_is_done(
+def test_a_missing_library_is_reported_before_anything_is_done(
     visit: tuple[Session, Analysis], tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.setattr(exports, "find_spec", lambda name: None)

@@ -1,4 +1,5 @@
-"""Do fitting.csv, fitting_means.csv and the summary hold the measures for fitting, and nothing of what is withheld?"""
+"""Do fitting.csv, fitting_means.csv and the summary hold the measures for fitting, and nothing of what is not
+reported?"""
 
 import csv
 from dataclasses import replace
@@ -16,7 +17,7 @@ from core.verdicts.model import Assessment, LegVerdicts, Verdict
 from core.verdicts.quantities import FITTING
 from devices.simulation.walker import FreeMotion, Standing, Walk, WalkerSettings, simulate
 
-BAD = Assessment(Verdict.WITHHELD)
+BAD = Assessment(Verdict.NOT_REPORTED)
 
 
 @pytest.fixture(scope="module")
@@ -33,9 +34,9 @@ def strides_in(walk: RecordingAnalysis, folder: Path) -> list[dict[str, str]]:
 
 def means_of(walk: RecordingAnalysis) -> dict[tuple[str, str], dict[str, str]]:
     header, rows = fitting_means([walk])
-    told = [dict(zip(header, row, strict=True)) for row in rows]
-    assert len(told) == len({(row["side"], row["measure"]) for row in told})
-    return {(row["side"], row["measure"]): row for row in told}
+    reported = [dict(zip(header, row, strict=True)) for row in rows]
+    assert len(reported) == len({(row["side"], row["measure"]) for row in reported})
+    return {(row["side"], row["measure"]): row for row in reported}
 
 
 def test_a_mean_is_that_of_the_strides_used_in_every_file(walk: RecordingAnalysis, tmp_path: Path) -> None:
@@ -51,7 +52,7 @@ def test_a_mean_is_that_of_the_strides_used_in_every_file(walk: RecordingAnalysi
             assert int(means[side, name]["n"]) == summary[name]["n"] == len(mine)
 
 
-def test_what_is_withheld_is_empty_in_every_file_and_the_other_leg_is_not(
+def test_what_is_not_reported_is_empty_in_every_file_and_the_other_leg_is_not(
     walk: RecordingAnalysis, tmp_path: Path
 ) -> None:
     knee = replace(walk.verdicts.joint(Joint.LEFT_KNEE), height=BAD)
@@ -63,10 +64,10 @@ def test_what_is_withheld_is_empty_in_every_file_and_the_other_leg_is_not(
     )
     walk = replace(walk, verdicts=doubted)
     rows, means = strides_in(walk, tmp_path), means_of(walk)
-    withheld = {name for name in FITTING if "_at_" in name} | {"foot_heel_rise_deg", "knee_terminal_extension_deg"}
+    not_reported = {name for name in FITTING if "_at_" in name} | {"foot_heel_rise_deg", "knee_terminal_extension_deg"}
     for name in FITTING:
         for side in Side:
-            is_empty = side is Side.LEFT and name in withheld
+            is_empty = side is Side.LEFT and name in not_reported
             used = [row for row in rows if row["side"] == side and row["used"] == "true"]
             assert all((row[name] == "") is is_empty for row in used), (name, side)
             assert (means[side, name]["mean"] == "") is is_empty
@@ -78,7 +79,7 @@ def test_what_is_withheld_is_empty_in_every_file_and_the_other_leg_is_not(
     assert by_side["left"]["segment_turn_status"] != "withheld"
 
 
-def test_what_rests_on_a_source_that_was_not_read_says_so(walk: RecordingAnalysis) -> None:
+def test_what_rests_on_a_source_that_was_not_read_states_so(walk: RecordingAnalysis) -> None:
     means = means_of(walk)
     assert means["left", "shank_at_mid_stance_deg"]["unverified"] == "true"
     assert means["left", "stride_length_m"]["unverified"] == "false"  # ours, measured on walks of our own

@@ -55,9 +55,9 @@ def test_a_sheet_holds_the_cells_of_its_csv_file(
 ) -> None:
     walk = walk_of(visit[1])
     found = [row for row in sheet_rows(workbook, name.capitalize()) if row["recording"] == walk.name]
-    told = rows_of(tables / walk.folder / f"{name}.csv")
-    assert len(found) == len(told) > 10
-    for one, other in zip(found, told, strict=True):
+    reported = rows_of(tables / walk.folder / f"{name}.csv")
+    assert len(found) == len(reported) > 10
+    for one, other in zip(found, reported, strict=True):
         for key, cell in other.items():
             if cell == "":
                 assert one[key] is None
@@ -71,17 +71,17 @@ def test_the_summary_holds_the_means_of_summary_json_with_their_units(
     visit: tuple[Session, Analysis], tables: Path, workbook: Path
 ) -> None:
     walk = walk_of(visit[1]).name
-    told = json.loads((tables / "summary.json").read_text())["walks"][walk]
+    reported = json.loads((tables / "summary.json").read_text())["walks"][walk]
     found = {(row["side"], row["parameter"]): row for row in sheet_rows(workbook, "Summary")}
     assert len(found) > 30
     for (side, parameter), row in found.items():
         if side == "both":
-            assert row["mean"] == pytest.approx(told["both"][parameter], rel=1e-15)
+            assert row["mean"] == pytest.approx(reported["both"][parameter], rel=1e-15)
         else:
             # a workbook holds 16 digits
-            assert row["mean"] == pytest.approx(told[side][f"{parameter}_mean"], rel=1e-15)
-            assert row["stride_sd"] == pytest.approx(told[side][f"{parameter}_sd"], rel=1e-15)
-            assert row["strides_used"] == told[side]["strides_used"]
+            assert row["mean"] == pytest.approx(reported[side][f"{parameter}_mean"], rel=1e-15)
+            assert row["stride_sd"] == pytest.approx(reported[side][f"{parameter}_sd"], rel=1e-15)
+            assert row["strides_used"] == reported[side]["strides_used"]
     assert found["left", "knee_range_deg"]["unit"] == "°"
     assert found["left", "stride_length_m"]["unit"] == "m"
     assert found["left", "speed_m_s"]["unit"] == "m/s"
@@ -90,7 +90,7 @@ def test_the_summary_holds_the_means_of_summary_json_with_their_units(
     assert (units["percent"], units["toe_off_s"]) == ("%", "s")
 
 
-def test_what_was_typed_is_no_formula_and_simulated_is_said(workbook: Path) -> None:
+def test_what_was_typed_is_no_formula_and_simulated_is_stated(workbook: Path) -> None:
     book = openpyxl.load_workbook(workbook)
     condition = book["Summary"]["B2"]
     assert (condition.value, condition.data_type) == ("=barefoot", "s")
@@ -144,12 +144,12 @@ def test_the_c3d_holds_the_angles_and_the_events(visit: tuple[Session, Analysis]
     assert point["RATE"]["value"][0] == pytest.approx(1 / np.diff(walk.time_s).mean(), rel=1e-4)
     for k, label in enumerate(point["LABELS"]["value"]):
         joint = next(joint for joint, name in POINTS.items() if name == label)
-        told_deg = column(angles, f"{joint}_deg")
-        np.testing.assert_array_equal(read["data"]["points"][0, k], told_deg.astype(np.float32))
+        reported_deg = column(angles, f"{joint}_deg")
+        np.testing.assert_array_equal(read["data"]["points"][0, k], reported_deg.astype(np.float32))
     events = rows_of(tables / walk.folder / "events.csv")
     minutes, seconds = event["TIMES"]["value"]
-    told_s = np.array([float(row["time_s"]) for row in events]) - walk.time_s[0]
-    np.testing.assert_allclose(60 * minutes + seconds, told_s, atol=1e-4)
+    reported_s = np.array([float(row["time_s"]) for row in events]) - walk.time_s[0]
+    np.testing.assert_allclose(60 * minutes + seconds, reported_s, atol=1e-4)
     strikes = sum(row["event"] == "initial_contact" for row in events)
     assert event["LABELS"]["value"].count("Foot Strike") == strikes > 20
     assert event["CONTEXTS"]["value"] == [row["side"].capitalize() for row in events]
@@ -183,12 +183,12 @@ def test_many_events_are_all_there(visit: tuple[Session, Analysis], tmp_path: Pa
     lists = [event[name]["value"] for name in event if name.startswith("LABELS")]
     assert len(lists) > 1
     assert sum(len(labels) for labels in lists) == event["USED"]["value"][0]
-    told = events_of(many)
+    reported = events_of(many)
     ends = ["", *(str(number) for number in range(2, len(lists) + 1))]
     sides = [side for end in ends for side in event[f"CONTEXTS{end}"]["value"]]
     times_s = np.concatenate([[60.0, 1.0] @ event[f"TIMES{end}"]["value"] for end in ends])
-    assert sides == [side.capitalize() for _, side, _ in told]
-    np.testing.assert_allclose(times_s, [time_s - many.time_s[0] for time_s, _, _ in told], atol=1e-4)
+    assert sides == [side.capitalize() for _, side, _ in reported]
+    np.testing.assert_allclose(times_s, [time_s - many.time_s[0] for time_s, _, _ in reported], atol=1e-4)
 
 
 def test_another_library_takes_the_bundle(visit: tuple[Session, Analysis], tables: Path, tmp_path: Path) -> None:
@@ -198,28 +198,28 @@ def test_another_library_takes_the_bundle(visit: tuple[Session, Analysis], table
     resources: list[Any] = [entry.resource for entry in read.entry]
     patient, *observations = resources
     assert (patient.gender, patient.get_resource_type()) == ("female", "Patient")
-    told = json.loads((tables / "summary.json").read_text())["walks"][walk_of(visit[1]).name]
+    reported = json.loads((tables / "summary.json").read_text())["walks"][walk_of(visit[1]).name]
     assert len(observations) > 30
     for one in observations:
         name, quantity = one.code.coding[0].code, one.valueQuantity
         parts = {part.code.coding[0].code: part for part in one.component or ()}
         if one.bodySite is None:
-            assert float(quantity.value) == told["both"][name]
+            assert float(quantity.value) == reported["both"][name]
             continue
         side = parts["side"].valueCodeableConcept.coding[0].display.lower()
         assert one.bodySite.text == f"{side} leg"
-        assert float(quantity.value) == told[side][f"{name}_mean"]
+        assert float(quantity.value) == reported[side][f"{name}_mean"]
         if "stride_sd" in parts:
-            assert float(parts["stride_sd"].valueQuantity.value) == told[side][f"{name}_sd"]
-        assert parts["strides_used"].valueInteger == told[side]["strides_used"]
+            assert float(parts["stride_sd"].valueQuantity.value) == reported[side][f"{name}_sd"]
+        assert parts["strides_used"].valueInteger == reported[side]["strides_used"]
         assert one.meta.security[0].code == "HTEST"
         assert any(note.text.startswith("SIMULATED") for note in one.note)
     names = [one.fullUrl for one in read.entry]
     assert len(set(names)) == len(names)
 
 
-def test_a_date_without_a_zone_is_told_as_a_day(visit: tuple[Session, Analysis]) -> None:
+def test_a_date_without_a_zone_is_reported_as_a_day(visit: tuple[Session, Analysis]) -> None:
     session, analysis = visit
-    for started, told in (("2026-11-21T10:00:00", "2026-11-21"), ("2026-11-21T10:00:00+01:00", None), ("soon", "")):
+    for started, reported in (("2026-11-21T10:00:00", "2026-11-21"), ("2026-11-21T10:00:00+01:00", None), ("soon", "")):
         first = bundle(replace(session, started=started), analysis)["entry"][1]["resource"]
-        assert first.get("effectiveDateTime", "") == (started if told is None else told)
+        assert first.get("effectiveDateTime", "") == (started if reported is None else reported)

@@ -48,12 +48,12 @@ def test_every_step_has_its_four_events_on_the_clock_of_the_walk(walked: Simulat
     for side in Side:
         truth = walked.truth.recordings["walk 1"].feet[side].events
         for name in ("initial_contact", "full_contact", "heel_rise", "toe_off"):
-            told = [float(row["time_s"]) for row in events if row["side"] == side and row["event"] == name]
+            reported = [float(row["time_s"]) for row in events if row["side"] == side and row["event"] == name]
             true = getattr(truth, f"{name}_s")
             # the left foot's late clock is brought to the thigh's, as its truth is not
             late = 0.03 if side is Side.LEFT else 0.0
-            assert len(told) == len(true)
-            error_s = np.abs(np.array(told) - true)
+            assert len(reported) == len(true)
+            error_s = np.abs(np.array(reported) - true)
             assert np.median(error_s) < 0.015 + late
             assert np.max(error_s) < 0.1 + late  # the last step, which stops
 
@@ -124,7 +124,7 @@ def test_without_a_foot_sensor_steps_come_from_the_shank_and_say_so(tmp_path: Pa
     assert "events_from_shank" in {finding.key for finding in found.findings}
 
 
-def test_what_one_side_tells_of_both_is_in_the_summary_as_on_the_screen(found: Analysis) -> None:
+def test_what_one_side_shows_of_both_is_in_the_summary_as_on_the_screen(found: Analysis) -> None:
     walk = found.recordings[0]
     alone = judged(replace(found, recordings=(replace(walk, gait={Side.LEFT: walk.gait[Side.LEFT]}),)))
     both = summarise(alone)["walks"]["walk 1"]["both"]
@@ -139,9 +139,9 @@ def test_events_at_one_instant_stand_in_the_order_of_the_stride(found: Analysis)
     walk = found.recordings[0]
     (events,) = walk.gait[Side.LEFT].events
     flat = replace(events, heel_rise_s=events.toe_off_s, full_contact_s=events.initial_contact_s)
-    told = events_of(replace(walk, gait={Side.LEFT: replace(walk.gait[Side.LEFT], events=(flat,))}))
+    reported = events_of(replace(walk, gait={Side.LEFT: replace(walk.gait[Side.LEFT], events=(flat,))}))
     stride = ["heel_rise", "toe_off", "initial_contact", "full_contact"]
-    assert [event for _, _, event in told] == stride * len(events)
+    assert [event for _, _, event in reported] == stride * len(events)
 
 
 def test_feet_alone_give_events_and_no_angles(tmp_path: Path) -> None:
@@ -186,8 +186,8 @@ def test_a_knee_whose_sign_is_uncertain_has_a_range_and_a_spread_and_no_angle(
     assert ("clinical_sign_uncertain", "left_knee") in {(finding.key, finding.where) for finding in found.findings}
     write_gait(found.recordings[0], tmp_path)
     strides = [row for row in rows(tmp_path / "strides.csv") if row["side"] == "left"]
-    told = {name for name in PARAMETERS if name.startswith("knee_") and any(row[name] for row in strides)}
-    assert told == {"knee_range_deg"}
+    reported = {name for name in PARAMETERS if name.startswith("knee_") and any(row[name] for row in strides)}
+    assert reported == {"knee_range_deg"}
     cycles = rows(tmp_path / "cycles.csv")
     assert {row["left_knee_mean_deg"] for row in cycles} == {""}
     assert all(row["left_knee_stride_sd_deg"] and row["right_knee_mean_deg"] for row in cycles)
@@ -196,8 +196,8 @@ def test_a_knee_whose_sign_is_uncertain_has_a_range_and_a_spread_and_no_angle(
     assert walk["right"]["gait_variable_score_deg"]["knee"] > 0
     assert walk["both"]["symmetry_index_percent"]["knee_range_deg"] < -100
 
-    told_by_hand = analyse(replace(stiff.session, turned_sign={Joint.LEFT_KNEE: 1}))
-    write_gait(told_by_hand.recordings[0], tmp_path)
+    reported_by_hand = analyse(replace(stiff.session, turned_sign={Joint.LEFT_KNEE: 1}))
+    write_gait(reported_by_hand.recordings[0], tmp_path)
     assert all(row["left_knee_mean_deg"] for row in rows(tmp_path / "cycles.csv"))
 
 
@@ -209,15 +209,15 @@ def test_a_difference_between_the_sides_is_weighed_against_the_measurement_error
 
     long = simulate(WalkerSettings(seed=4, recordings=(Standing(), Walk(strides=16))))
     walk = summarise(analyse(long.session))["walks"]["walk 1"]
-    told = walk["both"]["side_difference"]
-    assert set(told) == {name for name in PARAMETERS if name.endswith("_deg")}
+    reported = walk["both"]["side_difference"]
+    assert set(reported) == {name for name in PARAMETERS if name.endswith("_deg")}
     sides = [walk[side]["knee_swing_peak_deg_mean"] for side in ("left", "right")]
-    assert told["knee_swing_peak_deg"]["difference_deg"] == pytest.approx(sides[0] - sides[1])
+    assert reported["knee_swing_peak_deg"]["difference_deg"] == pytest.approx(sides[0] - sides[1])
     # a height carries both legs' zeros besides what its strides leave open; a range is surer
-    assert told["knee_swing_peak_deg"]["error_deg"] == pytest.approx(12.5, abs=0.5)
-    assert told["knee_swing_peak_deg"]["verdict"] == "inside_error"
-    assert told["knee_range_deg"]["error_deg"] == pytest.approx(9.3, abs=0.3)
-    assert told["ankle_range_deg"]["error_deg"] > 9.2
+    assert reported["knee_swing_peak_deg"]["error_deg"] == pytest.approx(12.5, abs=0.5)
+    assert reported["knee_swing_peak_deg"]["verdict"] == "inside_error"
+    assert reported["knee_range_deg"]["error_deg"] == pytest.approx(9.3, abs=0.3)
+    assert reported["ankle_range_deg"]["error_deg"] > 9.2
 
     stiff = simulate(WalkerSettings(seed=4, recordings=(Walk(strides=16),), stiff_knee_side=Side.LEFT))
     both = summarise(analyse(stiff.session))["walks"]["walk 1"]["both"]

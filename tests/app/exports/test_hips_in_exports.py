@@ -1,4 +1,5 @@
-"""Are hips and pelvis in every format, with the signs of the simulated patient, and left out where they are withheld?
+"""Are hips and pelvis in every format, with the signs of the simulated patient, and left out where they are not
+reported?
 
 Names, codes and signs are written out here, never taken from the code that writes them.
 """
@@ -77,7 +78,9 @@ def test_the_motion_file_moves_a_model_as_the_patient_moved(tmp_path: Path) -> N
     assert "pelvis_rotation" not in columns
 
 
-def test_a_withheld_hip_is_no_column_of_a_motion_file_and_the_head_says_why(gated: Analysis, tmp_path: Path) -> None:
+def test_a_not_reported_hip_is_no_column_of_a_motion_file_and_the_head_states_why(
+    gated: Analysis, tmp_path: Path
+) -> None:
     write_motion(walk_of(gated), True, tmp_path / "walk.mot")
     head, columns = read_motion(tmp_path / "walk.mot")
     assert {"hip_flexion_r", "hip_adduction_r", "pelvis_tilt"} <= set(columns)
@@ -88,7 +91,7 @@ def test_a_withheld_hip_is_no_column_of_a_motion_file_and_the_head_says_why(gate
     assert not {"pelvis_tilt", "pelvis_list"} & set(read_motion(tmp_path / "none.mot")[1])
 
 
-def test_a_c3d_has_flexion_and_adduction_of_each_hip_that_is_told(gated: Analysis, tmp_path: Path) -> None:
+def test_a_c3d_has_flexion_and_adduction_of_each_hip_that_is_reported(gated: Analysis, tmp_path: Path) -> None:
     write_c3d(walk_of(hip_analysis()), True, tmp_path / "walk.c3d")
     read = ezc3d.c3d(str(tmp_path / "walk.c3d"))
     labels = read["parameters"]["POINT"]["LABELS"]["value"]
@@ -105,11 +108,13 @@ def test_a_c3d_has_flexion_and_adduction_of_each_hip_that_is_told(gated: Analysi
     assert "LHipAngles" not in labels
     assert "RHipAngles" in labels
     status = read["parameters"]["PROCESSING"]["STATUS"]["value"]
-    assert [said for said in status if said.startswith("left_hip: withheld: Sensor positions could not be confirmed")]
+    assert [
+        stated for stated in status if stated.startswith("left_hip: withheld: Sensor positions could not be confirmed")
+    ]
     assert "right_hip: read" in status
 
 
-def test_without_a_sure_heading_a_c3d_says_that_abduction_is_not_told(tmp_path: Path) -> None:
+def test_without_a_sure_heading_a_c3d_states_that_abduction_is_not_reported(tmp_path: Path) -> None:
     unsure = with_hip(hip_analysis(), *HIPS, heading_sd_rad=np.deg2rad(7.0), is_3d=False)
     write_c3d(walk_of(unsure), True, tmp_path / "walk.c3d")
     read = ezc3d.c3d(str(tmp_path / "walk.c3d"))
@@ -129,13 +134,13 @@ def observations(analysis: Analysis) -> dict[tuple[str, str], dict[str, Any]]:
     return found
 
 
-def test_fhir_has_the_hips_and_says_why_one_is_absent(gated: Analysis) -> None:
+def test_fhir_has_the_hips_and_states_why_one_is_absent(gated: Analysis) -> None:
     found = observations(gated)
-    told = found["hip_range_deg", "right"]["valueQuantity"]
-    assert (told["system"], told["code"]) == ("http://unitsofmeasure.org", "deg")
+    reported = found["hip_range_deg", "right"]["valueQuantity"]
+    assert (reported["system"], reported["code"]) == ("http://unitsofmeasure.org", "deg")
     gait = walk_of(gated).gait[Side.RIGHT]
     used = gait.strides.is_used
-    assert told["value"] == pytest.approx(np.rad2deg(gait.parameters["hip_range_rad"][used]).mean(), abs=1e-3)
+    assert reported["value"] == pytest.approx(np.rad2deg(gait.parameters["hip_range_rad"][used]).mean(), abs=1e-3)
     missing = found["hip_range_deg", "left"]
     assert "valueQuantity" not in missing
     assert missing["dataAbsentReason"]["coding"][0]["code"]
@@ -144,7 +149,7 @@ def test_fhir_has_the_hips_and_says_why_one_is_absent(gated: Analysis) -> None:
 
 
 @pytest.mark.endurance
-def test_the_workbook_names_what_is_withheld_of_a_hip(gated: Analysis, tmp_path: Path) -> None:
+def test_the_workbook_names_what_is_not_reported_of_a_hip(gated: Analysis, tmp_path: Path) -> None:
     write_spreadsheet(hip_session(), gated, tmp_path / "visit.xlsx")
     book = openpyxl.load_workbook(tmp_path / "visit.xlsx")
     rows = {(row[2], row[3]): row for row in book["Summary"].iter_rows(values_only=True)}
@@ -152,14 +157,14 @@ def test_the_workbook_names_what_is_withheld_of_a_hip(gated: Analysis, tmp_path:
     assert rows["right", "hip_range_deg"][4] == pytest.approx(50.0, abs=4.0)
     assert not [name for _, name in rows if "hip_rotation" in str(name)]
     head, *cycles = book["Cycles"].iter_rows(values_only=True)
-    for column, is_withheld in (
+    for column, is_not_reported in (
         ("left_hip_mean_deg", True),
         ("left_hip_abduction_mean_deg", True),
         ("right_hip_mean_deg", False),
         ("right_hip_abduction_mean_deg", False),
     ):
         cells = {row[head.index(column)] for row in cycles}
-        assert (cells == {"withheld"}) is is_withheld, column
+        assert (cells == {"withheld"}) is is_not_reported, column
 
 
 def moving(path: Path) -> set[str]:

@@ -38,7 +38,7 @@ def sheet(folder: Path, title: str) -> list[dict[str, Any]]:
     return [dict(zip([str(name) for name in header], row, strict=True)) for row in rows]
 
 
-def test_a_workbook_says_withheld_where_a_csv_file_is_empty(folder: Path) -> None:
+def test_a_workbook_states_not_reported_where_a_csv_file_is_empty(folder: Path) -> None:
     strides = sheet(folder, "Strides")
     assert len(strides) > 20
     for row in strides:
@@ -65,26 +65,26 @@ def test_cycles_have_a_shape_about_their_own_mean_and_no_height(folder: Path) ->
 
 
 def test_the_summary_has_no_figure_of_a_height(folder: Path) -> None:
-    told = {(row["side"], row["parameter"]): row for row in sheet(folder, "Summary")}
+    reported = {(row["side"], row["parameter"]): row for row in sheet(folder, "Summary")}
     for side in ("left", "right"):
-        assert told[side, "knee_swing_peak_deg"]["mean"] == "withheld"
-        assert told[side, "knee_range_deg"]["mean"] == pytest.approx(62.0, abs=6.0)
-    statuses = {name: row["status"] for (side, name), row in told.items() if side == "left"}
+        assert reported[side, "knee_swing_peak_deg"]["mean"] == "withheld"
+        assert reported[side, "knee_range_deg"]["mean"] == pytest.approx(62.0, abs=6.0)
+    statuses = {name: row["status"] for (side, name), row in reported.items() if side == "left"}
     assert statuses["knee_swing_peak_deg"] == "withheld"
-    reasons = list(told["left", "knee_range_deg"])[-1]
-    assert len(told["left", "knee_swing_peak_deg"][reasons]) > 20
-    assert told["left", "knee_range_deg"][reasons] is None
+    reasons = list(reported["left", "knee_range_deg"])[-1]
+    assert len(reported["left", "knee_swing_peak_deg"][reasons]) > 20
+    assert reported["left", "knee_range_deg"][reasons] is None
     assert statuses["knee_range_deg"] == statuses["stance_percent"] == "read"
 
 
 def test_fhir_gives_a_reason_for_a_missing_height(folder: Path) -> None:
     entries = json.loads((folder / "fhir_bundle.json").read_text())["entry"][1:]
-    told = {
+    reported = {
         one["code"]["coding"][0]["code"]: one
         for one in (entry["resource"] for entry in entries)
         if one.get("bodySite", {}).get("text") == "left leg"
     }
-    missing, known = told["knee_swing_peak_deg"], told["knee_range_deg"]
+    missing, known = reported["knee_swing_peak_deg"], reported["knee_range_deg"]
     assert "valueQuantity" not in missing
     (coding,) = missing["dataAbsentReason"]["coding"]
     assert coding["system"] == "http://terminology.hl7.org/CodeSystem/data-absent-reason"

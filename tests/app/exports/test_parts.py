@@ -51,7 +51,7 @@ def test_a_motion_file_ends_at_a_gap_and_another_one_begins(walk: RecordingAnaly
         assert f"nRows={len(values)}\n" in head
 
 
-def test_a_short_gap_is_bridged_and_said(walk: RecordingAnalysis, tmp_path: Path) -> None:
+def test_a_short_gap_is_bridged_and_stated(walk: RecordingAnalysis, tmp_path: Path) -> None:
     assert write_motion(missing(walk, slice(300, 309)), False, tmp_path / "a.mot") == ""
     head, values = table_of(tmp_path / "a.mot")
     assert len(values) == len(walk.time_s)
@@ -73,12 +73,14 @@ def test_rows_that_are_missing_for_long_end_a_motion_file_too(walk: RecordingAna
     assert [len(table_of(tmp_path / f"a_{number}.mot")[1]) for number in (1, 2)] == [300, len(kept) - 300]
 
 
-def test_what_is_withheld_leaves_no_empty_file_and_a_line_why(
+def test_what_is_not_reported_leaves_no_empty_file_and_a_line_why(
     visit: tuple[Session, Analysis], walk: RecordingAnalysis, tmp_path: Path
 ) -> None:
-    no_axis = assess([GateReason("axis", Verdict.WITHHELD, 12.0, 9.0, "deg")])
-    withheld = dict.fromkeys(walk.joints, JointVerdicts(no_axis, no_axis, no_axis))
-    recordings = tuple(replace(r, verdicts=replace(r.verdicts, joints=withheld), gait={}) for r in visit[1].recordings)
+    no_axis = assess([GateReason("axis", Verdict.NOT_REPORTED, 12.0, 9.0, "deg")])
+    not_reported = dict.fromkeys(walk.joints, JointVerdicts(no_axis, no_axis, no_axis))
+    recordings = tuple(
+        replace(r, verdicts=replace(r.verdicts, joints=not_reported), gait={}) for r in visit[1].recordings
+    )
     analysis = replace(visit[1], recordings=recordings)
     lines = export_from_folder(visit[0], analysis, [Format.C3D, Format.MOT, Format.XLSX], tmp_path)
     assert [str(path.relative_to(tmp_path)) for path in tmp_path.rglob("*")] == ["gaitwright.xlsx"]

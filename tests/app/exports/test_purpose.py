@@ -27,15 +27,15 @@ def contents(files: list[Path]) -> bytes:
 
 
 @pytest.mark.endurance
-@pytest.mark.parametrize("wanted", Format)
+@pytest.mark.parametrize("required", Format)
 @pytest.mark.parametrize("is_simulated", [True, False])
-def test_every_export_says_what_it_is_for_and_whether_it_is_simulated(
-    visit: tuple[Session, Analysis], tmp_path: Path, wanted: Format, is_simulated: bool
+def test_every_export_states_what_it_is_for_and_whether_it_is_simulated(
+    visit: tuple[Session, Analysis], tmp_path: Path, required: Format, is_simulated: bool
 ) -> None:
     session, analysis = visit
     measured = {site: replace(info, model="MTi") for site, info in session.sensors.items()}
     session = session if is_simulated else replace(session, is_simulated=False, sensors=measured)
-    export_from_folder(session, replace(analysis, is_simulated=is_simulated, findings=()), [wanted], tmp_path)
-    said = contents([file for file in tmp_path.rglob("*") if file.is_file()])
-    assert PURPOSE in said
-    assert (SIMULATED in said) is is_simulated
+    export_from_folder(session, replace(analysis, is_simulated=is_simulated, findings=()), [required], tmp_path)
+    stated = contents([file for file in tmp_path.rglob("*") if file.is_file()])
+    assert PURPOSE in stated
+    assert (SIMULATED in stated) is is_simulated

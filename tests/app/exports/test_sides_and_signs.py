@@ -141,8 +141,8 @@ def test_the_c3d_names_each_joint_as_motion_laboratories_do(exported: Path, trut
 def test_the_events_of_the_c3d_are_those_of_the_foot_that_they_name(
     exported: Path, truth: RecordingTruth, context: str, label: str, event: str
 ) -> None:
-    told = ezc3d.c3d(str(walk_folder(exported) / "angles.c3d"))["parameters"]["EVENT"]
-    named = zip(told["CONTEXTS"]["value"], told["LABELS"]["value"], told["TIMES"]["value"].T, strict=True)
+    reported = ezc3d.c3d(str(walk_folder(exported) / "angles.c3d"))["parameters"]["EVENT"]
+    named = zip(reported["CONTEXTS"]["value"], reported["LABELS"]["value"], reported["TIMES"]["value"].T, strict=True)
     found_s = [60.0 * minutes + seconds for side, name, (minutes, seconds) in named if (side, name) == (context, label)]
     true_s = getattr(truth.feet[Side(context.lower())].events, event) - truth.joints[Joint.LEFT_KNEE].time_s[0]
     assert len(found_s) >= 10
@@ -156,14 +156,14 @@ def test_times_over_a_minute_are_minutes_and_seconds_in_a_c3d(tmp_path: Path) ->
     made = simulate(WalkerSettings(seed=3, recordings=(Standing(), Walk(strides=12, standing_before_s=52.0))))
     export_from_folder(made.session, analyse(made.session), [Format.C3D], tmp_path)
     (file,) = tmp_path.glob("walk*/angles.c3d")
-    told = ezc3d.c3d(str(file))["parameters"]["EVENT"]
-    minutes, seconds = told["TIMES"]["value"]
+    reported = ezc3d.c3d(str(file))["parameters"]["EVENT"]
+    minutes, seconds = reported["TIMES"]["value"]
     assert set(minutes) == {0.0, 1.0}
     assert seconds.max() < 60.0
     last_s = made.truth.recordings["walk 1"].feet[Side.LEFT].events.initial_contact_s[-1]
     is_contact = [
         pair == ("Left", "Foot Strike")
-        for pair in zip(*(told[k]["value"] for k in ("CONTEXTS", "LABELS")), strict=True)
+        for pair in zip(*(reported[k]["value"] for k in ("CONTEXTS", "LABELS")), strict=True)
     ]
     assert np.max((60.0 * minutes + seconds)[is_contact]) == pytest.approx(last_s, abs=0.06)
 
@@ -192,9 +192,11 @@ def test_sides_and_body_site_are_coded_by_snomed_ct(observations: list[dict[str,
 
 
 def test_units_are_coded_by_ucum(observations: list[dict[str, Any]]) -> None:
-    told = {one["code"]["coding"][0]["code"]: one["valueQuantity"] for one in observations if "valueQuantity" in one}
+    reported = {
+        one["code"]["coding"][0]["code"]: one["valueQuantity"] for one in observations if "valueQuantity" in one
+    }
     for name, code in UCUM.items():
-        assert (told[name]["system"], told[name]["code"]) == ("http://unitsofmeasure.org", code)
+        assert (reported[name]["system"], reported[name]["code"]) == ("http://unitsofmeasure.org", code)
 
 
 def test_what_kind_of_observation_it_is_and_that_nobody_was_measured_is_coded_by_hl7(
@@ -222,11 +224,11 @@ def test_figures_of_a_side_are_those_of_its_strides(
         for start_s, end_s in pairwise(contact_s):
             inside = (known.time_s >= start_s) & (known.time_s <= end_s)
             ranges_deg.append(np.rad2deg(np.ptp(known.angle_rad[inside])))
-        (told,) = (
+        (reported,) = (
             one["valueQuantity"]["value"]
             for one in observations
             if one["code"]["coding"][0]["code"] == "knee_range_deg" and one["bodySite"]["text"] == f"{side} leg"
         )
-        assert told == pytest.approx(np.mean(ranges_deg), abs=1.0)
+        assert reported == pytest.approx(np.mean(ranges_deg), abs=1.0)
         (written,) = (row["mean"] for row in sheet if (row["side"], row["parameter"]) == (side, "knee_range_deg"))
-        assert float(str(written)) == pytest.approx(told, rel=1e-12)
+        assert float(str(written)) == pytest.approx(reported, rel=1e-12)

@@ -52,7 +52,7 @@ def read_back(folder: Path) -> dict[str, ImportedTrial]:
 
 
 @pytest.mark.parametrize("is_simulated", [True, False])
-def test_every_file_that_can_be_read_again_says_who_was_measured(
+def test_every_file_that_can_be_read_again_states_who_was_measured(
     walked: tuple[Session, Analysis], is_simulated: bool, tmp_path: Path
 ) -> None:
     found = read_back(everything_written(walked, is_simulated, tmp_path))

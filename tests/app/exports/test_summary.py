@@ -102,7 +102,7 @@ def test_the_summary_reads_as_agreed(tmp_path: Path) -> None:
     assert (tmp_path / "summary.json").read_bytes() == (GOLDEN / "summary.json").read_bytes()
 
 
-def test_the_last_calibration_of_each_joint_stands_alone_and_all_are_kept() -> None:
+def test_the_last_calibration_of_each_joint_is_alone_and_all_are_kept() -> None:
     summary = summarise(analysis())
     assert list(summary["joints"]) == ["left_knee", "left_ankle"]
     assert summary["joints"]["left_knee"]["lag_s"] == 0.0

@@ -51,11 +51,11 @@ def visit() -> AnalysedVisit:
     """Two walks of the demonstration, the second a test."""
     walks = (Walk(strides=12, standing_before_s=2.0), Walk("walk 2", strides=14, standing_before_s=2.0))
     session = simulate(replace(DEMONSTRATION, recordings=(Standing(), *walks))).session
-    told = tuple(
+    reported = tuple(
         replace(one, condition="=shoes", test=PlannedTest(TimedProtocol.TEN_METRES) if one.name == "walk 2" else None)
         for one in session.recordings
     )
-    session = replace(session, recordings=told)
+    session = replace(session, recordings=reported)
     return AnalysedVisit(session, analyse(session))
 
 
@@ -97,16 +97,21 @@ def test_the_table_has_a_row_for_everything_that_was_found(visit: AnalysedVisit)
     assert rows(visit, None) == []
 
 
-def test_the_summary_tells_of_the_test_under_its_walk_and_of_no_other(visit: AnalysedVisit) -> None:
+def test_the_summary_shows_of_the_test_under_its_walk_and_of_no_other(visit: AnalysedVisit) -> None:
     session, analysis = with_test(visit, replace(TWO, distance_m=math.nan))
     walks = summarise(analysis, session.recordings)["walks"]
     assert "timed_test" not in walks["walk 1"]
-    told = walks["walk 2"]["timed_test"]
-    assert (told["test"], told["time_s"], told["distance_m"], told["speed_m_s"]) == ("2 min", 120.0, None, None)
-    assert (told["laps"], told["turns"], told["pauses"], told["paused_s"]) == (2, 1, 1, 3.5)
-    assert told["stairs"]["up"] == {"strides": 1, "stride_time_s_mean": 1.5}
-    assert told["stairs"]["down"] == {"strides": 0, "stride_time_s_mean": None}
-    assert told["errors"][0]["unverified"] is False
+    reported = walks["walk 2"]["timed_test"]
+    assert (reported["test"], reported["time_s"], reported["distance_m"], reported["speed_m_s"]) == (
+        "2 min",
+        120.0,
+        None,
+        None,
+    )
+    assert (reported["laps"], reported["turns"], reported["pauses"], reported["paused_s"]) == (2, 1, 1, 3.5)
+    assert reported["stairs"]["up"] == {"strides": 1, "stride_time_s_mean": 1.5}
+    assert reported["stairs"]["down"] == {"strides": 0, "stride_time_s_mean": None}
+    assert reported["errors"][0]["unverified"] is False
 
 
 @pytest.mark.endurance
@@ -115,7 +120,7 @@ def test_the_report_has_a_page_of_tests_where_there_were_some(visit: AnalysedVis
     whole = ReportRequest(AnalysedVisit(*with_test(visit, TWO)), ("walk 2",), MADE_AT, "1.2.3")
     request = ReportRequest(AnalysedVisit(*with_test(visit, unknown)), ("walk 2",), MADE_AT, "1.2.3")
     assert "2-minute walk: 132 m, 1.10 m/s." in str(timed_page(whole, facts_of(whole)))
-    said = str(timed_page(request, facts_of(request)))
+    stated = str(timed_page(request, facts_of(request)))
     for words in (
         "2-minute walk: distance not measured.",
         "First third 1.10 m/s, last third 1.05 m/s.",
@@ -125,7 +130,7 @@ def test_the_report_has_a_page_of_tests_where_there_were_some(visit: AnalysedVis
         "Lap 2",
         "start: first step after standing still for 1 s",
     ):
-        assert words in said
+        assert words in stated
     without = ReportRequest(AnalysedVisit(*with_test(visit, None)), ("walk 2",), MADE_AT, "1.2.3")
     assert timed_page(without, facts_of(without)) == []
     assert len(report_data(request)["pages"]) == len(report_data(without)["pages"]) + 1
@@ -145,10 +150,10 @@ def test_the_page_of_tests_shows_the_course_of_those_that_two_visits_have(visit:
     request = ReportRequest(AnalysedVisit(*with_test(visit, TWO)), ("walk 2",), MADE_AT, "1.2.3", course=course)
     facts = facts_of(request)
     assert list(charts_of_tests(course, "=shoes", facts)) == [TimedProtocol.TEN_METRES]
-    said = str(timed_page(request, facts))
-    assert "10-metre walk, m/s" in said
-    assert "half the error of a speed change, 0.20 m/s" in said
-    assert "they are not judged" not in said
+    stated = str(timed_page(request, facts))
+    assert "10-metre walk, m/s" in stated
+    assert "half the error of a speed change, 0.20 m/s" in stated
+    assert "they are not judged" not in stated
     assert charts_of_tests(course, "barefoot", facts) == {}
     alone = replace(request, course=course[1:])
     assert "Over the visits" not in str(timed_page(alone, facts))

@@ -52,9 +52,9 @@ def test_every_topic_is_written_and_nothing_else_lies_there() -> None:
 
 def test_every_step_of_the_wizard_has_its_topic() -> None:
     found = re.compile(r"def topic\(self\) -> str:\n        return \"([\w-]+)\"")
-    told = [found.findall(file.read_text(encoding="utf-8")) for file in WIZARD.glob("*/step.py")]
-    assert len(told) == 7
-    assert {topic for (topic,) in told} <= set(Topic)
+    reported = [found.findall(file.read_text(encoding="utf-8")) for file in WIZARD.glob("*/step.py")]
+    assert len(reported) == 7
+    assert {topic for (topic,) in reported} <= set(Topic)
 
 
 @pytest.mark.parametrize("topic", Topic)
@@ -100,8 +100,8 @@ def test_a_link_leads_to_another_page_and_nowhere_else(page: HelpPage) -> None:
 
 
 def test_groups_of_topics_have_titles(page: HelpPage) -> None:
-    said = [label.text() for label in page.topics.findChildren(QLabel)]
-    assert said == [group_title(group) for group in TopicGroup]
+    stated = [label.text() for label in page.topics.findChildren(QLabel)]
+    assert stated == [group_title(group) for group in TopicGroup]
 
 
 def test_what_is_searched_for_is_counted_in_every_topic_and_marked(page: HelpPage) -> None:
@@ -125,7 +125,7 @@ def test_enter_goes_on_to_the_next_topic_and_round_again(page: HelpPage) -> None
     assert page.text.textCursor().block().text().casefold().count("goniometer") > 0
 
 
-def test_what_is_nowhere_is_said(page: HelpPage) -> None:
+def test_what_is_nowhere_is_stated(page: HelpPage) -> None:
     search(page, "xylophone")
     assert page.found.text() == "No matches. Try another word."
     assert page.text.extraSelections() == []

@@ -24,7 +24,7 @@ HELP = ROOT / "resources" / "help"
 FOLDERS = {"en": HELP, "de": HELP / "de"}
 LANGUAGES = tuple(FOLDERS)
 
-# what stands on keyboards and in no catalogue; figures, letters and signs are keys as they are
+# what is on keyboards and in no catalogue; figures, letters and signs are keys as they are
 KEYS = {
     "en": {
         "Space",
@@ -59,25 +59,27 @@ def prose_of(language: str, topic: str) -> str:
     return re.sub(r"(?m)^    .*$|`[^`\n]*`", "", text_of(language, topic))
 
 
-def plain(said: str) -> str:
+def plain(stated: str) -> str:
     """As a reader compares: hyphens and spaces of any kind alike."""
-    return re.sub(r"\s+", " ", said.replace("\N{NON-BREAKING HYPHEN}", "-").replace("\N{NO-BREAK SPACE}", " ")).strip()
+    return re.sub(
+        r"\s+", " ", stated.replace("\N{NON-BREAKING HYPHEN}", "-").replace("\N{NO-BREAK SPACE}", " ")
+    ).strip()
 
 
 @cache
 def sentences(language: str) -> tuple[str, ...]:
-    """All that the application says in a language."""
+    """All that the application states in a language."""
     with (ROOT / "resources" / "locale" / "de" / "LC_MESSAGES" / "gaitwright.po").open("rb") as file:
         found = [(one.id, one.string) for one in read_po(file) if one.id]
-    said = [pair[language == "de"] for pair in found]
-    return tuple(plain(form) for one in said for form in ((one,) if isinstance(one, str) else one or ()))
+    stated = [pair[language == "de"] for pair in found]
+    return tuple(plain(form) for one in stated for form in ((one,) if isinstance(one, str) else one or ()))
 
 
 @cache
 def names(language: str) -> re.Pattern[str]:
-    """What a control may be called: a whole message, its fields as anything, where more than fields is said."""
-    told = {one for one in sentences(language) if "{" in one and re.search(r"\w{4,}", re.sub(r"\{.*?\}", " ", one))}
-    return re.compile("|".join(re.sub(r"\\\{\w+\\\}", ".+", re.escape(one)) for one in told if len(one) < 60))
+    """What a control may be called: a whole message, its fields as anything, where more than fields is stated."""
+    reported = {one for one in sentences(language) if "{" in one and re.search(r"\w{4,}", re.sub(r"\{.*?\}", " ", one))}
+    return re.compile("|".join(re.sub(r"\\\{\w+\\\}", ".+", re.escape(one)) for one in reported if len(one) < 60))
 
 
 def bold_of(language: str, topic: str) -> Iterator[str]:
@@ -141,14 +143,14 @@ def test_a_name_that_is_on_no_control_is_found() -> None:
 
 @pytest.mark.parametrize("language", LANGUAGES)
 def test_every_message_that_is_explained_is_one_of_the_application(language: str) -> None:
-    def told(words: str) -> str:
+    def reported(words: str) -> str:
         return re.sub(r"\{[^}]*\}|\d+(?:[.,]\d+)?", "#", plain(words)).casefold()
 
-    said = "\n".join(told(one) for one in sentences(language))
+    stated = "\n".join(reported(one) for one in sentences(language))
     rows = re.findall(r"(?m)^\| ([^|]+?) \|", text_of(language, Topic.MESSAGES))
     explained = [row for row in rows if not re.fullmatch(r"-+|Message|Meldung", row)]
     assert len(explained) > 50
-    assert [row for row in explained if told(row) not in said] == []
+    assert [row for row in explained if reported(row) not in stated] == []
 
 
 @pytest.mark.parametrize("language", LANGUAGES)
@@ -166,7 +168,7 @@ def test_a_link_leads_to_a_page_and_a_picture_is_there(language: str) -> None:
 
 def test_german_keeps_to_the_words_of_the_clinic_and_writes_figures_with_a_comma() -> None:
     text = "".join(prose_of("de", topic) for topic in Topic)
-    prose = re.sub(r"„[^“]*“", "", text.replace("![", "["))  # what is quoted stands on the screen
+    prose = re.sub(r"„[^“]*“", "", text.replace("![", "["))  # what is quoted is on the screen
     assert FORBIDDEN_IN_GERMAN.findall(prose) == []
     without_versions = re.sub(r"(Python|LogAndStream|Bluetooth|Version|doi) [\d./s-]+|(\d+\.){3}\d+", "", prose)
     assert re.findall(r"\d\.\d", without_versions) == []
@@ -206,9 +208,9 @@ def limits() -> dict[str, str]:
 @pytest.mark.parametrize("language", LANGUAGES)
 def test_the_limits_of_the_verdicts_are_those_in_force(language: str) -> None:
     rows = re.findall(r"(?m)^\|.*$", text_of(language, Topic.NUMBERS))
-    told = [re.findall(r"\d+(?:\.\d+)?", row.replace("1 SD", "").replace(",", ".")) for row in rows]
-    wanted = {reason: re.findall(r"\d+(?:\.\d+)?", figures) for reason, figures in limits().items()}
-    assert {reason: figures for reason, figures in wanted.items() if figures not in told} == {}
+    reported = [re.findall(r"\d+(?:\.\d+)?", row.replace("1 SD", "").replace(",", ".")) for row in rows]
+    required = {reason: re.findall(r"\d+(?:\.\d+)?", figures) for reason, figures in limits().items()}
+    assert {reason: figures for reason, figures in required.items() if figures not in reported} == {}
 
 
 def least_difference(kind: ComparisonKind, quantity: QuantityKind) -> str:
@@ -240,17 +242,17 @@ def test_the_least_differences_are_those_that_errors_are_made_of(language: str) 
 
 
 @pytest.mark.parametrize("language", LANGUAGES)
-def test_every_driver_has_a_page_and_a_row_that_says_whether_it_was_tried(language: str) -> None:
+def test_every_driver_has_a_page_and_a_row_that_states_whether_it_was_tried(language: str) -> None:
     table = re.findall(
         r"(?m)^\| \[[^\]]+\]\((sensors-[\w-]+)\.md\) \|.*\| ([^|]+) \|$", text_of(language, Topic.SENSORS)
     )
     assert len(table) == len(DRIVERS)
     assert {page for page, _ in table} == {topic for topic in Topic if topic.startswith("sensors-")}
     untried = [tried for _, tried in table if tried in ("no", "nein")]
-    said = [
+    stated = [
         driver for driver in DRIVERS if re.search(r"[Nn]o (?:recorded stream and no )?hardware|Not tried", driver.proof)
     ]
-    assert len(untried) >= len(said)
+    assert len(untried) >= len(stated)
 
 
 def test_a_page_that_a_language_lacks_is_shown_in_english() -> None:

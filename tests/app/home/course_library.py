@@ -26,15 +26,17 @@ STANCES_PERCENT = (53.9, 55.2, 56.4, 57.1, 57.9)
 WITH_STICK = 3  # visits
 
 
-def course_of_visit(number: int, *, is_knee_withheld: bool = False) -> Course:
+def course_of_visit(number: int, *, is_knee_not_reported: bool = False) -> Course:
     """The visit of this number, with a stick as well at the first ones."""
-    told = unsure(Joint.LEFT_KNEE) if is_knee_withheld else None
+    reported = unsure(Joint.LEFT_KNEE) if is_knee_not_reported else None
     speed_m_s, knee_deg, stance = SPEEDS_M_S[number], KNEES_DEG[number], STANCES_PERCENT[number]
-    walk = walked(speed_m_s=speed_m_s, knee_deg=knee_deg, stance_percent=stance, told=told)
+    walk = walked(speed_m_s=speed_m_s, knee_deg=knee_deg, stance_percent=stance, reported=reported)
     if number >= WITH_STICK:
-        return course((walk, SHOES), told=told)
-    other = walked("walk 2", speed_m_s=speed_m_s + 0.06, knee_deg=knee_deg + 2, stance_percent=stance, told=told)
-    return course((walk, SHOES), (other, STICK), told=told)
+        return course((walk, SHOES), reported=reported)
+    other = walked(
+        "walk 2", speed_m_s=speed_m_s + 0.06, knee_deg=knee_deg + 2, stance_percent=stance, reported=reported
+    )
+    return course((walk, SHOES), (other, STICK), reported=reported)
 
 
 VISITS = [
@@ -49,8 +51,8 @@ def add_visit(library: Library, patient_id: UUID, number: int, found: Course | N
     visit = library.sessions.create(patient_id, Session((), started=day.isoformat()))
     conditions = (SHOES,) if number >= WITH_STICK else (SHOES, STICK)
     for at, condition in enumerate(conditions, start=1):
-        told = Recording(f"walk {at}", RecordingKind.WALKING, f"walk_{at}", {}, condition=condition)
-        recording = library.recordings.start(visit.id, told, is_simulated=False)
+        reported = Recording(f"walk {at}", RecordingKind.WALKING, f"walk_{at}", {}, condition=condition)
+        recording = library.recordings.start(visit.id, reported, is_simulated=False)
         library.recordings.add_journal(recording.id, StoredJournal(recording.id, 0, None))
         library.recordings.close(recording.id, RecordingState.CLOSED, {0: ""})
     if found is not None:
@@ -64,10 +66,10 @@ def make_course_library(folder: Path, *, visits: int = 5, missing: frozenset[int
     with Library.create(folder, data_key, Operator("hk", "H. Keller", Role.ADMINISTRATOR)) as library:
         for code, born, side in (("P-0147", 1968, "right"), ("P-0122", 1990, "right"), ("P-0107", 1962, "left")):
             library.patients.create(Patient(code=code, birth_year=born, affected_side=side))
-        told = Patient(
+        reported = Patient(
             code="P-0158", birth_year=1961, sex="female", affected_side="left", device="left knee replacement"
         )
-        patient = library.patients.create(told)
+        patient = library.patients.create(reported)
         for number in range(visits):
             found = None if number in missing else course_of_visit(number)
             session_id = add_visit(library, patient.id, number, found)

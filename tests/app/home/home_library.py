@@ -14,9 +14,9 @@ WAIT_MS = 20_000  # on a busy machine
 
 
 def open_library(qtbot: QtBot, controller: LibraryController, home: Home, folder: Path) -> None:
-    with qtbot.waitSignal(controller.opened, timeout=WAIT_MS) as told:
+    with qtbot.waitSignal(controller.opened, timeout=WAIT_MS) as reported:
         controller.open(folder, PASSPHRASE)
-    (state,) = told.args or []
+    (state,) = reported.args or []
     assert isinstance(state, OpenedState)
     home.show_library(state)
     qtbot.waitUntil(lambda: bool(home.page.patients.lines), timeout=WAIT_MS)

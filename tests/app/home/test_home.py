@@ -91,9 +91,9 @@ def test_arrows_choose_while_typing_and_enter_begins(qtbot: QtBot, home: Home) -
     assert home.page.search.hasFocus()
     QTest.keyClick(home.page.search, Qt.Key.Key_Down)
     assert home.bar.primary.text() == "New session for P-0147"
-    with qtbot.waitSignal(home.session_wished) as told:
+    with qtbot.waitSignal(home.session_requested) as reported:
         QTest.keyClick(home.page.search, Qt.Key.Key_Return)
-    (patient,) = told.args or []
+    (patient,) = reported.args or []
     assert isinstance(patient, StoredPatient)
     assert patient.details.code == "P-0147"
 
@@ -101,13 +101,13 @@ def test_arrows_choose_while_typing_and_enter_begins(qtbot: QtBot, home: Home) -
 def test_a_session_is_opened_by_a_click_and_by_enter(qtbot: QtBot, home: Home) -> None:
     qtbot.waitUntil(lambda: len(sessions(home)) == 3, timeout=WAIT_MS)
     place = home.page.sessions.visualRect(home.page.sessions.cells.index(1, 0)).center()
-    with qtbot.waitSignal(home.session_opened) as told:
+    with qtbot.waitSignal(home.session_opened) as reported:
         QTest.mouseClick(home.page.sessions.viewport(), Qt.MouseButton.LeftButton, pos=place)
-    assert told.args == [sessions(home)[1].id]
+    assert reported.args == [sessions(home)[1].id]
     QTest.keyClick(home.page.sessions, Qt.Key.Key_Down)
-    with qtbot.waitSignal(home.session_opened) as told:
+    with qtbot.waitSignal(home.session_opened) as reported:
         QTest.keyClick(home.page.sessions, Qt.Key.Key_Return)
-    assert told.args == [sessions(home)[2].id]
+    assert reported.args == [sessions(home)[2].id]
 
 
 def test_a_deleted_patient_comes_back_by_undo(qtbot: QtBot, home: Home) -> None:
@@ -179,7 +179,7 @@ def test_a_session_folder_is_imported_for_a_patient(qtbot: QtBot, home: Home, tm
     block = ImuBlock("LT-1", time_s, np.zeros((300, 3)), np.tile([0.0, 0.0, 9.81], (300, 1)))
     recording = Recording("walk 1", RecordingKind.WALKING, "walk_1", {Site.LEFT_THIGH: block})
     write_session(Session((recording,), Patient(code="P-0200"), started="2026-11-02T10:00:00"), tmp_path / "visit")
-    home.page.import_wished.emit()
+    home.page.import_requested.emit()
     home.importing.read([tmp_path / "visit"])
     qtbot.waitUntil(lambda: home.current is home.importing.page, timeout=WAIT_MS)
     assert home.importing.page.code.text == "P-0200"
@@ -191,7 +191,7 @@ def test_a_session_folder_is_imported_for_a_patient(qtbot: QtBot, home: Home, tm
 
 
 @pytest.mark.parametrize("is_done", [False, True])
-def test_a_stopped_import_says_what_came_of_it_once_that_is_known(
+def test_a_stopped_import_states_what_came_of_it_once_that_is_known(
     qtbot: QtBot,
     home: Home,
     controller: LibraryController,
@@ -261,7 +261,7 @@ def test_a_folder_that_is_no_session_is_refused_in_words(qtbot: QtBot, home: Hom
     assert home.current is home.page
 
 
-def leave_open(folder: Path, has_row: bool = True, says_session: bool = False) -> UUID:
+def leave_open(folder: Path, has_row: bool = True, states_session: bool = False) -> UUID:
     """Leave a walk of 4 s as a kill does, in the latest session; without a row the database did not answer."""
     data_key = KeySlots(folder / KEYS).open("hk", PASSPHRASE)
     with Library.open(folder, data_key) as library:
@@ -270,16 +270,16 @@ def leave_open(folder: Path, has_row: bool = True, says_session: bool = False) -
         line = library.sessions.list()[0]
         library.sessions.place(line.id, {Site.LEFT_THIGH: PlacedSensor("LT-1", SensorInfo())})
         recording_id = uuid7()
-        told = Recording("walk 3", RecordingKind.WALKING, "walk_3", {})
+        reported = Recording("walk 3", RecordingKind.WALKING, "walk_3", {})
         if has_row:
-            library.recordings.start(line.id, told, False, recording_id)
+            library.recordings.start(line.id, reported, False, recording_id)
         writer = JournalWriter.create(opened.recordings, recording_id, data_key, room=ANY_ROOM)
         header = writer.header
         journal = StoredJournal(header.recording_id, header.segment, header.wrapped_key)
         if has_row:
             library.recordings.add_journal(recording_id, journal)
-        if says_session:
-            writer.mark(Belonging(line.id, told).text())
+        if states_session:
+            writer.mark(Belonging(line.id, reported).text())
         block = ImuBlock("LT-1", np.arange(400) / 100, np.ones((400, 3)), np.ones((400, 3)))
         source = writer.source(SourceInfo("file", "1", sensors=("LT-1",)), layout_of(block))
         writer.samples(source, 0, block, waits=True)
@@ -341,7 +341,7 @@ def test_several_recovered_walks_are_asked_for_together(
     qtbot: QtBot, qapp: QApplication, controller: LibraryController, settings: Settings, folder: Path
 ) -> None:
     leave_open(folder)
-    leave_open(folder, has_row=False, says_session=True)
+    leave_open(folder, has_row=False, states_session=True)
     recover_all(folder)
     home = new_home(qtbot, controller, settings)
     open_library(qtbot, controller, home, folder)
@@ -374,8 +374,8 @@ def recover_all(folder: Path) -> None:
 def test_what_the_library_did_not_answer_for_goes_into_its_session_or_out(
     qtbot: QtBot, qapp: QApplication, controller: LibraryController, settings: Settings, folder: Path, tmp_path: Path
 ) -> None:
-    """One says of which session it is; of two others nobody knows, so their samples can be had as files."""
-    leave_open(folder, has_row=False, says_session=True)
+    """One states of which session it is; of two others nobody knows, so their samples can be had as files."""
+    leave_open(folder, has_row=False, states_session=True)
     leave_open(folder, has_row=False)
     leave_open(folder, has_row=False)
     load_fonts()
@@ -401,14 +401,14 @@ def test_what_the_library_did_not_answer_for_goes_into_its_session_or_out(
     open_library(qtbot, controller, home, folder)
     qtbot.waitUntil(lambda: bool(looked_through), timeout=WAIT_MS)
     assert controller.state is not None
-    assert len(controller.state.interrupted) == 2  # they are kept, but told of no more
+    assert len(controller.state.interrupted) == 2  # they are kept, but informed of no more
     assert home.banner.text.startswith("walk 3 of P-0163 was recovered earlier")
     home.banner.dismiss.click()
     assert home.banner.isHidden()
     assert set(left) <= set(controller.state.library.recordings.iterdir())
 
 
-def test_a_library_that_lost_its_end_says_so(qtbot: QtBot, controller: LibraryController, home: Home) -> None:
+def test_a_library_that_lost_its_end_states_so(qtbot: QtBot, controller: LibraryController, home: Home) -> None:
     state = controller.state
     assert state is not None
     home.show_library(replace(state, is_end_lost=True))
@@ -454,8 +454,8 @@ def test_a_backup_is_made_and_checked(qtbot: QtBot, home: Home, tmp_path: Path) 
     (tmp_path / "disk").mkdir()
     home.settings.set_backup_folder(str(tmp_path / "disk"))
     qtbot.waitUntil(lambda: "disk" in page.backup_folder.text(), timeout=WAIT_MS)
-    page.backup_wished.emit()
-    qtbot.waitUntil(lambda: "checked" in page.backup_said.text(), timeout=WAIT_MS)
+    page.backup_requested.emit()
+    qtbot.waitUntil(lambda: "checked" in page.backup_stated.text(), timeout=WAIT_MS)
     assert [one.name.startswith("gaitwright-backup-") for one in (tmp_path / "disk").iterdir()] == [True]
 
 
@@ -471,7 +471,7 @@ def test_the_settings_of_one_library_name_no_folder_of_another(
 
 
 @pytest.mark.parametrize(("first", "role"), [(5, Role.ADMINISTRATOR), (5, Role.CLINICIAN)])
-def test_an_older_state_of_the_library_is_said_and_an_administrator_may_accept_it(
+def test_an_older_state_of_the_library_is_stated_and_an_administrator_may_accept_it(
     qtbot: QtBot, home: Home, controller: LibraryController, first: int, role: Role
 ) -> None:
     state = controller.state
@@ -479,13 +479,13 @@ def test_an_older_state_of_the_library_is_said_and_an_administrator_may_accept_i
     home.show_library(state)
     assert not home.notices.rollback.isVisible()
     home.show_library(replace(state, operator=replace(state.operator, role=role), rollback=Rollback(first, 9)))
-    said = home.notices.rollback.text
-    assert said.startswith(
+    stated = home.notices.rollback.text
+    assert stated.startswith(
         "This library is older than the one last opened on this computer. Audit entries 5 to 9 are not"
     )
     button = home.notices.rollback.findChildren(Button)[0]
     assert button.isVisible() is (role is Role.ADMINISTRATOR)
-    assert ("Inform an administrator, who can check this and accept it if a backup was restored" in said) is (
+    assert ("Inform an administrator, who can check this and accept it if a backup was restored" in stated) is (
         role is Role.CLINICIAN
     )
     if role is Role.ADMINISTRATOR:
@@ -493,7 +493,7 @@ def test_an_older_state_of_the_library_is_said_and_an_administrator_may_accept_i
         qtbot.waitUntil(lambda: not home.notices.rollback.isVisible(), timeout=WAIT_MS)
 
 
-def test_what_became_of_work_without_the_server_is_said_and_of_other_libraries_nothing(
+def test_what_became_of_work_without_the_server_is_stated_and_of_other_libraries_nothing(
     home: Home, controller: LibraryController
 ) -> None:
     state, away = controller.state, home.notices.away
@@ -580,9 +580,9 @@ def test_an_operator_is_added_and_may_log_in(
     page.operators.add.click()
     qtbot.waitUntil(lambda: page.operators.rows.count() == 2, timeout=WAIT_MS)
     controller.close()
-    with qtbot.waitSignal(controller.opened, timeout=WAIT_MS) as told:
+    with qtbot.waitSignal(controller.opened, timeout=WAIT_MS) as reported:
         controller.open(folder, "first words for now", "vi")
-    (state,) = told.args or []
+    (state,) = reported.args or []
     assert state.operator.role is Role.VIEWER
     home.show_library(state)
     home.show_settings()
@@ -603,13 +603,13 @@ def test_under_a_patients_code_stand_no_sessions_of_another_while_theirs_are_rea
 
 
 def closed_amid(folder: Path, name: str) -> UUID:
-    """A walk of the latest session that ended with the program: nobody said whether it is kept."""
+    """A walk of the latest session that ended with the program: nobody stated whether it is kept."""
     data_key = KeySlots(folder / KEYS).open("hk", PASSPHRASE)
     with Library.open(folder, data_key) as library:
         library.log_in("hk")
         line = library.sessions.list()[0]
-        told = Recording(name, RecordingKind.WALKING, name.replace(" ", "_"), {}, condition="Shoes")
-        walk = library.recordings.start(line.id, told, False, is_decided=False)
+        reported = Recording(name, RecordingKind.WALKING, name.replace(" ", "_"), {}, condition="Shoes")
+        walk = library.recordings.start(line.id, reported, False, is_decided=False)
         library.recordings.add_journal(walk.id, StoredJournal(walk.id, 1, b"key"))
         library.recordings.close(walk.id, RecordingState.CLOSED, {1: ""})
         return line.id

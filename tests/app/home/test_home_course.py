@@ -48,9 +48,9 @@ def home(qtbot: QtBot, qapp: QApplication, controller: LibraryController, untouc
     qtbot.addWidget(home)
     home.show()
     folder = shutil.copytree(untouched, tmp_path / "library")
-    with qtbot.waitSignal(controller.opened, timeout=WAIT_MS) as told:
+    with qtbot.waitSignal(controller.opened, timeout=WAIT_MS) as known:
         controller.open(folder, PASSPHRASE)
-    home.show_library((told.args or [])[0])
+    home.show_library((known.args or [])[0])
     qtbot.waitUntil(lambda: bool(home.page.sessions.lines), timeout=WAIT_MS)
     return home
 
@@ -67,7 +67,7 @@ def silent(_share: float, _what: str) -> None:
     """For whom progress is nothing."""
 
 
-def test_the_course_of_the_patient_who_is_chosen_stands_beside_the_list(qtbot: QtBot, home: Home) -> None:
+def test_the_course_of_the_patient_who_is_chosen_is_beside_the_list(qtbot: QtBot, home: Home) -> None:
     card = home.page.panel.course
     assert [visit.course is not None for visit in card.visits] == [True, False, True, True, True]
     assert "Walking speed, Shoes: 0.71 metres per second on 20 Jun" in card.accessibleDescription()
@@ -83,7 +83,7 @@ def test_the_course_of_the_patient_who_is_chosen_stands_beside_the_list(qtbot: Q
     assert home.page.panel.next.text() == "Next: write the report for 14 Nov."
     other = next(line.id for line in home.page.patients.lines if line.id != home.page.patient_id)
     home.page.patients.choose_line(other)
-    assert not card.isVisible()  # at once: nobody else's course stands under this code
+    assert not card.isVisible()  # at once: nobody else's course is under this code
     qtbot.waitUntil(lambda: home.page.panel.none_yet.isVisible(), timeout=WAIT_MS)
     assert not card.isVisible()
 
@@ -95,7 +95,7 @@ def test_nothing_of_a_course_is_left_for_whoever_comes_next(home: Home) -> None:
     assert not home.page.panel.next.isVisible()
 
 
-def test_visits_that_cannot_be_computed_are_said_and_the_others_stay(qtbot: QtBot, home: Home) -> None:
+def test_visits_that_cannot_be_computed_are_stated_and_the_others_stay(qtbot: QtBot, home: Home) -> None:
     """Of the fixture no samples were recorded: its journal is gone."""
     home.page.panel.course.compute.click()
     assert home.current is home.working
@@ -121,9 +121,9 @@ def reading(opened: OpenedLibrary) -> PatientReading:
 def test_a_visit_is_computed_and_a_change_takes_it_out_of_the_course(opened: OpenedLibrary) -> None:
     sites = (Site.LEFT_THIGH, Site.LEFT_SHANK, Site.LEFT_FOOT)
     played = (Standing(duration_s=2.0), Walk(strides=8))
-    told = simulate(replace(DEMONSTRATION, sites=sites, recordings=played)).session
-    told = replace(told, patient=Patient(code="DEMO-1"), started="2026-06-20T09:00:00")
-    session_id = import_session(opened, told, silent).session_id
+    known = simulate(replace(DEMONSTRATION, sites=sites, recordings=played)).session
+    known = replace(known, patient=Patient(code="DEMO-1"), started="2026-06-20T09:00:00")
+    session_id = import_session(opened, known, silent).session_id
     now = day_and_time("2026-06-25T09:00:00")
     assert [visit.course for visit in reading(opened).visits(now)] == [None]
     assert compute_courses(opened, [session_id], silent) == 0
@@ -150,19 +150,19 @@ def test_what_is_next_of_a_patient(tmp_path: Path) -> None:
         (patient,) = library.patients.search("P-0158")
         now = day_and_time("2026-07-12T09:00:00")
 
-        def said() -> str:
+        def stated() -> str:
             step = read_patient(opened, patient.id).next_step(now)
             return step.sentence if step is not None else ""
 
-        assert said() == ""
-        first = add_visit(library, patient.id, 0, course_of_visit(0, is_knee_withheld=True))
-        assert said() == "check left knee, not reported on 20 Jun."
+        assert stated() == ""
+        first = add_visit(library, patient.id, 0, course_of_visit(0, is_knee_not_reported=True))
+        assert stated() == "check left knee, not reported on 20 Jun."
         second = add_visit(library, patient.id, 1, course_of_visit(1))
-        assert said() == "write the report for 11 Jul."
+        assert stated() == "write the report for 11 Jul."
         library.audit.note(Action.EXPORT, about("session", second), format=REPORT_FORMAT, is_document=True)
-        assert said() == ""
+        assert stated() == ""
         now = day_and_time("2026-09-12T09:00:00")
-        assert said() == "the last visit was 9 weeks ago."
+        assert stated() == "the last visit was 9 weeks ago."
         assert first != second
 
 
@@ -190,7 +190,7 @@ def wait_for_goals(qtbot: QtBot, home: Home, count: int) -> None:
     qtbot.waitUntil(lambda: sum(row.take_back is not None for row in page.rows) == count, timeout=WAIT_MS)
 
 
-def test_a_goal_is_agreed_by_keys_stands_in_the_course_and_is_taken_back(qtbot: QtBot, home: Home) -> None:
+def test_a_goal_is_agreed_by_keys_is_in_the_course_and_is_taken_back(qtbot: QtBot, home: Home) -> None:
     """From the patient's panel to the library and back; by the time it ends, the history has both."""
     panel = home.page.panel
     QTest.keyClick(panel.goals, Qt.Key.Key_Return)
@@ -252,7 +252,7 @@ def test_goals_of_nobody_are_left_for_whoever_comes_next(qtbot: QtBot, home: Hom
 
 
 def test_a_reached_goal_is_next_and_leads_to_the_goals(tmp_path: Path) -> None:
-    """Agreed before the latest visit; one agreed on its day is not said to be reached."""
+    """Agreed before the latest visit; one agreed on its day is not stated to be reached."""
     with open_library(make_course_library(tmp_path, visits=0), PASSPHRASE) as opened:
         library = opened.library
         (patient,) = library.patients.search("P-0158")
@@ -260,13 +260,13 @@ def test_a_reached_goal_is_next_and_leads_to_the_goals(tmp_path: Path) -> None:
         library.audit.note(Action.EXPORT, about("session", visit), format=REPORT_FORMAT, is_document=True)
         now = day_and_time("2026-07-12T09:00:00")
 
-        def said(agreed: str, speed_m_s: float) -> str:
+        def stated(agreed: str, speed_m_s: float) -> str:
             goal = Goal("speed_m_s", GoalOf.WALK, speed_m_s, datetime.date.fromisoformat(agreed))
             held = library.patients.get(patient.id)
             library.patients.change(held, replace(held.details, goals=(goal,)))
             step = read_patient(opened, patient.id).next_step(now)
             return step.sentence if step is not None else ""
 
-        assert said("2026-07-10", 0.80).startswith("goal reached on 11 Jul: Walking speed: at least 0.80")
-        assert said("2026-07-11", 0.80) == ""
-        assert said("2026-07-10", 0.90) == ""
+        assert stated("2026-07-10", 0.80).startswith("goal reached on 11 Jul: Walking speed: at least 0.80")
+        assert stated("2026-07-11", 0.80) == ""
+        assert stated("2026-07-10", 0.90) == ""

@@ -253,7 +253,7 @@ def test_a_folder_that_is_no_session_is_refused_in_the_page(
     assert not window.banner.isVisible()
 
 
-def test_what_nobody_foresaw_is_told_and_logged(
+def test_what_nobody_foresaw_is_reported_and_logged(
     qtbot: QtBot, window: SessionScreen, open_work: OpenWork, caplog: pytest.LogCaptureFixture
 ) -> None:
     def work(_report: Report) -> None:
@@ -307,7 +307,7 @@ def test_gaps_stay_gaps_with_every_method(results: ResultPage) -> None:
             assert np.isfinite(drawn[: GAP.start]).all()
 
 
-def test_without_orientations_that_method_is_off_and_says_why(
+def test_without_orientations_that_method_is_off_and_states_why(
     qtbot: QtBot, window: SessionScreen, results: ResultPage, open_work: OpenWork
 ) -> None:
     results.whole.methods.choose(ORIENTATION)
@@ -336,7 +336,7 @@ def test_the_way_back_to_the_whole_is_in_sight_when_it_is_needed(qtbot: QtBot, r
     assert results.whole.charts.is_whole
 
 
-def test_simulated_is_said_in_header_and_charts_and_only_then(
+def test_simulated_is_stated_in_header_and_charts_and_only_then(
     qtbot: QtBot, window: SessionScreen, results: ResultPage, open_work: OpenWork
 ) -> None:
     assert not window.header.simulated.isVisible()
@@ -347,7 +347,7 @@ def test_simulated_is_said_in_header_and_charts_and_only_then(
     assert results.whole.charts.knee._simulated.isVisible()
 
 
-def test_the_table_says_how_each_joint_was_found(results: ResultPage) -> None:
+def test_the_table_states_how_each_joint_was_found(results: ResultPage) -> None:
     rows = [line.split("\t") for line in results.quality.facts.as_text().split("\n")]
     assert rows == [
         ["", "left knee", "right knee", "left ankle", "right ankle"],
@@ -360,19 +360,19 @@ def test_the_table_says_how_each_joint_was_found(results: ResultPage) -> None:
     ]
     model = results.quality.facts.cells
     every = [(r, c) for r in range(6) for c in range(5)]
-    heard = {at: str(model.index(*at).data(Qt.ItemDataRole.AccessibleTextRole)) for at in every}
+    received = {at: str(model.index(*at).data(Qt.ItemDataRole.AccessibleTextRole)) for at in every}
     marked = {(2, 3), (3, 4), (5, 2), (5, 4)}
-    assert {cell for cell, said in heard.items() if said.endswith("needs checking")} == marked
-    cells = [(at, model.cell(model.index(*at))) for at in heard]
+    assert {cell for cell, stated in received.items() if stated.endswith("needs checking")} == marked
+    cells = [(at, model.cell(model.index(*at))) for at in received]
     assert {at for at, cell in cells if isinstance(cell, TextCell) and cell.mark is not None} == marked
-    assert heard[3, 4] == "right ankle, Direction: uncertain, needs checking"
+    assert received[3, 4] == "right ankle, Direction: uncertain, needs checking"
     assert "1.3" in model.index(2, 1).data(Qt.ItemDataRole.ToolTipRole)
 
 
-def test_findings_are_told_the_gravest_first(results: ResultPage) -> None:
-    told = [row.accessibleName() for row in results.quality.findings.findChildren(FindingRow)]
-    assert [text.split(":")[0] for text in told] == ["serious", "warning", "info"]
-    assert "0.42 s" in told[1]
+def test_findings_are_reported_the_gravest_first(results: ResultPage) -> None:
+    reported = [row.accessibleName() for row in results.quality.findings.findChildren(FindingRow)]
+    assert [text.split(":")[0] for text in reported] == ["serious", "warning", "info"]
+    assert "0.42 s" in reported[1]
 
 
 def test_a_session_without_joints_is_no_trouble(qtbot: QtBot, window: SessionScreen, open_work: OpenWork) -> None:
@@ -418,7 +418,7 @@ def visible(window: QWidget) -> list[QWidget]:
 
 
 def is_cut(widget: QWidget) -> bool:
-    """Tell whether a widget has less room than its words need."""
+    """Return whether a widget has less room than its words need."""
     if isinstance(widget, QLabel):
         margins = widget.contentsMargins()
         room = widget.size().shrunkBy(margins)
@@ -435,7 +435,7 @@ def is_cut(widget: QWidget) -> bool:
 
 
 def sticks_out(widget: QWidget, window: SessionScreen) -> bool:
-    """Tell whether a widget can never be seen whole: beside the window, or wider than the page that scrolls."""
+    """Return whether a widget can never be seen whole: beside the window, or wider than the page that scrolls."""
     left = widget.mapTo(window, QPoint(0, 0)).x()
     return left < 0 or left + widget.width() > window.width()
 
@@ -478,7 +478,7 @@ def test_every_word_fits(
     assert results is not None
     window.resize(*size)
     look.set_scale(scale)
-    window.banner.tell("left_thigh.csv, line 4: the clock steps back.", "Export the recording again.")
+    window.banner.show_message("left_thigh.csv, line 4: the clock steps back.", "Export the recording again.")
     results.whole.charts.zoom(0.5)
     results.whole.charts._read_at(4.0)
     pages: list[tuple[QWidget, str]] = [(results, view) for view in (ANSWER, WHOLE, COMPARE, STRIDES)]

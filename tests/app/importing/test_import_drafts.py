@@ -60,7 +60,7 @@ def test_a_sensor_that_is_called_otherwise_in_another_trial_is_at_no_site() -> N
     ("other", "count"),
     [
         (trial({"S1": "Left Foot"}, "2026-03-09T15:00:00"), 1),
-        (trial({"S1": "Left Foot"}), 1),  # it does not tell its day
+        (trial({"S1": "Left Foot"}), 1),  # it does not report its day
         (trial({"S1": "Left Foot"}, "2026-03-10T09:00:00"), 2),
         (trial({"S9": "Left Foot"}, "2026-03-09T15:00:00"), 2),  # another station's sensors
         (trial({"S1": "Left Foot"}, "2026-03-09T15:00:00", program="xsens-mtmanager"), 2),
@@ -127,8 +127,8 @@ def test_two_sensors_at_one_site_are_refused() -> None:
 @pytest.fixture(scope="module")
 def simulated() -> dict[str, ImportedTrial]:
     """A visit whose sensors say nothing of where they were."""
-    wanted = (Standing(), FreeMotion(), Walk())
-    made = simulate(WalkerSettings(recordings=wanted))
+    required = (Standing(), FreeMotion(), Walk())
+    made = simulate(WalkerSettings(recordings=required))
     trials = {}
     for recording in made.session.recordings:
         sensors = [
@@ -139,7 +139,7 @@ def simulated() -> dict[str, ImportedTrial]:
     return trials
 
 
-def test_the_motion_tells_the_sites_but_for_the_side(simulated: Mapping[str, ImportedTrial]) -> None:
+def test_the_motion_shows_the_sites_but_for_the_side(simulated: Mapping[str, ImportedTrial]) -> None:
     (draft,) = drafts_of(list(simulated.items()))
     assert {sensor.site for sensor in draft.sensors} == {None}
     chains = chains_of_motion(draft, [sensor.key for sensor in draft.sensors])
@@ -153,7 +153,7 @@ def test_the_motion_tells_the_sites_but_for_the_side(simulated: Mapping[str, Imp
     assert all(Site(key[::-1]).side is not site.side for key, site in wrong.items())
 
 
-def test_without_motion_nothing_is_told(simulated: Mapping[str, ImportedTrial]) -> None:
+def test_without_motion_nothing_is_reported(simulated: Mapping[str, ImportedTrial]) -> None:
     name, standing = next(iter(simulated.items()))
     (draft,) = drafts_of([(name, standing)])
     keys = [sensor.key for sensor in draft.sensors]
@@ -164,17 +164,17 @@ def test_without_motion_nothing_is_told(simulated: Mapping[str, ImportedTrial]) 
     assert chains_of_motion(moving, [*keys, "another"]) is None
 
 
-def test_a_real_walk_tells_its_legs(test_data: FindData) -> None:
+def test_a_real_walk_shows_its_legs(test_data: FindData) -> None:
     folder = test_data("vendor_exports/xsens_mtmanager")
-    told = {
+    reported = {
         sensor.attrib["name"].lstrip("_"): sensor.findtext("name_in_model") or ""
         for sensor in ElementTree.parse(folder / "OpenSenseExample_myIMUMappings.xml").iter("ExperimentalSensor")
     }
     (draft,) = drafts_of([("walk", mtmanager_trial(sorted(folder.glob("OpenSenseExample_*.txt"))))])
-    worn = [key for key, bone in told.items() if bone.split("_")[0] in ("femur", "tibia", "calcn")]
+    worn = [key for key, bone in reported.items() if bone.split("_")[0] in ("femur", "tibia", "calcn")]
     chains = chains_of_motion(draft, worn)
     assert chains is not None
     assert chains.is_certain
-    legs = [[told[sensor].removesuffix("_imu") for sensor in leg.sensors] for leg in chains.legs]
+    legs = [[reported[sensor].removesuffix("_imu") for sensor in leg.sensors] for leg in chains.legs]
     assert sorted(legs) == [["femur_l", "tibia_l", "calcn_l"], ["femur_r", "tibia_r", "calcn_r"]]
     assert chains.sites(Side.LEFT)[chains.legs[0].thigh] is Site.LEFT_THIGH

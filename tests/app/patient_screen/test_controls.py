@@ -31,30 +31,30 @@ def typed(card: ControlsCard, text: str) -> None:
 
 def test_a_target_is_what_was_typed_for_a_measure_of_a_leg(qtbot: QtBot, card: ControlsCard) -> None:
     assert card.target.text == ""
-    with qtbot.waitSignal(card.target_set) as told:
+    with qtbot.waitSignal(card.target_set) as reported:
         typed(card, "55")
-    assert told.args == [Target(TargetMeasure.KNEE_SWING_PEAK, Side.LEFT, 55)]
-    with qtbot.waitSignal(card.target_set) as told:
+    assert reported.args == [Target(TargetMeasure.KNEE_SWING_PEAK, Side.LEFT, 55)]
+    with qtbot.waitSignal(card.target_set) as reported:
         card.side.choose(Side.RIGHT)
-    assert told.args == [Target(TargetMeasure.KNEE_SWING_PEAK, Side.RIGHT, 55)]  # it stays as the side changes
+    assert reported.args == [Target(TargetMeasure.KNEE_SWING_PEAK, Side.RIGHT, 55)]  # it stays as the side changes
     assert card.target.text == "55"
     card.measure.choose(TargetMeasure.CADENCE)
     assert not card.side.isVisible()
-    with qtbot.waitSignal(card.target_set) as told:
+    with qtbot.waitSignal(card.target_set) as reported:
         typed(card, "110")
-    assert told.args == [Target(TargetMeasure.CADENCE, None, 110)]
+    assert reported.args == [Target(TargetMeasure.CADENCE, None, 110)]
     card.measure.choose(TargetMeasure.KNEE_SWING_PEAK)
-    with qtbot.waitSignal(card.target_set) as told:
+    with qtbot.waitSignal(card.target_set) as reported:
         card.side.choose(Side.LEFT)
-    assert told.args == [Target(TargetMeasure.KNEE_SWING_PEAK, Side.LEFT, 55)]
+    assert reported.args == [Target(TargetMeasure.KNEE_SWING_PEAK, Side.LEFT, 55)]
 
 
 def test_enter_in_a_field_sets_what_is_typed_and_is_for_no_other(qtbot: QtBot, card: ControlsCard) -> None:
-    heard: list[int] = []
+    received: list[int] = []
 
     class Page(QWidget):
         def keyPressEvent(self, event: QKeyEvent) -> None:
-            heard.append(event.key())
+            received.append(event.key())
 
     page = Page()
     qtbot.addWidget(page)
@@ -64,10 +64,10 @@ def test_enter_in_a_field_sets_what_is_typed_and_is_for_no_other(qtbot: QtBot, c
         field.line_edit.setFocus()
         QTest.keyClicks(field.line_edit, "55")
         QTest.keyClick(field.line_edit, Qt.Key.Key_Return)
-    assert heard == []
+    assert received == []
     card.measure.segments[0].setFocus()
     QTest.keyClick(card.measure.segments[0], Qt.Key.Key_Return)
-    assert heard == [Qt.Key.Key_Return]  # a choice has no use for it
+    assert received == [Qt.Key.Key_Return]  # a choice has no use for it
     card.setParent(None)
 
 
@@ -88,19 +88,19 @@ def test_no_word_of_the_card_is_cut_when_what_is_typed_is_wrong(qtbot: QtBot, lo
 
 
 def test_a_figure_that_makes_no_sense_sets_no_target(qtbot: QtBot, card: ControlsCard) -> None:
-    with qtbot.waitSignal(card.target_set) as told:
+    with qtbot.waitSignal(card.target_set) as reported:
         typed(card, "555")
-    assert told.args == [None]
+    assert reported.args == [None]
     assert card.target.is_wrong
 
 
-def test_what_is_gated_cannot_be_chosen_and_says_why(qtbot: QtBot, card: ControlsCard) -> None:
+def test_what_is_gated_cannot_be_chosen_and_states_why(qtbot: QtBot, card: ControlsCard) -> None:
     typed(card, "55")
     why = "There is no standing reference, so absolute angles are not reported."
-    with qtbot.waitSignal(card.target_set) as told:
+    with qtbot.waitSignal(card.target_set) as reported:
         card.show_reasons({(TargetMeasure.KNEE_SWING_PEAK, Side.LEFT): why})
     assert card.side.choice == Side.RIGHT  # which is not gated
-    assert told.args == [None]
+    assert reported.args == [None]
     left, _right = card.side.segments
     assert not left.isEnabled()
     both: dict[Choice, str] = {(TargetMeasure.KNEE_SWING_PEAK, side): why for side in Side}
@@ -114,7 +114,7 @@ def test_what_is_gated_cannot_be_chosen_and_says_why(qtbot: QtBot, card: Control
     assert left.isEnabled()
 
 
-def test_where_nothing_can_be_a_target_the_reason_stands_there(card: ControlsCard) -> None:
+def test_where_nothing_can_be_a_target_the_reason_is_there(card: ControlsCard) -> None:
     card.show_reasons(dict.fromkeys(choices(), "There is no foot sensor."))
     assert card.reason == "There is no foot sensor."
     assert not card.target.isEnabled()
@@ -128,11 +128,11 @@ def test_the_metronome_is_started_with_the_typed_rate_and_stopped(qtbot: QtBot, 
         card.tick.click()
     assert card.rate.is_wrong
     QTest.keyClicks(card.rate.line_edit, "96")
-    with qtbot.waitSignal(card.metronome_pressed) as told:
+    with qtbot.waitSignal(card.metronome_pressed) as reported:
         QTest.keyClick(card.tick, Qt.Key.Key_Space)
-    assert told.args == [96]
+    assert reported.args == [96]
     card.show_metronome(96)
     assert card.tick.text() == "Stop metronome"
-    with qtbot.waitSignal(card.metronome_pressed) as told:
+    with qtbot.waitSignal(card.metronome_pressed) as reported:
         card.tick.click()
-    assert told.args == [0]
+    assert reported.args == [0]

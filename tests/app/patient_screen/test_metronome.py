@@ -56,7 +56,7 @@ def test_what_the_program_was_too_busy_for_is_left_out_and_the_next_is_in_time(
     assert clock.ticks_s == [0.0, 4.0]
 
 
-def test_it_is_silent_once_stopped_and_begins_anew(metronome: Metronome, clock: Clock) -> None:
+def test_it_is_silent_once_stopped_and_begins_again(metronome: Metronome, clock: Clock) -> None:
     metronome.start(60)
     metronome.stop()
     clock.now_s += 5.3

@@ -1,4 +1,4 @@
-"""What the patient sees and is told: figures, reached or not, waiting; and the keys of the window."""
+"""What the patient sees and is reported: figures, reached or not, waiting; and the keys of the window."""
 
 import pytest
 from PySide6.QtCore import Qt
@@ -53,8 +53,8 @@ def test_steps_that_reached_are_filled_and_others_hollow(window: PatientWindow, 
 
 def test_its_words_say_the_value_and_how_many_reached(window: PatientWindow) -> None:
     window.show_view(PatientView(KNEE, TEN))
-    said = "Left knee: bend it as you swing. Target 55°. Now 54°. Last 10 steps: 7 reached 55°."
-    assert window.accessibleName() == said
+    stated = "Left knee: bend it as you swing. Target 55°. Now 54°. Last 10 steps: 7 reached 55°."
+    assert window.accessibleName() == stated
 
 
 def test_while_it_waits_no_value_is_shown_not_even_old_ones(window: PatientWindow, look: ThemeNotifier) -> None:
@@ -84,8 +84,8 @@ def test_without_a_target_the_steps_of_a_walk_are_shown_and_nobody_is_to_wait(wi
 @pytest.mark.parametrize("side", Side)
 @pytest.mark.parametrize("measure", [measure for measure in TargetMeasure if measure.has_side])
 def test_each_title_names_its_leg(measure: TargetMeasure, side: Side) -> None:
-    said = title_of(Target(measure, side, 50))
-    assert said.startswith("Left" if side is Side.LEFT else "Right")
+    stated = title_of(Target(measure, side, 50))
+    assert stated.startswith("Left" if side is Side.LEFT else "Right")
 
 
 def test_figures_have_their_unit_and_a_true_minus() -> None:
@@ -106,7 +106,7 @@ def test_f11_fills_the_screen_and_space_is_for_the_walk(qtbot: QtBot, window: Pa
     assert window.isFullScreen()
     QTest.keyClick(window, Qt.Key.Key_F11)
     assert not window.isFullScreen()
-    with qtbot.waitSignal(window.run_wished):
+    with qtbot.waitSignal(window.run_requested):
         QTest.keyClick(window, Qt.Key.Key_Space)
 
 

@@ -1,4 +1,4 @@
-"""The mean cycle: what is painted for how many strides, where toe-off stands, and the same axes for everyone."""
+"""The mean cycle: what is painted for how many strides, where toe-off is, and the same axes for everyone."""
 
 from dataclasses import replace
 
@@ -110,31 +110,31 @@ def judged_as(shape: Assessment = READ, height: Assessment = READ, sign: Assessm
     return JointVerdicts(shape, height, sign)
 
 
-PAIRING = assess([GateReason("pairing", Verdict.WITHHELD, 1.05, 1.3)])
-FEW = assess([GateReason("strides", Verdict.WITHHELD, 2, 3)])
-ZERO = assess([GateReason("zero", Verdict.WITHHELD)])
-SIGN = assess([GateReason("sign", Verdict.WITHHELD, 0.1, 0.25)])
+PAIRING = assess([GateReason("pairing", Verdict.NOT_REPORTED, 1.05, 1.3)])
+FEW = assess([GateReason("strides", Verdict.NOT_REPORTED, 2, 3)])
+ZERO = assess([GateReason("zero", Verdict.NOT_REPORTED)])
+SIGN = assess([GateReason("sign", Verdict.NOT_REPORTED, 0.1, 0.25)])
 SLANTED = assess([GateReason("axis", Verdict.CARE, 8.0, 6.5, "deg")])
 
 
-def test_of_a_withheld_joint_no_mean_is_drawn_but_why(charts: CycleCharts, look: ThemeNotifier) -> None:
+def test_of_a_not_reported_joint_no_mean_is_drawn_but_why(charts: CycleCharts, look: ThemeNotifier) -> None:
     cycles = {Joint.LEFT_KNEE: cycle(12, 60), Joint.RIGHT_KNEE: cycle(12, 40)}
     charts.set_band_shown(False)
     charts.show_cycles(cycles, {Joint.LEFT_KNEE: judged_as(PAIRING, PAIRING)}, is_simulated=False)
     chart = charts.knee.chart
     assert colour_at(chart, 72, 60).name() == look.theme.colours.surface.lower()
-    assert [side for side, panel in charts.knee.withheld.items() if panel.isVisible()] == [Side.LEFT]
-    said = charts.knee.withheld[Side.LEFT].text
-    assert said.startswith("Not reported. Sensor positions could not be confirmed (margin 1.05, required 1.30).")
-    assert "record free motion" not in said  # what to do stands beneath, once for all
-    assert said in charts.knee.in_words()
+    assert [side for side, panel in charts.knee.not_reported.items() if panel.isVisible()] == [Side.LEFT]
+    stated = charts.knee.not_reported[Side.LEFT].text
+    assert stated.startswith("Not reported. Sensor positions could not be confirmed (margin 1.05, required 1.30).")
+    assert "record free motion" not in stated  # what to do is beneath, once for all
+    assert stated in charts.knee.in_words()
     assert list(toe_off_labels(chart.described.curves)) == [Side.RIGHT]
     charts.show_cycles(cycles, {}, is_simulated=False)
-    assert not charts.knee.withheld[Side.LEFT].isVisible()
+    assert not charts.knee.not_reported[Side.LEFT].isVisible()
     assert is_like(colour_at(chart, 72, 60), look.theme.curve(Side.LEFT))
 
 
-def test_with_both_legs_withheld_the_panels_take_the_charts_place(charts: CycleCharts) -> None:
+def test_with_both_legs_not_reported_the_panels_take_the_charts_place(charts: CycleCharts) -> None:
     nothing = judged_as(PAIRING, PAIRING)
     cycles = {Joint.LEFT_KNEE: cycle(12), Joint.RIGHT_KNEE: cycle(12)}
     charts.show_cycles(cycles, dict.fromkeys(cycles, nothing), is_simulated=False)
@@ -152,13 +152,13 @@ def test_of_fewer_than_three_strides_each_is_drawn_in_grey_and_no_mean(
     charts.set_band_shown(False)
     charts.show_cycles({Joint.LEFT_KNEE: cycle(2)}, {Joint.LEFT_KNEE: judged_as(FEW, FEW)}, is_simulated=False)
     chart = charts.knee.chart
-    assert "Few strides (2 used, 3 required)" in charts.knee.withheld[Side.LEFT].text
+    assert "Few strides (2 used, 3 required)" in charts.knee.not_reported[Side.LEFT].text
     highest = float(chart.cycles[Side.LEFT].strides_deg.max())
     assert colour_at(chart, 72, highest).name() != look.theme.colours.surface.lower()
     assert colour_at(chart, 72, 60).name() == look.theme.colours.surface.lower()
 
 
-def test_care_stands_in_the_key_of_its_leg(charts: CycleCharts) -> None:
+def test_care_is_in_the_key_of_its_leg(charts: CycleCharts) -> None:
     cycles = {Joint.LEFT_KNEE: cycle(12), Joint.RIGHT_KNEE: cycle(12)}
     slanted, chips = judged_as(SLANTED, SLANTED), charts.knee.chips
     charts.show_cycles(cycles, dict.fromkeys(cycles, slanted), is_simulated=False)
@@ -221,15 +221,15 @@ def test_toe_off_is_named_at_its_line_the_earlier_one_in_full(charts: CycleChart
     ) == [*Side]
 
 
-def test_what_the_height_of_a_curve_cannot_say_is_said(charts: CycleCharts) -> None:
+def test_what_the_height_of_a_curve_cannot_say_is_stated(charts: CycleCharts) -> None:
     cycles = {Joint.LEFT_KNEE: cycle(12), Joint.RIGHT_KNEE: cycle(12), Joint.LEFT_ANKLE: cycle(12, 20)}
     unset = judged_as(height=ZERO)
     charts.show_cycles(cycles, {Joint.LEFT_KNEE: unset, Joint.RIGHT_KNEE: unset}, is_simulated=False)
-    told = (
+    reported = (
         "L and R: no standing reference. Range of motion and curve shape are valid; absolute angles are not. "
         "0° is the mean of the gait cycle."
     )
-    assert charts.knee.note == told
+    assert charts.knee.note == reported
     assert charts.ankle.note == ""
     charts.show_cycles(cycles, {Joint.LEFT_ANKLE: judged_as(height=SIGN, sign=SIGN)}, is_simulated=False)
     assert charts.ankle.note.startswith("L: sign unclear, flexion or extension. The curve may be inverted.")
@@ -244,14 +244,14 @@ def test_a_side_without_a_whole_stride_is_no_trouble(charts: CycleCharts) -> Non
     assert charts.ankle.note == "No ankle angles."
 
 
-def test_the_mean_curves_are_told_in_words(charts: CycleCharts) -> None:
+def test_the_mean_curves_are_reported_in_words(charts: CycleCharts) -> None:
     charts.show_cycles({Joint.LEFT_KNEE: cycle(12)}, {}, is_simulated=True)
-    told = charts.knee.chart.accessibleDescription()
-    assert told == "Simulated. Left knee, mean of 12: 0.0° at 0 % to 60.0° at 72 %, toe-off at 60 %."
+    reported = charts.knee.chart.accessibleDescription()
+    assert reported == "Simulated. Left knee, mean of 12: 0.0° at 0 % to 60.0° at 72 %, toe-off at 60 %."
     assert charts.knee.chart.accessibleName() == "Knee over one gait cycle"
 
 
-def test_simulated_stands_on_both_charts_and_only_then(charts: CycleCharts, look: ThemeNotifier) -> None:
+def test_simulated_is_on_both_charts_and_only_then(charts: CycleCharts, look: ThemeNotifier) -> None:
     inked = []
     for is_simulated in (False, True):
         charts.show_cycles({Joint.LEFT_KNEE: cycle(12), Joint.LEFT_ANKLE: cycle(12)}, {}, is_simulated)

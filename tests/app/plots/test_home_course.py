@@ -40,12 +40,12 @@ def page(qtbot: QtBot, look: ThemeNotifier) -> HomePage:
     return page
 
 
-def said(card: CourseCard) -> list[str]:
+def stated(card: CourseCard) -> list[str]:
     return [text.text() for text in card.findChildren(Text) if text.isVisible() and text.text()]
 
 
-def test_what_has_changed_stands_beside_the_lanes(page: HomePage) -> None:
-    found = said(page.panel.course)
+def test_what_has_changed_is_beside_the_lanes(page: HomePage) -> None:
+    found = stated(page.panel.course)
     assert "Walking speed" in found
     assert "1.12\N{NO-BREAK SPACE}m/s" in found
     assert "+0.41 since 20 Jun" in found
@@ -61,9 +61,9 @@ def test_one_condition_is_shown_by_itself(page: HomePage) -> None:
     assert [choice.itemText(k) for k in range(choice.count())] == ["All conditions", SHOES, STICK]
     choice.setCurrentIndex(2)
     assert {line.condition for lane in page.panel.course.lanes for line in lane.lines} == {STICK}
-    assert "on 22 Aug" in said(page.panel.course)  # its last visit is not the patient's
+    assert "on 22 Aug" in stated(page.panel.course)  # its last visit is not the patient's
     choice.setCurrentIndex(1)
-    assert "on 22 Aug" not in said(page.panel.course)
+    assert "on 22 Aug" not in stated(page.panel.course)
 
 
 def test_keys_go_from_visit_to_visit_and_enter_opens_it(qtbot: QtBot, page: HomePage) -> None:
@@ -73,9 +73,9 @@ def test_keys_go_from_visit_to_visit_and_enter_opens_it(qtbot: QtBot, page: Home
     assert card.number == 4
     QTest.keyClick(card, Qt.Key.Key_Left)
     assert card.number == 3
-    with qtbot.waitSignal(page.session_opened) as told:
+    with qtbot.waitSignal(page.session_opened) as reported:
         QTest.keyClick(card, Qt.Key.Key_Return)
-    assert told.args == [UUID(int=3)]
+    assert reported.args == [UUID(int=3)]
     for _ in range(9):
         QTest.keyClick(card, Qt.Key.Key_Left)
     assert card.number == 0
@@ -87,15 +87,15 @@ def test_keys_go_from_visit_to_visit_and_enter_opens_it(qtbot: QtBot, page: Home
 def test_a_click_opens_the_visit_under_it(qtbot: QtBot, page: HomePage) -> None:
     plot = next(iter(page.panel.course.rows.values())).plot
     at = QPoint(round(plot.x_of(2)), plot.height() // 2)
-    with qtbot.waitSignal(page.session_opened) as told:
+    with qtbot.waitSignal(page.session_opened) as reported:
         QTest.mouseClick(plot, Qt.MouseButton.LeftButton, pos=at)
-    assert told.args == [UUID(int=2)]
+    assert reported.args == [UUID(int=2)]
 
 
 def test_what_is_next_is_opened(qtbot: QtBot, page: HomePage) -> None:
-    with qtbot.waitSignal(page.session_opened) as told:
+    with qtbot.waitSignal(page.session_opened) as reported:
         QTest.mouseClick(page.panel.go, Qt.MouseButton.LeftButton)
-    assert told.args == [UUID(int=4)]
+    assert reported.args == [UUID(int=4)]
     page.panel.show_next(NextStep("the last visit was 9 weeks ago."))
     assert not page.panel.go.isVisible()
     page.panel.show_next(None)
@@ -109,7 +109,7 @@ def test_visits_that_are_not_computed_are_computed_on_wish(qtbot: QtBot, page: H
     page.show_sessions((), visits)
     assert card.compute.isVisible()
     assert "1 visit is not calculated yet." in card.note.text()
-    with qtbot.waitSignal(page.computing_wished):
+    with qtbot.waitSignal(page.computing_requested):
         QTest.mouseClick(card.compute, Qt.MouseButton.LeftButton)
 
 
@@ -127,9 +127,9 @@ def test_deleting_is_asked_for_in_a_menu_and_by_its_key(qtbot: QtBot, page: Home
     assert not page.panel.delete_session.isEnabled()
     page.sessions.choose(1)
     assert page.panel.delete_session.isEnabled()
-    with qtbot.waitSignal(page.session_deleted) as told:
+    with qtbot.waitSignal(page.session_deleted) as reported:
         page.panel.delete_session.trigger()
-    assert told.args == [UUID(int=1)]
+    assert reported.args == [UUID(int=1)]
     with qtbot.waitSignal(page.patient_deleted):
         page.panel.delete_patient.trigger()
     QTest.mouseClick(page.panel.more, Qt.MouseButton.LeftButton)
@@ -179,19 +179,19 @@ def test_no_word_is_cut_at_any_size(
     look.set_scale(1.0)
 
 
-def test_a_goal_stands_beside_its_lane_with_how_the_last_visit_stands_to_it(page: HomePage) -> None:
+def test_a_goal_is_beside_its_lane_with_how_the_last_visit_is_to_it(page: HomePage) -> None:
     early, late = (
         Goal("speed_m_s", GoalOf.WALK, 1.05, datetime.date.fromisoformat(day), "H. Keller")
         for day in ("2026-10-03", "2026-11-14")
     )
     page.panel.show_course(VISITS, [early])
-    found = said(page.panel.course)
+    found = stated(page.panel.course)
     assert f"{3 * chr(0xB7)} goal 1.05\N{NO-BREAK SPACE}m/s" in found
     assert "reached, but within measurement error" in found
     page.panel.show_course(VISITS, [late])  # agreed on the day of the last visit
-    assert "reached, but within measurement error" not in said(page.panel.course)
+    assert "reached, but within measurement error" not in stated(page.panel.course)
     page.panel.show_course(VISITS, [replace(early, ended=early.agreed)])
-    assert not any("goal" in one for one in said(page.panel.course))
+    assert not any("goal" in one for one in stated(page.panel.course))
 
 
 def test_lanes_of_other_measures_come_and_go_with_their_goals(page: HomePage, qapp: QApplication) -> None:
@@ -199,12 +199,12 @@ def test_lanes_of_other_measures_come_and_go_with_their_goals(page: HomePage, qa
     day = datetime.date(2026, 6, 20)
     page.panel.show_course(VISITS, [Goal("stride_length_m", GoalOf.LEFT, 1.3, day)])
     qapp.processEvents()  # what is new comes with the next layout
-    assert {"Stride length", "Walking speed"} <= set(said(card))
-    assert "Stance L \N{MINUS SIGN} R" not in said(card)
+    assert {"Stride length", "Walking speed"} <= set(stated(card))
+    assert "Stance L \N{MINUS SIGN} R" not in stated(card)
     assert [row.label.y() for row in card.rows.values()] == sorted(row.label.y() for row in card.rows.values())
     assert len(card.rows) == 3
     page.panel.show_course(VISITS)
-    assert "Stride length" not in said(card)
+    assert "Stride length" not in stated(card)
     many = [
         Goal(column, GoalOf.LEFT, 20.0, day)
         for column in ("knee_range_deg", "knee_while_loading_deg", "ankle_push_off_deg", "ankle_rocker_deg")
@@ -221,17 +221,17 @@ def test_timed_tests_have_a_course_of_their_own_where_there_are_some(qtbot: QtBo
     visits = [replace(one, course=found) for one, found in zip(VISITS[-2:], tests, strict=True)]
     page.show_sessions([session(0, "Shoes", "")], visits)
     assert panel.shown.isVisible()
-    assert "Walking speed" in said(panel.course)
+    assert "Walking speed" in stated(panel.course)
     panel.shown.focus()
     QTest.keyClick(panel.shown.segments[0], Qt.Key.Key_Right)
-    qtbot.waitUntil(lambda: "Timed Up and Go" in said(panel.course))
-    found = said(panel.course)
+    qtbot.waitUntil(lambda: "Timed Up and Go" in stated(panel.course))
+    found = stated(panel.course)
     assert "24.0\N{NO-BREAK SPACE}s" in found
     assert "not judged" in found
     assert "Walking speed" not in found
     page.show_sessions([session(0, "Shoes", "")], VISITS)  # another patient, without a test
     assert not panel.shown.isVisible()
-    qtbot.waitUntil(lambda: "Walking speed" in said(panel.course))
+    qtbot.waitUntil(lambda: "Walking speed" in stated(panel.course))
 
 
 def test_the_first_sessions_are_whole_however_many_rows_their_words_take(page: HomePage) -> None:
@@ -241,7 +241,7 @@ def test_the_first_sessions_are_whole_however_many_rows_their_words_take(page: H
     assert page.panel.sessions.minimumHeight() == sum(heights) > 2 * SESSION_ROW
 
 
-def test_sessions_that_come_by_themselves_are_said_to(page: HomePage) -> None:
+def test_sessions_that_come_by_themselves_are_stated_to(page: HomePage) -> None:
     page.show_sessions([])
     assert page.panel.none_yet.text() == "No sessions yet."
     page.panel.say_none_yet(is_awaited=True)

@@ -64,7 +64,7 @@ def test_axes_are_the_same_every_time(charts: JointCharts) -> None:
     assert charts.knee.chart._view.viewRange()[1] == list(KNEE_DEG)
 
 
-def test_an_axis_that_is_left_is_widened_and_says_so(charts: JointCharts) -> None:
+def test_an_axis_that_is_left_is_widened_and_states_so(charts: JointCharts) -> None:
     assert not charts.knee._wide.isVisible()
     charts.show_joints({Joint.LEFT_KNEE: Curve(angle(93.0))})
     assert charts.knee.chart.range_deg == (-10.0, 100.0)
@@ -106,10 +106,10 @@ def test_keys_zoom_move_and_bring_the_whole_back(qtbot: QtBot, charts: JointChar
     QTest.keyClick(charts, Qt.Key.Key_PageDown)
     assert charts.visible_s[1] > last
     assert charts.visible_s[1] <= TIME_S[-1] + 1e-6
-    with qtbot.waitSignal(charts.view_changed) as told:
+    with qtbot.waitSignal(charts.view_changed) as reported:
         QTest.keyClick(charts, Qt.Key.Key_Home)
     assert charts.is_whole
-    assert told.args == [True, "Whole recording, 10.0 s"]
+    assert reported.args == [True, "Whole recording, 10.0 s"]
 
 
 def test_zooming_out_stops_at_the_whole(qtbot: QtBot, charts: JointCharts) -> None:
@@ -148,14 +148,14 @@ def test_inside_a_gap_no_value_is_read(charts: JointCharts) -> None:
     assert charts.knee._values[Side.LEFT].text() == NO_VALUE
 
 
-def test_simulated_stands_on_every_chart(charts: JointCharts) -> None:
+def test_simulated_is_on_every_chart(charts: JointCharts) -> None:
     assert not charts.knee._simulated.isVisible()
     charts.show_recording("walk 1", TIME_S, is_simulated=True)
     assert charts.knee._simulated.isVisible()
     assert charts.ankle._simulated.isVisible()
 
 
-def test_the_charts_are_told_in_words(charts: JointCharts) -> None:
+def test_the_charts_are_reported_in_words(charts: JointCharts) -> None:
     assert charts.accessibleName() == "Knee and ankle angles of walk 1"
     assert "Left knee from 0.0° to 60.0°." in charts.accessibleDescription()
     assert "Right ankle" not in charts.accessibleDescription()

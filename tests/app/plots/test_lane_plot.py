@@ -43,14 +43,14 @@ def colour_at(plot: LanePlot, x: float, y: float) -> QColor:
 
 
 def is_left(colour: QColor, look: ThemeNotifier) -> bool:
-    wanted = QColor(look.theme.colours.left)
+    required = QColor(look.theme.colours.left)
     channels = (QColor.red, QColor.green, QColor.blue)
-    return all(abs(channel(colour) - channel(wanted)) < 60 for channel in channels)
+    return all(abs(channel(colour) - channel(required)) < 60 for channel in channels)
 
 
-def test_neighbours_are_joined_and_what_lies_beyond_a_gap_is_not(qtbot: QtBot, look: ThemeNotifier) -> None:
-    told = unsure(Joint.LEFT_KNEE)
-    gap = course((walked(told=told), SHOES), told=told)
+def test_adjacent_are_joined_and_what_lies_beyond_a_gap_is_not(qtbot: QtBot, look: ThemeNotifier) -> None:
+    reported = unsure(Joint.LEFT_KNEE)
+    gap = course((walked(reported=reported), SHOES), reported=reported)
     joined = knee_plot(qtbot, look, visit(0, shoes(50.0)), visit(100, shoes(50.0)))
     at = joined.x_of(0) + 0.25 * (joined.x_of(1) - joined.x_of(0)), joined.y_of(50.0)
     assert is_left(colour_at(joined, *at), look)
@@ -115,7 +115,7 @@ def test_dates_that_would_touch_are_left_out_but_for_the_first_and_the_last(qtbo
 
 
 @pytest.mark.endurance
-def test_visits_of_one_day_are_told_apart(qtbot: QtBot, look: ThemeNotifier) -> None:
+def test_visits_of_one_day_are_reported_apart(qtbot: QtBot, look: ThemeNotifier) -> None:
     """By their place and by the time of the day; a visit of another day stays at its day, and none leaves the plot."""
     morning, noon = (replace(visit(0, shoes(50.0)), id=UUID(int=90 + k), clock=f"{9 + 3 * k:02d}:00") for k in (0, 1))
     alone = knee_plot(qtbot, look, morning, noon)

@@ -65,7 +65,7 @@ def test_space_plays_and_stops_and_out_of_sight_nothing_plays(qtbot: QtBot, legs
     assert (legs.is_playing, legs.isHidden()) == (False, True)
 
 
-def test_clocks_that_do_not_agree_are_said_and_no_legs_say_why(legs: MovingLegs) -> None:
+def test_clocks_that_do_not_agree_are_stated_and_no_legs_say_why(legs: MovingLegs) -> None:
     assert "clocks" not in legs.note.text()
     legs.show_legs(MeanLegs({side: leg() for side in Side}, Side.LEFT))
     assert "Left and right sensors are not synchronised: legs are drawn half a gait cycle apart" in legs.note.text()

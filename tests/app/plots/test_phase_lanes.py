@@ -152,7 +152,7 @@ def test_the_mouse_over_a_lane_reads_moves_and_zooms(qtbot: QtBot, charts: Joint
     assert charts.visible_s[0] == pytest.approx(first + (last - first) / 10, abs=0.05)
 
 
-def test_phases_too_narrow_to_tell_apart_ask_for_a_zoom(qtbot: QtBot, look: ThemeNotifier) -> None:
+def test_phases_too_narrow_to_show_apart_ask_for_a_zoom(qtbot: QtBot, look: ThemeNotifier) -> None:
     lanes = PhaseLanes(look)
     qtbot.addWidget(lanes)
     lanes.show_lanes({Side.LEFT: Lane.of(TIME_S, gait(1.0))})
@@ -165,10 +165,10 @@ def test_phases_too_narrow_to_tell_apart_ask_for_a_zoom(qtbot: QtBot, look: Them
     assert full in colours_at(lanes, Side.LEFT, 1.66)
 
 
-def test_lanes_are_told_in_words(charts: JointCharts) -> None:
-    told = charts.phases.lanes.accessibleDescription()
-    assert "Left foot: 8 initial contacts and 8 toe-offs, phases from 1.0 to 8.7 s." in told
-    assert told in charts.accessibleDescription()
+def test_lanes_are_reported_in_words(charts: JointCharts) -> None:
+    reported = charts.phases.lanes.accessibleDescription()
+    assert "Left foot: 8 initial contacts and 8 toe-offs, phases from 1.0 to 8.7 s." in reported
+    assert reported in charts.accessibleDescription()
 
 
 def test_without_gait_there_are_no_lanes(charts: JointCharts) -> None:
@@ -179,7 +179,7 @@ def test_without_gait_there_are_no_lanes(charts: JointCharts) -> None:
     assert charts._cursor_s is None
 
 
-def test_simulated_stands_on_the_lanes_too(charts: JointCharts) -> None:
+def test_simulated_is_on_the_lanes_too(charts: JointCharts) -> None:
     assert not charts.phases._simulated.isVisible()
     charts.show_recording("walk 1", TIME_S, True, {Side.LEFT: gait(1.0)})
     assert charts.phases._simulated.isVisible()

@@ -82,17 +82,17 @@ def test_mean_curves_of_hips_and_their_abduction_are_those_of_the_strides_used(r
 
 
 def test_differences_of_hips_and_pelvis_have_no_published_figure(results: Path) -> None:
-    told = {row["parameter"]: row for row in rows(results / "sides.csv")}
-    of_hips = [row for name, row in told.items() if name.startswith(("hip", "pelvis"))]
+    reported = {row["parameter"]: row for row in rows(results / "sides.csv")}
+    of_hips = [row for name, row in reported.items() if name.startswith(("hip", "pelvis"))]
     assert len(of_hips) == 11
     for row in of_hips:
         is_tilt = row["parameter"] == "pelvis_tilt_range_deg"
         assert row["verdict"] == ("withheld" if is_tilt else "no_published_figure")
         assert (row["error"], row["difference"] == "") == ("", is_tilt)
-    assert told["knee_range_deg"]["verdict"] != "no_published_figure"
+    assert reported["knee_range_deg"]["verdict"] != "no_published_figure"
 
 
-def test_what_is_withheld_of_a_hip_is_empty_and_its_status_says_so(tmp_path: Path) -> None:
+def test_what_is_not_reported_of_a_hip_is_empty_and_its_status_states_so(tmp_path: Path) -> None:
     made, analysis = analysed(late_s=0.04)
     write_results(made.session, with_hip(analysis, Joint.LEFT_HIP, margin=1.2), tmp_path)
     cycles, strides = rows(tmp_path / "walk_1" / "cycles.csv"), rows(tmp_path / "walk_1" / "strides.csv")
@@ -109,7 +109,7 @@ def test_what_is_withheld_of_a_hip_is_empty_and_its_status_says_so(tmp_path: Pat
     assert "Sensor positions could not be confirmed" in json.dumps(verdicts)
 
 
-def test_the_summary_tells_the_clock_and_the_hips(results: Path) -> None:
+def test_the_summary_shows_the_clock_and_the_hips(results: Path) -> None:
     walk = json.loads((results / "summary.json").read_text(encoding="utf-8"))["walks"]["walk 1"]
     assert walk["leg_clock_status"] == "found"
     assert walk["leg_clock_offset_s"] == pytest.approx(0.04, abs=0.001)
@@ -140,14 +140,14 @@ def test_a_session_folder_keeps_the_pelvis(tmp_path: Path) -> None:
 
 
 @pytest.mark.endurance
-def test_real_tissue_that_parts_the_hips_is_withheld_in_words() -> None:
+def test_real_tissue_that_parts_the_hips_is_not_reported_in_words() -> None:
     walk = analysed(seed=1, tissue=Tissue.REAL)[1].recordings[-1]
     gates = {reason.gate: reason for reason in walk.verdicts.joint(Joint.LEFT_HIP).shape.reasons}
     assert "0.29" in gate_sentence(gates["hips_apart"])
 
 
 @pytest.mark.parametrize(
-    ("wrong", "gate", "told"),
+    ("wrong", "gate", "reported"),
     [
         ({"margin": 1.4}, "pairing", "1.40"),
         ({"disagreement": 0.31}, "hip_disagreement", "by 31 %"),
@@ -157,18 +157,18 @@ def test_real_tissue_that_parts_the_hips_is_withheld_in_words() -> None:
         ({"centres_apart_m": -0.17}, "hips_apart", "-0.17 m"),  # the legs' sensors are swapped
     ],
 )
-def test_a_hip_of_which_one_thing_is_wrong_is_withheld_in_words_and_the_other_hip_is_not(
-    wrong: dict[str, object], gate: str, told: str
+def test_a_hip_of_which_one_thing_is_wrong_is_not_reported_in_words_and_the_other_hip_is_not(
+    wrong: dict[str, object], gate: str, reported: str
 ) -> None:
     left, analysis = Joint.LEFT_HIP, analysed(late_s=0.04)[1]
     walk = analysis.recordings[-1]
     changed = replace(walk.hips[left], identification=replace(walk.hips[left].identification, **wrong))  # type: ignore[arg-type]  # fields by name
     found = judged(replace(analysis, recordings=(replace(walk, hips={**walk.hips, left: changed}),))).recordings[-1]
     shape = found.verdicts.joint(left).shape
-    assert shape.verdict is Verdict.WITHHELD
+    assert shape.verdict is Verdict.NOT_REPORTED
     (reason,) = shape.reasons
     assert reason.gate == gate
-    assert told in gate_sentence(reason).replace("\u00a0", " ")
+    assert reported in gate_sentence(reason).replace("\u00a0", " ")
     assert found.verdicts.joint(Joint.RIGHT_HIP) == walk.verdicts.joint(Joint.RIGHT_HIP)
     assert walk.verdicts.joint(left).shape.verdict is Verdict.READ
     assert found.verdicts.pelvis == walk.verdicts.pelvis  # one sound hip is enough for it
@@ -181,20 +181,20 @@ def test_where_no_hip_can_be_read_there_is_no_pelvis() -> None:
         joint: replace(hip, identification=replace(hip.identification, margin=1.4)) for joint, hip in walk.hips.items()
     }
     found = judged(replace(analysis, recordings=(replace(walk, hips=hips),))).recordings[-1]
-    assert found.verdicts.pelvis.verdict is Verdict.WITHHELD
+    assert found.verdicts.pelvis.verdict is Verdict.NOT_REPORTED
     assert {reason.gate for reason in found.verdicts.pelvis.reasons} == {"pairing"}
 
 
 @pytest.mark.parametrize("gate", OF_DEGREES)
-def test_each_gate_with_a_limit_in_degrees_says_both_figures(gate: str) -> None:
-    said = gate_sentence(GateReason(gate, Verdict.WITHHELD, 7.25, 6.0, "deg"))
-    assert "7.2" in said
-    assert "6" in said
+def test_each_gate_with_a_limit_in_degrees_states_both_figures(gate: str) -> None:
+    stated = gate_sentence(GateReason(gate, Verdict.NOT_REPORTED, 7.25, 6.0, "deg"))
+    assert "7.2" in stated
+    assert "6" in stated
 
 
 @pytest.mark.parametrize("gate", ["hip_found", "leg_clock"])
-def test_what_was_not_found_says_what_it_takes(gate: str) -> None:
-    words = gate_words(GateReason(gate, Verdict.WITHHELD))
+def test_what_was_not_found_states_what_it_takes(gate: str) -> None:
+    words = gate_words(GateReason(gate, Verdict.NOT_REPORTED))
     assert words.why
     assert words.to_do
 

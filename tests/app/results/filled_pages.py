@@ -127,7 +127,7 @@ def importing(look: ThemeNotifier) -> QWidget:
 
 
 def importing_files(look: ThemeNotifier) -> QWidget:
-    """A walk of six sensors that says nothing of them, one of which has a site twice."""
+    """A walk of six sensors that gives nothing of them, one of which has a site twice."""
     page = ImportPage(look)
     time_s = np.arange(500) / 100.0
     block = ImuBlock("A", time_s, np.sin(time_s)[:, None] * np.ones(3), np.tile([0.0, 0.0, 9.81], (500, 1)))
@@ -153,7 +153,7 @@ class ScrolledQuestions(QScrollArea):
 
 
 def questions(look: ThemeNotifier) -> QWidget:
-    """With everything that can have to be said, and a group of one session."""
+    """With everything that can have to be stated, and a group of one session."""
     page = QuestionsPage(look)
     page.show_table("batch of 2026/parameters.parquet", ["knee_range_deg", "speed_m_s"], tuple(Grouping))
     whole = GroupRow("", 120, 80, 240, 58.4, 6.1, 0.56, 1.1, 9.2, 12, 30, 4, 3)
@@ -205,7 +205,9 @@ def stored_sessions(look: ThemeNotifier) -> QWidget:
         for k in range(12)
     ]
     page.stored.show_sessions(lines)
-    page.stored.tell("walk_1/left_thigh.csv: there is no column acc_x_m_s2.", "Write the file as FORMATS says it.")
+    page.stored.show_message(
+        "walk_1/left_thigh.csv: there is no column acc_x_m_s2.", "Write the file as FORMATS says it."
+    )
     page.show_stored()
     return page
 

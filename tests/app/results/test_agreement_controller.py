@@ -58,7 +58,7 @@ def words(page: AgreementPage) -> str:
     return " ".join(text.text() for text in page.waiting.findChildren(Text))
 
 
-def test_before_anything_is_chosen_it_says_what_can_be(page: AgreementPage, controller: AgreementController) -> None:
+def test_before_anything_is_chosen_it_states_what_can_be(page: AgreementPage, controller: AgreementController) -> None:
     assert words(page).startswith("Choose the optical system's file CSV with time_s and left_knee")
     assert page.waiting.button.text() == "Choose reference file"
     assert not page.save.isVisible()

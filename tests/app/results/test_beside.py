@@ -111,7 +111,7 @@ def test_single_strides_are_chosen_without_another_walk(page: ResultPage) -> Non
     assert words_beside(page) == ["", ""]
 
 
-def test_the_table_and_the_key_figures_tell_the_change_with_its_verdict(
+def test_the_table_and_the_key_figures_show_the_change_with_its_verdict(
     page: ResultPage, analysis: Analysis, session: Session
 ) -> None:
     choose(page, "walk 2")
@@ -120,24 +120,24 @@ def test_the_table_and_the_key_figures_tell_the_change_with_its_verdict(
     speed = next(row for row in found.rows if row.measure.column == "speed_m_s")
     assert speed.exceeds  # 0.8 m/s is far off
     assert {found.error_kind(part) for part in found.others} == {ComparisonKind.ATTACHED}
-    (told,) = (figure for figure in page.key_figures.figures if figure.name == "Walking speed")
-    assert told.note == f"+{speed.difference.difference:.2f} beyond error"
-    assert told.words.endswith("versus B AFO.")
+    (reported,) = (figure for figure in page.key_figures.figures if figure.name == "Walking speed")
+    assert reported.note == f"+{speed.difference.difference:.2f} beyond error"
+    assert reported.words.endswith("versus B AFO.")
     first = page.differs.table.cells.rows[0]
     assert [cell.words for cell in first.cells[1:5:3]] == ["Walking speed, m/s", f"+{speed.difference.difference:.2f}"]
     assert first.cells[-1].words == "beyond error"
     choose(page, Beside.BAND)
-    (told,) = (figure for figure in page.key_figures.figures if figure.name == "Walking speed")
-    assert "error" not in told.note
+    (reported,) = (figure for figure in page.key_figures.figures if figure.name == "Walking speed")
+    assert "error" not in reported.note
 
 
-def test_a_key_figure_is_told_from_the_others_in_every_language(page: ResultPage, analysis: Analysis) -> None:
+def test_a_key_figure_is_reported_from_the_others_in_every_language(page: ResultPage, analysis: Analysis) -> None:
     alone = walks_alone(analysis, ())
     found = beside_walk(alone["walk 1"], alone["walk 2"], is_simulated=True)
-    told = key_figures_beside(page.key_figures.figures, found)
+    reported = key_figures_beside(page.key_figures.figures, found)
     same_name = key_figures_beside([replace(one, name="?") for one in page.key_figures.figures], found)
-    assert [one.note for one in same_name] == [one.note for one in told]
-    assert len({one.note for one in told}) == len(told) == 3
+    assert [one.note for one in same_name] == [one.note for one in reported]
+    assert len({one.note for one in reported}) == len(reported) == 3
 
 
 def test_the_marks_are_those_of_the_change(page: ResultPage, analysis: Analysis, session: Session) -> None:
@@ -166,12 +166,12 @@ def test_a_long_name_is_cut_in_the_table_and_whole_where_it_is_read_aloud(
     alone = walks_alone(analysis, with_conditions(session, walk_1="shoes", walk_2=typed).recordings)
     heads = [column.head for column in beside_columns(beside_walk(alone["walk 1"], alone["walk 2"], is_simulated=True))]
     assert (heads[1].words, heads[3].words) == (title, head)
-    assert (heads[1].said, heads[3].said) == (f"Versus B {typed}", f"B {typed}")
+    assert (heads[1].stated, heads[3].stated) == (f"Versus B {typed}", f"B {typed}")
     settle()
     assert page.minimumSizeHint().width() <= page.width()
 
 
-def test_a_withheld_joint_has_no_thin_curve_and_no_difference(
+def test_a_not_reported_joint_has_no_thin_curve_and_no_difference(
     page: ResultPage, analysis: Analysis, session: Session
 ) -> None:
     gated = recalibrated(analysis, [Joint.LEFT_KNEE], axis_sd_rad=np.deg2rad(11.0))
@@ -183,10 +183,10 @@ def test_a_withheld_joint_has_no_thin_curve_and_no_difference(
     assert [curve.side for curve in ankle.chart.described.beside] == list(Side)
     alone = walks_alone(gated, session.recordings)
     found = beside_walk(alone["walk 1"], alone["walk 2"], is_simulated=True)
-    assert not any(row.is_told for row in found.rows if row.measure.kind == "knee" and row.side is Side.LEFT)
+    assert not any(row.is_reported for row in found.rows if row.measure.kind == "knee" and row.side is Side.LEFT)
 
 
-def test_without_a_common_zero_shapes_are_laid_over_one_another_and_that_is_said(
+def test_without_a_common_zero_shapes_are_laid_over_one_another_and_that_is_stated(
     page: ResultPage, analysis: Analysis, session: Session
 ) -> None:
     choose(page, Beside.LAST_VISIT)
@@ -208,10 +208,10 @@ def test_without_a_common_zero_shapes_are_laid_over_one_another_and_that_is_said
 def test_the_last_visit_is_asked_for_once_and_judged_as_between_visits(
     qtbot: QtBot, page: ResultPage, analysis: Analysis, session: Session
 ) -> None:
-    with qtbot.waitSignal(page.compare.visits_wished):
+    with qtbot.waitSignal(page.compare.visits_requested):
         choose(page, Beside.LAST_VISIT)
     assert words_beside(page) == ["Reading earlier visits."] * 2
-    with qtbot.assertNotEmitted(page.compare.visits_wished):
+    with qtbot.assertNotEmitted(page.compare.visits_requested):
         choose(page, Beside.BAND)
         choose(page, Beside.LAST_VISIT)
     older = with_conditions(session, walk_1="AFO", walk_2="shoes")
@@ -229,7 +229,7 @@ def test_the_last_visit_is_asked_for_once_and_judged_as_between_visits(
     assert {found.error_kind(part) for part in found.others} == {ComparisonKind.VISITS}
 
 
-def test_a_condition_that_no_earlier_visit_has_stands_beside_nothing(
+def test_a_condition_that_no_earlier_visit_has_is_beside_nothing(
     page: ResultPage, analysis: Analysis, session: Session
 ) -> None:
     choose(page, Beside.LAST_VISIT)
@@ -243,7 +243,7 @@ def test_a_condition_that_no_earlier_visit_has_stands_beside_nothing(
     assert words_beside(page) == ["Thin: June."] * 2
 
 
-def test_the_sentence_is_of_what_stands_beside_and_never_of_the_legs(page: ResultPage) -> None:
+def test_the_sentence_is_of_what_is_beside_and_never_of_the_legs(page: ResultPage) -> None:
     of_legs = page.answer.text
     choose(page, "walk 2")
     assert page.answer.text.startswith(
@@ -263,10 +263,10 @@ def test_the_sentence_is_of_what_stands_beside_and_never_of_the_legs(page: Resul
     assert page.answer.text == of_legs
 
 
-def told(found: Comparison, **changed: float | bool | Judgement) -> str:
-    """The answer when every difference that is told is changed so."""
+def reported(found: Comparison, **changed: float | bool | Judgement) -> str:
+    """The answer when every difference that is reported is changed so."""
     rows = [
-        replace(row, difference=replace(row.difference, **changed)) if row.is_told else row  # type: ignore[arg-type] # of any field
+        replace(row, difference=replace(row.difference, **changed)) if row.is_reported else row  # type: ignore[arg-type] # of any field
         for row in found.rows
     ]
     vars(found)["rows"] = tuple(rows)
@@ -274,7 +274,7 @@ def told(found: Comparison, **changed: float | bool | Judgement) -> str:
     return " ".join(filter(None, [answer.first, answer.then]))
 
 
-def test_where_no_change_can_be_told_as_one_that_is_said(analysis: Analysis, session: Session) -> None:
+def test_where_no_change_can_be_reported_as_one_that_is_stated(analysis: Analysis, session: Session) -> None:
     alone = walks_alone(analysis, session.recordings)
 
     def found() -> Comparison:
@@ -285,18 +285,18 @@ def test_where_no_change_can_be_told_as_one_that_is_said(analysis: Analysis, ses
         "All judged changes from B AFO are within measurement error. Largest: walking "
         "speed +0.39\N{NO-BREAK SPACE}m/s (±0.08\N{NO-BREAK SPACE}m/s\u2020)."
     )
-    assert told(found(), judgement=inside, is_worth_a_sentence=False) == none
+    assert reported(found(), judgement=inside, is_worth_a_sentence=False) == none
     near = (
         "Some changes from B AFO are beyond measurement error, none clearly. The table "
         "marks them. Largest: walking speed +0.39\N{NO-BREAK SPACE}m/s (±0.08\N{NO-BREAK SPACE}m/s\u2020)."
     )
-    assert told(found(), judgement=beyond, is_worth_a_sentence=False) == near
+    assert reported(found(), judgement=beyond, is_worth_a_sentence=False) == near
     nothing = "Nothing can be compared with B AFO."
-    assert told(found(), judgement=Judgement.TOO_FEW_STRIDES, is_worth_a_sentence=False) == nothing
+    assert reported(found(), judgement=Judgement.TOO_FEW_STRIDES, is_worth_a_sentence=False) == nothing
 
 
 def test_a_figure_is_subtracted_before_it_is_rounded(analysis: Analysis, session: Session) -> None:
-    """Where 1.18 less 0.80 would be told as 0.39, all three have a decimal more."""
+    """Where 1.18 less 0.80 would be reported as 0.39, all three have a decimal more."""
     alone = walks_alone(analysis, session.recordings)
     found = beside_walk(alone["walk 1"], alone["walk 2"], is_simulated=True)
     (speed,) = (row for row in found.rows if row.measure.column == "speed_m_s")

@@ -134,9 +134,9 @@ def test_in_a_small_window_no_view_of_a_prosthetic_patient_scrolls_to_and_fro(
 ) -> None:
     """With the longest words, what is compared included; a bar that scrolls up and down takes its part of the width."""
     width, bar = 896, 12  # of a window of 960 x 600, beside the rail
-    told = (replace(one, condition=condition if one.name != "walk 3" else "AFO") for one in session.recordings)
+    reported = (replace(one, condition=condition if one.name != "walk 3" else "AFO") for one in session.recordings)
     patient = replace(session.patient, prosthetic_side="left", affected_side="left")
-    visit = replace(session, recordings=tuple(told), patient=patient)
+    visit = replace(session, recordings=tuple(reported), patient=patient)
     page.set_room(700, 472)  # what was narrower before
     page.set_room(width, 472)
     page.set_has_visits(True)
@@ -181,11 +181,11 @@ def test_a_letter_stays_its_conditions_where_another_has_no_strides(analysis: An
     assert (part.letter, part.name) == ("B", "AFO")
 
 
-def test_walks_after_strapping_anew_are_of_another_part_and_judged_as_between_visits(
+def test_walks_after_strapping_again_are_of_another_part_and_judged_as_between_visits(
     analysis: Analysis, session: Session
 ) -> None:
-    told = tuple(replace(one, is_restrapped_before=one.name == "walk 2") for one in session.recordings)
-    parts = conditions_of(analysis, told)
+    reported = tuple(replace(one, is_restrapped_before=one.name == "walk 2") for one in session.recordings)
+    parts = conditions_of(analysis, reported)
     assert [part.attachment for part in parts] == [0, 1, 1]
     found = Comparison(Contrast.CONDITIONS, parts)
     kinds = {found.error_kind(part) for part in found.others}
@@ -210,17 +210,17 @@ def test_without_a_common_zero_range_is_compared_and_height_is_not(parts: tuple[
     knee = Joint.LEFT_KNEE
     other = replace(parts[1].calibrated[knee], zero=ZeroKind.GONIOMETER)
     changed = (parts[0], replace(parts[1], calibrated={**parts[1].calibrated, knee: other}))
-    told = {
-        row.measure.column: row.is_told
+    reported = {
+        row.measure.column: row.is_reported
         for row in Comparison(Contrast.CONDITIONS, changed).rows
         if row.side is Side.LEFT
     }
-    assert not told["knee_swing_peak_deg"]
-    assert told["knee_range_deg"]
-    assert told["ankle_range_deg"]
+    assert not reported["knee_swing_peak_deg"]
+    assert reported["knee_range_deg"]
+    assert reported["ankle_range_deg"]
 
 
-def test_the_affected_leg_is_told_against_the_sound_one(parts: tuple[Part, ...]) -> None:
+def test_the_affected_leg_is_reported_against_the_sound_one(parts: tuple[Part, ...]) -> None:
     assert first_and_second(Side.RIGHT) == (Side.RIGHT, Side.LEFT)
     left = {row.measure.column: row for row in compare_sides(parts[0], (Side.LEFT, Side.RIGHT))}
     right = {row.measure.column: row for row in compare_sides(parts[0], (Side.RIGHT, Side.LEFT))}
@@ -237,14 +237,14 @@ def test_every_number_of_the_comparison_is_in_its_files(page: ResultPage, tmp_pa
     write_differences(rows_of(found), tmp_path / DIFFERENCES)
     write_compared_cycles(found.parts, tmp_path / COMPARED_CYCLES)
     rows = {(row["parameter"], row["side"], row["part"]): row for row in lines_of(tmp_path / DIFFERENCES)}
-    judged = [row for row in found.rows if row.is_told]
+    judged = [row for row in found.rows if row.is_reported]
     assert judged
     for row in judged:
         side = "both" if row.measure.is_of_walk else str(row.side)
-        told = rows[row.measure.column, side, row.part.letter]
-        assert float(told["difference"]) == pytest.approx(row.difference.difference, abs=DIGITS)
-        assert float(told["error"]) == pytest.approx(row.difference.error, abs=DIGITS)
-        assert told["verdict"] == row.difference.judgement
+        reported = rows[row.measure.column, side, row.part.letter]
+        assert float(reported["difference"]) == pytest.approx(row.difference.difference, abs=DIGITS)
+        assert float(reported["error"]) == pytest.approx(row.difference.error, abs=DIGITS)
+        assert reported["verdict"] == row.difference.judgement
     drawn = [dot.value for group in compare.card.plot.groups for row in group.rows for dot in row.dots]
     written = [float(row["difference"]) for row in rows.values() if row["difference"]]
     assert drawn
@@ -270,10 +270,10 @@ def test_every_number_of_the_legs_is_in_its_file(page: ResultPage, parts: tuple[
     seen = set()
     for part in parts:
         compare.bases.setCurrentIndex(compare.bases.findData(part.letter))
-        told = [float(row["difference"]) for row in written if row["part"] == part.letter and row["difference"]]
+        reported = [float(row["difference"]) for row in written if row["part"] == part.letter and row["difference"]]
         drawn = [dot.value for group in compare.card.plot.groups for row in group.rows for dot in row.dots]
         assert len(drawn) == len(compare.card.plot.groups) > 0
-        assert all(any(abs(value - other) < DIGITS for other in told) for value in drawn)
+        assert all(any(abs(value - other) < DIGITS for other in reported) for value in drawn)
         seen.add(tuple(drawn))
     assert len(seen) == len(parts) == 2
 
@@ -296,12 +296,12 @@ def test_another_starting_point_turns_the_differences(page: ResultPage) -> None:
     assert all(after[key] == pytest.approx(-before[key], nan_ok=True) for key in before)
 
 
-def test_visits_are_asked_for_once_and_told_when_there_are_none(
+def test_visits_are_asked_for_once_and_reported_when_there_are_none(
     qtbot: QtBot, page: ResultPage, parts: tuple[Part, ...]
 ) -> None:
     compare = page.compare
     compare.set_has_visits(True)
-    with qtbot.waitSignal(compare.visits_wished):
+    with qtbot.waitSignal(compare.visits_requested):
         compare.kinds.setCurrentIndex(compare.kinds.findData(Contrast.VISITS))
     assert compare.nothing.isVisible()
     compare.show_visits([])
@@ -321,25 +321,25 @@ def walked(visit: str, analysis: Analysis, session: Session, **conditions: str) 
 
 
 def test_visits_are_compared_condition_by_condition_and_never_pooled(analysis: Analysis, session: Session) -> None:
-    """Alignment B of the first visit is no part of what A or C is told against."""
+    """Alignment B of the first visit is no part of what A or C is reported against."""
     visits = [
         walked("May", analysis, session, walk_1="A", walk_2="A", walk_3="B"),
         walked("June", analysis, session, walk_1="C"),
         walked("July", analysis, session, walk_1="C", walk_2="A", walk_3="D"),
     ]
     found = {one.condition: one for one in visits_by_condition(visits)}
-    told = {
+    reported = {
         condition: [(part.letter, part.name, [walk.name for walk in part.walks]) for part in one.parts]
         for condition, one in found.items()
     }
-    assert told == {
+    assert reported == {
         "C": [("2", "June", ["walk 1"]), ("3", "July", ["walk 1"])],
         "A": [("1", "May", ["walk 1", "walk 2"]), ("3", "July", ["walk 2"])],
     }
     assert {condition: one.without for condition, one in found.items()} == {"C": ("May",), "A": ("June",)}
 
 
-def test_walks_without_a_condition_are_told_against_such_only_and_not_taken_together(
+def test_walks_without_a_condition_are_reported_against_such_only_and_not_taken_together(
     analysis: Analysis, session: Session
 ) -> None:
     stated = walked("May", analysis, session, walk_1="walk 1")  # as a condition of that name
@@ -424,12 +424,12 @@ def test_visits_stand_under_their_days_and_changes_beside_their_error(
     of_last = {row.measure.column: row for row in found.rows if row.part.letter == "3"}
     speed, cadence = of_last["speed_m_s"].difference, of_last["cadence_steps_min"].difference
     assert speed.error > 0
-    told = [line[-1] for line in table_words(page)]
-    assert told[0] == f"{speed.error:.2f}"
-    assert (told[1] == "\N{EN DASH}") is not (cadence.error > 0)
+    reported = [line[-1] for line in table_words(page)]
+    assert reported[0] == f"{speed.error:.2f}"
+    assert (reported[1] == "\N{EN DASH}") is not (cadence.error > 0)
 
 
-def test_visits_without_a_common_condition_are_not_compared_and_that_is_said(
+def test_visits_without_a_common_condition_are_not_compared_and_that_is_stated(
     page: ResultPage, analysis: Analysis, session: Session
 ) -> None:
     compare = page.compare
@@ -477,7 +477,7 @@ def bent_more(analysis: Analysis, by_deg: float, joint: Joint = Joint.RIGHT_KNEE
     return judged(replace(analysis, recordings=tuple(recordings)))
 
 
-def test_between_legs_only_what_is_worth_a_sentence_is_said(
+def test_between_legs_only_what_is_worth_a_sentence_is_stated(
     page: ResultPage, analysis: Analysis, session: Session
 ) -> None:
     quiet = shown(page, analysis, session, Contrast.SIDES)
@@ -489,21 +489,21 @@ def test_between_legs_only_what_is_worth_a_sentence_is_said(
     assert "The left knee has " in loud
     assert "Beyond measurement error (±" in loud
     ankle = shown(page, bent_more(analysis, 20.0, Joint.RIGHT_ANKLE), session, Contrast.SIDES)
-    assert "Ankle range of motion" not in ankle  # its error is borrowed: the table marks it, no sentence says it
+    assert "Ankle range of motion" not in ankle  # its error is borrowed: the table marks it, no sentence states it
     assert ankle.startswith("Some differences are beyond an error borrowed from another joint. The table marks them.")
     assert "Largest: ankle range of motion" in ankle
 
 
-def test_between_walks_only_what_is_worth_a_sentence_is_said(
+def test_between_walks_only_what_is_worth_a_sentence_is_stated(
     page: ResultPage, analysis: Analysis, session: Session
 ) -> None:
     page.show_visit(AnalysedVisit(session, analysis))
     found = page.compare.comparison
     assert found is not None
-    said = [row for row in found.rows if row.is_told and row.difference.is_worth_a_sentence]
-    quiet = [row for row in found.rows if row.is_told and not row.difference.is_worth_a_sentence]
+    wording = [row for row in found.rows if row.is_reported and row.difference.is_worth_a_sentence]
+    quiet = [row for row in found.rows if row.is_reported and not row.difference.is_worth_a_sentence]
     assert quiet
-    assert page.compare.conclusion.text().count("Beyond measurement error (±") == min(len(said), 3)
+    assert page.compare.conclusion.text().count("Beyond measurement error (±") == min(len(wording), 3)
     few = replace(found, parts=(found.parts[0], found.parts[0]))
     assert not any(row.difference.is_worth_a_sentence for row in few.rows)
 
@@ -513,21 +513,21 @@ def table_words(page: ResultPage) -> list[list[str]]:
     return [line.split("\t") for line in page.compare.card.table.as_text().split("\n")[1:]]
 
 
-def test_every_cell_of_the_table_says_leg_measure_and_part(
+def test_every_cell_of_the_table_states_leg_measure_and_part(
     page: ResultPage, analysis: Analysis, session: Session
 ) -> None:
     """Legs stand in a column of their own, where rows are of one of them."""
-    cells, said = page.compare.card.table.cells, Qt.ItemDataRole.AccessibleTextRole
+    cells, wording = page.compare.card.table.cells, Qt.ItemDataRole.AccessibleTextRole
     shown(page, analysis, session, Contrast.CONDITIONS)
     assert not page.compare.card.table.isColumnHidden(0)
     length = 2  # the first row of a leg: speed and cadence are of both
-    assert (cells.index(length, 0).data(), cells.index(length, 0).data(said)) == ("L", "left")
-    heard = str(cells.index(length, 4).data(said))
-    assert heard.startswith(f"L {cells.index(length, 1).data()}, B \N{MINUS SIGN} A: ")
-    assert heard.endswith(f": {cells.index(length, 4).data()}")
+    assert (cells.index(length, 0).data(), cells.index(length, 0).data(wording)) == ("L", "left")
+    received = str(cells.index(length, 4).data(wording))
+    assert received.startswith(f"L {cells.index(length, 1).data()}, B \N{MINUS SIGN} A: ")
+    assert received.endswith(f": {cells.index(length, 4).data()}")
     shown(page, analysis, session, Contrast.SIDES)
     assert page.compare.card.table.isColumnHidden(0)
-    assert str(cells.index(0, 2).data(said)).startswith(f"{cells.index(0, 1).data()}, L: ")
+    assert str(cells.index(0, 2).data(wording)).startswith(f"{cells.index(0, 1).data()}, L: ")
     assert all(not line[0] for line in table_words(page))
 
 
@@ -553,21 +553,21 @@ def test_an_error_that_could_not_be_verified_bears_a_dagger_in_the_table(
     assert "sensor attachment" in page.compare.error.text()
     shown(page, analysis, session, Contrast.CONDITIONS)
     assert "borrowed" not in page.compare.error.text()
-    told = page.compare.error.text()
+    reported = page.compare.error.text()
     for words in (
         "variation between strides",
         "drift within a walk",
         "different walking speed",
         "variation between walks",
     ):
-        assert words in told
-    assert "strapping" not in told
+        assert words in reported
+    assert "strapping" not in reported
     stance = [cells[2] for _, name, *cells in table_words(page) if name.startswith("Stance")]
     assert len(stance) == 2
     assert "\N{DAGGER}" not in "".join(stance)  # measured by ourselves
 
 
-def test_what_is_withheld_stands_in_no_comparison(page: ResultPage, analysis: Analysis, session: Session) -> None:
+def test_what_is_not_reported_is_in_no_comparison(page: ResultPage, analysis: Analysis, session: Session) -> None:
     doubtful = recalibrated(analysis, [Joint.RIGHT_ANKLE], is_same_joint=False, sign_margin=1.05)
     shown(page, doubtful, session, Contrast.SIDES)
     rows = {name: cells for _, name, *cells in table_words(page)}
@@ -601,7 +601,7 @@ def test_without_a_zero_curves_are_compared_about_their_mean(
     assert "mean of the stride" not in page.compare.frames[Side.RIGHT, JointKind.KNEE].note
 
 
-def test_a_change_counts_from_the_first_visit_that_can_be_read_and_says_so(
+def test_a_change_counts_from_the_first_visit_that_can_be_read_and_states_so(
     analysis: Analysis, session: Session
 ) -> None:
     gated = recalibrated(analysis, [Joint.LEFT_KNEE], axis_sd_rad=np.deg2rad(11.0))
@@ -614,7 +614,7 @@ def test_a_change_counts_from_the_first_visit_that_can_be_read_and_says_so(
     first, third = (of_range[Side.LEFT][k] for k in (2, 6))
     assert isinstance(first, TextCell)
     assert isinstance(third, TextCell)
-    assert (first.mark, first.small) == (Icon.WITHHELD, "not reported")
+    assert (first.mark, first.small) == (Icon.NOT_REPORTED, "not reported")
     assert third.small.startswith("from 2")
     assert "from 2" in third.words
     assert not any("from" in str(cell.words) for cell in of_range[Side.RIGHT])
@@ -660,17 +660,17 @@ NONE_LARGER = (
 )
 
 
-def test_of_visits_the_change_to_the_latest_is_said_and_marked(
+def test_of_visits_the_change_to_the_latest_is_stated_and_marked(
     page: ResultPage, analysis: Analysis, session: Session
 ) -> None:
     bent = bent_more(analysis, 30.0)
-    told = visits_shown(page, session, (analysis, analysis, bent))
-    assert "range of motion at visit 3, 30.0° more than at visit 1 (62.0°). Beyond measurement error (±" in told
-    assert "°\N{DAGGER})." in told  # the error rests on a figure that could not be verified
+    reported = visits_shown(page, session, (analysis, analysis, bent))
+    assert "range of motion at visit 3, 30.0° more than at visit 1 (62.0°). Beyond measurement error (±" in reported
+    assert "°\N{DAGGER})." in reported  # the error rests on a figure that could not be verified
     assert marked(page) == [(Side.RIGHT, "Knee range of motion")]
 
 
-def test_a_change_that_is_gone_at_the_latest_visit_is_neither_said_nor_marked(
+def test_a_change_that_is_gone_at_the_latest_visit_is_neither_stated_nor_marked(
     page: ResultPage, analysis: Analysis, session: Session
 ) -> None:
     assert visits_shown(page, session, (analysis, bent_more(analysis, 30.0), analysis)) == NONE_LARGER
@@ -680,7 +680,7 @@ def test_a_change_that_is_gone_at_the_latest_visit_is_neither_said_nor_marked(
     assert any(row.exceeds for row in found.rows)  # as the picture of the differences still shows
 
 
-def test_what_the_table_alone_marks_is_said_to_be_marked_there(
+def test_what_the_table_alone_marks_is_stated_to_be_marked_there(
     page: ResultPage, analysis: Analysis, session: Session
 ) -> None:
     """An ankle's error is borrowed, so that no sentence speaks of it."""
@@ -694,7 +694,7 @@ def test_what_the_table_alone_marks_is_said_to_be_marked_there(
     assert marked(page) == []
 
 
-def test_where_nothing_of_the_latest_visit_is_judged_that_is_said(
+def test_where_nothing_of_the_latest_visit_is_judged_that_is_stated(
     page: ResultPage, analysis: Analysis, session: Session
 ) -> None:
     few = with_few_strides(analysis, left=5, right=5)
@@ -705,7 +705,7 @@ def test_where_nothing_of_the_latest_visit_is_judged_that_is_said(
     assert page.compare.conclusion.text() == ""  # of one visit there is no change
 
 
-def test_from_the_latest_visit_as_base_the_one_before_is_told(
+def test_from_the_latest_visit_as_base_the_one_before_is_reported(
     page: ResultPage, analysis: Analysis, session: Session
 ) -> None:
     visits_shown(page, session, (analysis, bent_more(analysis, 30.0), analysis))
@@ -718,12 +718,12 @@ def test_from_the_latest_visit_as_base_the_one_before_is_told(
 
 def test_the_conclusion_speaks_of_all_sentences_there_are(analysis: Analysis, session: Session) -> None:
     (visits,) = visits_by_condition([walked(day, analysis, session, walk_1="A") for day in ("May", "July")])
-    row = next(row for row in Comparison(Contrast.VISITS, visits.parts).rows if row.is_told)
+    row = next(row for row in Comparison(Contrast.VISITS, visits.parts).rows if row.is_reported)
     assert conclusion(["a", "b", "c", "d"], [row]) == ["a", "b", "c", "The table shows all of them."]
     assert conclusion(["a", "b", "c"], [row]) == ["a", "b", "c"]
 
 
-def test_the_trend_of_a_row_says_its_values_and_where_there_is_none(
+def test_the_trend_of_a_row_states_its_values_and_where_there_is_none(
     page: ResultPage, analysis: Analysis, session: Session
 ) -> None:
     gated = recalibrated(analysis, [Joint.LEFT_KNEE], axis_sd_rad=np.deg2rad(11.0))
@@ -737,9 +737,9 @@ def test_the_trend_of_a_row_says_its_values_and_where_there_is_none(
     left = trends[Side.LEFT, "Knee flexion, stance to swing"]
     assert [math.isfinite(value) for value in left.values] == [True, False, True]
     assert left.places == pytest.approx((0.0, 0.5, 1.0))
-    assert left.said.startswith("L Knee flexion, stance to swing, trend; grey: error: 1 ")
-    assert ", 2 –, 3 " in left.said
-    assert "–" not in trends[Side.RIGHT, "Knee flexion, stance to swing"].said
+    assert left.stated.startswith("L Knee flexion, stance to swing, trend; grey: error: 1 ")
+    assert ", 2 –, 3 " in left.stated
+    assert "–" not in trends[Side.RIGHT, "Knee flexion, stance to swing"].stated
     assert trends[None, "Walking speed, m/s"].band is not None
     shown(page, analysis, session, Contrast.CONDITIONS)
     rows = page.compare.card.table.cells.rows
@@ -810,9 +810,9 @@ def test_where_room_is_short_every_view_can_be_left_again(page: ResultPage, room
 def three(page: ResultPage, session: Session, analysis: Analysis) -> ResultPage:
     """Three conditions, the last of which was changed from the first."""
     changed = AlignmentChange("A", (PartChange(ProsthesisPart.PYLON, height_mm=3.0),))
-    told = {"walk 1": ("A", None), "walk 2": ("B", None), "walk 3": ("C", changed)}
+    reported = {"walk 1": ("A", None), "walk 2": ("B", None), "walk 3": ("C", changed)}
     recordings = tuple(
-        replace(one, condition=told[one.name][0], alignment=told[one.name][1]) if one.name in told else one
+        replace(one, condition=reported[one.name][0], alignment=reported[one.name][1]) if one.name in reported else one
         for one in session.recordings
     )
     page.show_visit(AnalysedVisit(replace(session, recordings=recordings), analysis))
@@ -820,7 +820,7 @@ def three(page: ResultPage, session: Session, analysis: Analysis) -> ResultPage:
 
 
 def pair(page: ResultPage) -> tuple[str, str]:
-    """What is shown, and what it stands against."""
+    """What is shown, and what it is against."""
     found = page.compare.comparison
     assert found is not None
     assert len(found.parts) == 2
@@ -848,7 +848,7 @@ def test_any_two_walks_are_compared_by_keys(qtbot: QtBot, three: ResultPage) -> 
     assert page.compare.bases.currentData() == "B"
 
 
-def test_with_shift_a_letter_becomes_what_the_other_stands_against(three: ResultPage) -> None:
+def test_with_shift_a_letter_becomes_what_the_other_is_against(three: ResultPage) -> None:
     buttons = three.compare.chips.buttons
     three.compare.choose_pair(2, is_second=False)
     with_shift(buttons[1])

@@ -84,15 +84,15 @@ def numbers(cells: list[str]) -> np.ndarray:
     return np.array([float(cell) if cell else np.nan for cell in cells])
 
 
-def test_every_number_drawn_or_said_is_in_the_files(page: FoundPage, found: JointDiagnostics, tmp_path: Path) -> None:
+def test_every_number_drawn_or_stated_is_in_the_files(page: FoundPage, found: JointDiagnostics, tmp_path: Path) -> None:
     page.show_found(found, [], is_simulated=True)
     write_diagnostics(found, True, tmp_path / "new")
     files = {what: columns_of(tmp_path / "new" / name) for what, name in names_of_files(KNEE, True).items()}
     # Figure 3
     for sensor, chart in zip(("proximal", "distal"), page.axis.maps, strict=True):
         cost = files[AXIS_COST]
-        told = zip(cost["sensor"], cost["what"], cost["rms_deg_s"], strict=True)
-        values = numbers([value for one, what, value in told if one == sensor and what == "direction"])
+        reported = zip(cost["sensor"], cost["what"], cost["rms_deg_s"], strict=True)
+        values = numbers([value for one, what, value in reported if one == sensor and what == "direction"])
         assert chart.limits_deg_s == pytest.approx((values.min(), values.max()), abs=DIGITS)
     np.testing.assert_allclose(values, np.rad2deg(found.costs[1].rms_rad_s.ravel()), atol=DIGITS)
     # Figure 4
@@ -102,15 +102,15 @@ def test_every_number_drawn_or_said_is_in_the_files(page: FoundPage, found: Join
         np.testing.assert_allclose(numbers(files[PROJECTED_RATES][name]), values, atol=DIGITS)
     # Figure 6
     names = ["from_accelerations_deg", "from_rates_deg", "fused_deg"]
-    is_told = np.isfinite(page.angle.chart.time_s)
+    is_reported = np.isfinite(page.angle.chart.time_s)
     for name, curve in zip(names, page.angle.chart.curves_deg, strict=True):
-        np.testing.assert_allclose(numbers(files[TWO_WAYS][name]), curve[is_told], atol=DIGITS)
-    # what is said in words
-    said = dict(zip(files[FIGURES]["figure"], files[FIGURES]["value"], strict=True))
-    assert said["is_simulated"] == "true"
+        np.testing.assert_allclose(numbers(files[TWO_WAYS][name]), curve[is_reported], atol=DIGITS)
+    # what is stated in words
+    stated = dict(zip(files[FIGURES]["figure"], files[FIGURES]["value"], strict=True))
+    assert stated["is_simulated"] == "true"
     shown = {text.text() for text in page.figures.findChildren(Text)}
     for figure in figures_of(found).values():
-        assert replace(figure, value=float(said[figure.column] or "nan")).in_words in shown
+        assert replace(figure, value=float(stated[figure.column] or "nan")).in_words in shown
         assert figure.name in shown
 
 
@@ -123,23 +123,23 @@ def test_simulated_data_say_so_on_every_picture_and_recorded_ones_do_not(
         assert [one.isVisible() for one in marks] == [is_simulated] * 3
 
 
-def test_what_was_noticed_about_the_joint_stands_below(page: FoundPage, found: JointDiagnostics) -> None:
+def test_what_was_noticed_about_the_joint_is_below(page: FoundPage, found: JointDiagnostics) -> None:
     page.show_found(found, [Finding("lag_corrected", Severity.INFO, str(KNEE), {"lag_ms": 12.0})], False)
     assert any("12 ms" in text.text() for text in page.noticed.findChildren(Text))
     page.show_found(found, [], False)
     assert page.noticed.isHidden()
 
 
-def test_a_motion_that_drew_no_curve_and_told_no_drift_is_shown_all_the_same(
+def test_a_motion_that_drew_no_curve_and_reported_no_drift_is_shown_all_the_same(
     page: FoundPage, found: JointDiagnostics
 ) -> None:
     ways = replace(found.ways, drift_rad_s=float("nan"))
     calibration = replace(found.calibration, axis_sd_rad=None, sign_margin=float("inf"), centre_proximal_m=None)
     page.show_found(replace(found, projected=None, ways=ways, calibration=calibration), [], False)
     page.grab()
-    said = " ".join(text.text() for text in page.pairing.findChildren(Text))
-    assert "No second of this motion" in said
-    assert "over 100 times worse" in said
+    stated = " ".join(text.text() for text in page.pairing.findChildren(Text))
+    assert "No second of this motion" in stated
+    assert "over 100 times worse" in stated
 
 
 def test_ten_seconds_are_seen_closer_on_the_axis_that_they_need(page: FoundPage, found: JointDiagnostics) -> None:
@@ -187,7 +187,7 @@ def cut_in(page: FoundPage, look: ThemeNotifier, found: JointDiagnostics, room: 
 
 
 class Listener(QObject):
-    """Hears what is to be written, and writes it."""
+    """Receives what is to be written, and writes it."""
 
     def __init__(self) -> None:
         super().__init__()
@@ -199,7 +199,7 @@ class Listener(QObject):
         self.folder = folder
 
 
-@pytest.mark.endurance  # finds out anew, and opens a dialog
+@pytest.mark.endurance  # finds out again, and opens a dialog
 def test_the_controller_answers_beside_the_screen_and_saves(
     qtbot: QtBot, page: FoundPage, session: Session, analysis: Analysis, tmp_path: Path
 ) -> None:
@@ -230,7 +230,9 @@ def test_the_controller_answers_beside_the_screen_and_saves(
     qtbot.waitUntil(lambda: background.is_idle, timeout=20_000)
 
 
-def test_without_a_joint_the_page_says_so(qtbot: QtBot, page: FoundPage, session: Session, analysis: Analysis) -> None:
+def test_without_a_joint_the_page_states_so(
+    qtbot: QtBot, page: FoundPage, session: Session, analysis: Analysis
+) -> None:
     controller = DiagnosticsController(page, Background(page), page)
     controller.show(session, analysis, replace(analysis.recordings[-1], joints={}))
     assert page.waiting.isVisible()

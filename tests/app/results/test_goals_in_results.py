@@ -57,11 +57,11 @@ def test_a_key_figure_has_its_goal_beneath_it(visit: tuple[Session, Analysis]) -
     assert not any("goal" in note for note in before.values())
 
 
-def test_a_figure_that_is_withheld_has_its_reason_and_no_goal(visit: tuple[Session, Analysis]) -> None:
-    """And nothing is said of it; a joint that cannot be read does not touch the goal of another figure."""
-    told = facts("2026-11-21", visit)
+def test_a_figure_that_is_not_reported_has_its_reason_and_no_goal(visit: tuple[Session, Analysis]) -> None:
+    """And nothing is stated about it; a joint that cannot be read does not touch the goal of another figure."""
+    reported = facts("2026-11-21", visit)
     gated = recalibrated(visit[1], (Joint.RIGHT_ANKLE,), axis_sd_rad=None)
-    found = Facts(AnalysedVisit(told.visit.session, gated), walk_of(gated))
+    found = Facts(AnalysedVisit(reported.visit.session, gated), walk_of(gated))
     values = {one.goal.column: one.value for one in found.goals}
     assert math.isnan(values["ankle_push_off_deg"])
     assert values["speed_m_s"] == pytest.approx(1.18, abs=0.01)
@@ -80,7 +80,7 @@ def test_measures_with_goals_come_first_in_what_differs_and_stand_among_the_key_
     }
 
 
-def test_between_visits_the_goal_stands_behind_the_name_and_is_dotted_in_the_trend(
+def test_between_visits_the_goal_is_behind_the_name_and_is_dotted_in_the_trend(
     visit: tuple[Session, Analysis],
 ) -> None:
     days = ("2026-10-02", "2026-11-21")
@@ -90,7 +90,7 @@ def test_between_visits_the_goal_stands_behind_the_name_and_is_dotted_in_the_tre
     ]
     (compared,) = visits_by_condition(named)
     _, few = comparison_table(Comparison(Contrast.VISITS, compared.parts), 5, is_brief=True)
-    brief = [row.cells[1].said for row in few]
+    brief = [row.cells[1].stated for row in few]
     assert any(name.startswith("Ankle dorsiflexion, stance") for name in brief)  # what a goal is of is never left out
     assert not any(name.startswith("Knee range") for name in brief)
     _, rows = comparison_table(Comparison(Contrast.VISITS, compared.parts), 5)

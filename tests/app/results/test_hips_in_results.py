@@ -31,7 +31,7 @@ def show(page: ResultPage, analysis: Analysis) -> None:
 
 
 def without_pelvis() -> Analysis:
-    """The same walk, as six sensors tell it."""
+    """The same walk, as six sensors report it."""
 
     def changed(walk: RecordingAnalysis) -> RecordingAnalysis:
         gait = {}
@@ -73,16 +73,16 @@ def test_the_hip_is_the_first_of_three_charts_with_its_verdicts(page: ResultPage
     assert charts.frames == (charts.hip, charts.knee, charts.ankle)
     assert charts.hip.isVisible()
     assert set(charts.hip.chart.cycles) == set(Side)
-    assert charts.hip.chart.withheld == frozenset()
+    assert charts.hip.chart.not_reported == frozenset()
     assert "hip" not in page.answer.text.casefold()  # no difference of hips is judged
 
 
-def test_a_withheld_hip_has_a_panel_for_a_curve_and_the_door_names_it(page: ResultPage) -> None:
+def test_a_not_reported_hip_has_a_panel_for_a_curve_and_the_door_names_it(page: ResultPage) -> None:
     show(page, with_hip(hip_analysis(), Joint.LEFT_HIP, margin=1.2))
     frame = page.cycles.charts.hip
-    assert frame.chart.withheld == {Side.LEFT}
-    assert "Sensor positions could not be confirmed" in frame.withheld[Side.LEFT].text
-    assert frame.withheld[Side.RIGHT].text == ""
+    assert frame.chart.not_reported == {Side.LEFT}
+    assert "Sensor positions could not be confirmed" in frame.not_reported[Side.LEFT].text
+    assert frame.not_reported[Side.RIGHT].text == ""
     assert page.door.words.startswith("Left hip: not reported.")
     assert rows_of(page.cycles.hips.table)["Range of motion"][0] == "not reported"
 
@@ -99,8 +99,8 @@ def test_without_a_pelvis_nothing_of_hips_is_there(page: ResultPage) -> None:
     page.door.click()
     assert page.quality.first.text() == "All four joints are reported."
     assert page.quality.hip_facts.isHidden()
-    said = " ".join([page.quality.in_order.text(), page.cycles.hips.note.text()])
-    assert "hip" not in said
+    stated = " ".join([page.quality.in_order.text(), page.cycles.hips.note.text()])
+    assert "hip" not in stated
     show(page, hip_analysis())
     assert page.cycles.charts.hip.isVisibleTo(page.cycles)
 
@@ -137,7 +137,7 @@ def test_the_answer_with_three_charts_fits_the_smallest_window(page: ResultPage)
     assert [frame.isVisible() for frame in page.cycles.charts.frames] == [True] * 3
 
 
-def test_every_stride_tells_its_hip(page: ResultPage) -> None:
+def test_every_stride_shows_its_hip(page: ResultPage) -> None:
     page.view.choose(STRIDES)
     table = page.strides.list
     assert not table.isColumnHidden(HIP)
@@ -157,7 +157,7 @@ def test_the_whole_walk_has_three_lanes(page: ResultPage) -> None:
     np.testing.assert_allclose(drawn, np.rad2deg(hip.angle_rad))
 
 
-def test_figures_of_hip_and_pelvis_have_a_card_that_says_what_is_not_told(page: ResultPage) -> None:
+def test_figures_of_hip_and_pelvis_have_a_card_that_states_what_is_not_reported(page: ResultPage) -> None:
     page.all_figures.click()
     assert page.cycles.hips.isVisible()
     rows = rows_of(page.cycles.hips.table)
@@ -175,17 +175,17 @@ def test_behind_q_stand_six_joints_the_pelvis_and_how_each_hip_was_found(page: R
     assert "from hip movement: the right leg was 40 ms late, ± 5 ms" in quality.in_order.text()
     quality.engineering.click()
     assert quality.hip_facts.isVisible()
-    said = quality.figure.accessibleDescription().casefold() + quality.figure.accessibleName().casefold()
-    assert "hip" in said
+    stated = quality.figure.accessibleDescription().casefold() + quality.figure.accessibleName().casefold()
+    assert "hip" in stated
 
 
-def test_abduction_that_cannot_be_read_is_a_line_and_no_joint_is_withheld(page: ResultPage) -> None:
+def test_abduction_that_cannot_be_read_is_a_line_and_no_joint_is_not_reported(page: ResultPage) -> None:
     show(page, with_hip(hip_analysis(), *HIPS, heading_sd_rad=math.radians(7.0), is_3d=False))
     page.door.click()
     assert page.quality.first.text() == "All six joints are reported."
     (line,) = page.quality.lines
     assert line.where.startswith("Abduction of")
-    assert line.verdict is Verdict.WITHHELD
+    assert line.verdict is Verdict.NOT_REPORTED
 
 
 def test_the_legs_have_a_pelvis_where_it_can_be_read(page: ResultPage) -> None:

@@ -124,7 +124,7 @@ def test_free_motion_is_shown_whole_and_the_walk_comes_back_as_it_was_left(page:
     assert page.view.isVisible()
 
 
-def test_a_walk_without_strides_says_so_and_shows_the_whole(page: ResultPage, analysis: Analysis) -> None:
+def test_a_walk_without_strides_states_so_and_shows_the_whole(page: ResultPage, analysis: Analysis) -> None:
     show(page, changed(analysis, gait={}))
     assert page.view.choice == WHOLE
     assert page.view._segments[ANSWER].accessibleName() == "Summary, no strides"
@@ -217,28 +217,28 @@ def test_under_ten_strides_no_spread_is_shown_and_under_three_no_mean(page: Resu
     assert "L and R: fewer than 3 strides, no mean." in page.cycles.peaks.note.text()
 
 
-def test_a_cell_is_heard_with_its_joint_side_and_unit(page: ResultPage) -> None:
+def test_a_cell_is_received_with_its_joint_side_and_unit(page: ResultPage) -> None:
     model = page.cycles.peaks.table.cells
-    said = [
+    stated = [
         str(model.data(model.index(row, column), Qt.ItemDataRole.AccessibleTextRole))
         for row in range(model.rowCount())
         for column in range(1, 4)
     ]
-    assert any(text.startswith("Knee peak flexion, swing, left: ") and text.endswith("°") for text in said)
-    assert "Knee peak flexion, swing, reference: no value" in said
+    assert any(text.startswith("Knee peak flexion, swing, left: ") and text.endswith("°") for text in stated)
+    assert "Knee peak flexion, swing, reference: no value" in stated
     times = page.cycles.time_distance.table.cells
     cadence = str(times.data(times.index(1, 1), Qt.ItemDataRole.AccessibleTextRole))
     assert cadence.startswith("Cadence, both sides: ")
     assert cadence.endswith(" steps/min")
 
 
-def test_a_cell_to_be_read_with_care_says_so_to_who_hears_it(page: ResultPage, analysis: Analysis) -> None:
+def test_a_cell_to_be_read_with_care_states_so_to_who_receives_it(page: ResultPage, analysis: Analysis) -> None:
     show(page, recalibrated(analysis, [Joint.LEFT_KNEE], axis_sd_rad=np.deg2rad(8.0)))
     model = page.cycles.peaks.table.cells
     swing = row_named(page.cycles.peaks.table, "Peak flexion, swing")
-    heard = [str(model.data(model.index(swing, k), Qt.ItemDataRole.AccessibleTextRole)) for k in (1, 2)]
-    assert heard[0].endswith("°, caution")
-    assert heard[1].endswith("°")
+    received = [str(model.data(model.index(swing, k), Qt.ItemDataRole.AccessibleTextRole)) for k in (1, 2)]
+    assert received[0].endswith("°, caution")
+    assert received[1].endswith("°")
     assert rows_of(page)["Peak flexion, swing"][0].endswith(" *")
     assert "*: caution." in page.cycles.peaks.note.text()
     chips = page.cycles.charts.knee.chips
@@ -250,9 +250,9 @@ def test_a_cell_to_be_read_with_care_says_so_to_who_hears_it(page: ResultPage, a
 
 def test_the_source_of_the_band_and_both_speeds_are_printed(page: ResultPage, analysis: Analysis) -> None:
     show(page, at_speed(analysis, 1.2), who=GROWN)
-    told = page.cycles.band_words
+    reported = page.cycles.band_words
     for part in ("24 young adults", "treadmill", "1.25 m/s", "Fukuchi", "2018", "This walk: 1.20"):
-        assert part in told
+        assert part in reported
     assert "32 of 42 adults, 24 young and 18 older" in page.cycles.time_distance.note.text()
     assert rows_of(page)["Peak flexion, swing"][2] == "59 to 66"
     assert rows_of(page)["Range of motion"][2] == ""
@@ -269,17 +269,17 @@ def test_the_source_of_the_band_and_both_speeds_are_printed(page: ResultPage, an
         (np.nan, AgeAndHeight(30, 1.70), NoBand.SPEED_UNKNOWN),
     ],
 )
-def test_a_band_is_drawn_only_where_it_may_stand_and_else_said_why_not(
+def test_a_band_is_drawn_only_where_it_may_stand_and_else_stated_why_not(
     page: ResultPage, analysis: Analysis, speed_m_s: float, who: AgeAndHeight, why: NoBand | None
 ) -> None:
     show(page, at_speed(analysis, speed_m_s), who=who)
-    told = page.cycles.band_words
+    reported = page.cycles.band_words
     assert (page.cycles.charts.knee.chart.band is not None) is (why is None)
-    assert [one for one, words in WHY_NO_BAND.items() if words in told] == ([] if why is None else [why])
-    assert (NO_SPEED in told) is bool(np.isnan(speed_m_s))
+    assert [one for one, words in WHY_NO_BAND.items() if words in reported] == ([] if why is None else [why])
+    assert (NO_SPEED in reported) is bool(np.isnan(speed_m_s))
 
 
-def test_a_band_of_other_ages_says_so(page: ResultPage, analysis: Analysis) -> None:
+def test_a_band_of_other_ages_states_so(page: ResultPage, analysis: Analysis) -> None:
     for age, is_other in ((30, False), (62, True)):
         show(page, at_speed(analysis, 1.2), who=AgeAndHeight(age, 1.7))
         assert (OTHER_AGES in page.cycles.band_words) is is_other
@@ -296,21 +296,23 @@ def test_a_prosthetic_leg_has_no_band(page: ResultPage, analysis: Analysis) -> N
     assert "alone" not in page.cycles.band_words
 
 
-def test_the_same_doubt_stands_in_chart_and_table(page: ResultPage, analysis: Analysis) -> None:
+def test_the_same_doubt_is_in_chart_and_table(page: ResultPage, analysis: Analysis) -> None:
     show(page, recalibrated(analysis, [Joint.LEFT_KNEE], is_sign_certain=False))
     assert page.cycles.charts.knee.note.startswith("L: sign unclear, flexion or extension.")
     assert rows_of(page)["Peak flexion, swing"][0] == "sign unclear"
     assert "sign unclear" not in rows_of(page)["Peak flexion, swing"][1]
 
 
-def test_a_withheld_ankle_has_no_number_and_no_curve_and_says_what_to_do(page: ResultPage, analysis: Analysis) -> None:
+def test_a_not_reported_ankle_has_no_number_and_no_curve_and_states_what_to_do(
+    page: ResultPage, analysis: Analysis
+) -> None:
     show(page, recalibrated(analysis, [Joint.RIGHT_ANKLE], is_same_joint=False, sign_margin=1.05))
     rows = rows_of(page)
     for name in ("Peak dorsiflexion, stance", "Peak plantarflexion, push-off", "Peak dorsiflexion, swing"):
         assert rows[name][1] == "not reported"
         assert rows[name][0] != "not reported"
     assert rows["Double support %"][0] == "not reported"
-    panel = page.cycles.charts.ankle.withheld
+    panel = page.cycles.charts.ankle.not_reported
     assert (panel[Side.RIGHT].isVisible(), panel[Side.LEFT].isVisible()) == (True, False)
     assert panel[Side.RIGHT].text.startswith("Not reported. Sensor positions could not be confirmed")
     assert "record free motion" in page.door.words
@@ -329,7 +331,7 @@ def test_one_side_alone_has_its_column_alone(page: ResultPage, analysis: Analysi
     assert page.whole.charts.phases.lanes.lanes.keys() == {Side.RIGHT}
 
 
-def test_the_answer_stands_over_the_mean_cycle_and_nothing_scrolls_for_it(page: ResultPage, analysis: Analysis) -> None:
+def test_the_answer_is_over_the_mean_cycle_and_nothing_scrolls_for_it(page: ResultPage, analysis: Analysis) -> None:
     in_wizard = (1064.0, 672.0)  # of a window of 1280 x 800 with its rail
     page.set_room(*in_wizard)
     show(page, analysis)
@@ -384,7 +386,7 @@ def test_without_a_zero_marks_stand_on_the_curves_as_they_are_drawn(
         assert point.angle_deg == pytest.approx(drawn[round(point.percent)], abs=1e-6)
 
 
-def test_where_heights_alone_are_withheld_no_joint_is_called_so(page: ResultPage, analysis: Analysis) -> None:
+def test_where_heights_alone_are_not_reported_no_joint_is_called_so(page: ResultPage, analysis: Analysis) -> None:
     show(page, recalibrated(analysis, LEG_JOINTS, zero=ZeroKind.NONE))
     assert page.door.words.startswith("Absolute angle of all joints: not reported.")
     show(page, recalibrated(analysis, LEG_JOINTS, is_same_joint=False, sign_margin=1.05))
@@ -393,9 +395,9 @@ def test_where_heights_alone_are_withheld_no_joint_is_called_so(page: ResultPage
 
 def test_that_a_living_joint_is_no_hinge_is_no_finding(page: ResultPage, analysis: Analysis) -> None:
     assert "not_a_hinge" in {finding.key for finding in analysis.findings}
-    said = page.quality.findings.accessibleDescription()
-    assert "simulated" in said
-    assert "more than one axis" not in said
+    stated = page.quality.findings.accessibleDescription()
+    assert "simulated" in stated
+    assert "more than one axis" not in stated
 
 
 def test_legs_stand_beside_the_curves_in_step_with_their_cursor(page: ResultPage) -> None:
@@ -416,27 +418,27 @@ def test_legs_stand_beside_the_curves_in_step_with_their_cursor(page: ResultPage
     assert page.differs.isVisible()
 
 
-def test_the_views_are_heard_before_what_they_show_in_every_room(page: ResultPage) -> None:
+def test_the_views_are_received_before_what_they_show_in_every_room(page: ResultPage) -> None:
     for room in (COMPACT, WIDE, (700.0, 600.0)):
         page.set_room(*room)
         for view in (ANSWER, COMPARE, WHOLE, STRIDES):
             page.view.choose(view)
             assert wrong_hearing(page) == []
-            heard = [one.name for one in elements(page)]
-            assert heard.index("View") == min(k for k, name in enumerate(heard) if name)
+            received = [one.name for one in elements(page)]
+            assert received.index("View") == min(k for k, name in enumerate(received) if name)
 
 
-def test_a_folded_part_is_told_as_not_checked_and_is_heard_only_unfolded(page: ResultPage) -> None:
+def test_a_folded_part_is_reported_as_not_checked_and_is_received_only_unfolded(page: ResultPage) -> None:
     folds = {page.show_legs: page.legs, page.all_figures: page.cycles.peaks.table}
     folds[page.quality.engineering] = page.quality.facts
     for fold, part in folds.items():
         if fold is page.quality.engineering:
             page.door.click()
         for is_unfolded in (False, True, False):
-            told = elements(page)
-            (toggle,) = (one for one in told if (one.kind, one.name) == ("Toggle", fold.text()))
+            reported = elements(page)
+            (toggle,) = (one for one in reported if (one.kind, one.name) == ("Toggle", fold.text()))
             assert (toggle.role, toggle.is_checked) == (QAccessible.Role.CheckBox, is_unfolded)
             named = (type(part).__name__, part.accessibleName())
-            assert any((one.kind, one.name) == named for one in told) is is_unfolded
+            assert any((one.kind, one.name) == named for one in reported) is is_unfolded
             fold.click()
         fold.click()

@@ -1,4 +1,4 @@
-"""Every stride stands in a line, is left out and taken in again by key and mouse, and it is said what was left out."""
+"""Every stride is in a line, is left out and taken in again by key and mouse, and it is stated what was left out."""
 
 from dataclasses import replace
 
@@ -54,9 +54,9 @@ def page(qtbot: QtBot, qapp: QApplication, session: Session, analysis: Analysis)
 
 @pytest.fixture
 def turned(page: ResultPage) -> Turned:
-    told: Turned = []
-    page.strides.turned.connect(lambda walk, line, is_left_out: told.append((walk, line, is_left_out)))
-    return told
+    reported: Turned = []
+    page.strides.turned.connect(lambda walk, line, is_left_out: reported.append((walk, line, is_left_out)))
+    return reported
 
 
 def without(session: Session, analysis: Analysis, line: StrideLine) -> Analysis:
@@ -113,7 +113,7 @@ def test_a_stride_that_cannot_be_used_cannot_be_turned(page: ResultPage, turned:
 def test_where_nothing_is_kept_nothing_can_be_left_out(
     page: ResultPage, turned: Turned, session: Session, analysis: Analysis
 ) -> None:
-    """A session folder is looked at: nothing looks as if it could be pressed, and it is said why."""
+    """A session folder is looked at: nothing looks as if it could be pressed, and it is stated why."""
     strides = page.strides.list
     page.show_visit(AnalysedVisit(session, analysis))
     row = first_used(page)
@@ -155,7 +155,7 @@ def test_the_stride_in_force_is_drawn_and_found_by_a_click_into_the_chart(page: 
     assert knee.stride is None
 
 
-def test_what_was_left_out_by_hand_is_said_wherever_figures_stand(
+def test_what_was_left_out_by_hand_is_stated_wherever_figures_stand(
     page: ResultPage, session: Session, analysis: Analysis
 ) -> None:
     """Under the charts, under both tables, under the list and in the comparison."""
@@ -164,16 +164,16 @@ def test_what_was_left_out_by_hand_is_said_wherever_figures_stand(
     assert line is not None
     found = without(session, analysis, line)
     (walk,) = (recording for recording in found.recordings if recording.gait)
-    said = f"1 of {len(walk.gait[Side.LEFT].strides)} left strides excluded by hand."
+    stated = f"1 of {len(walk.gait[Side.LEFT].strides)} left strides excluded by hand."
     page.show_visit(AnalysedVisit(session, found), can_choose=True)
-    assert page.strides.note.text() == said
+    assert page.strides.note.text() == stated
     assert not page.cycles.by_hand.isVisible()
     page.view.choose(ANSWER)
     assert page.cycles.by_hand.isVisible()
-    assert page.cycles.by_hand.text() == said
-    assert said in page.cycles.time_distance.note.text()
+    assert page.cycles.by_hand.text() == stated
+    assert stated in page.cycles.time_distance.note.text()
     assert "excluded by hand" in page.cycles.peaks.note.text()
-    assert said in page.compare.conclusion.text()
+    assert stated in page.compare.conclusion.text()
     page.show_visit(AnalysedVisit(session, analysis), can_choose=True)
     assert page.cycles.by_hand.text() == ""
     assert not page.cycles.by_hand.isVisible()
@@ -207,7 +207,7 @@ def test_without_room_for_charts_every_line_draws_its_own_curves(page: ResultPag
 
 @pytest.mark.endurance
 def test_no_word_is_cut_in_any_room(page: ResultPage) -> None:
-    """Where charts have no room beside the list, the list stands alone."""
+    """Where charts have no room beside the list, the list is alone."""
     for width, height in ((736.0, 432.0), (1000.0, 592.0), (1680.0, 900.0)):
         page.set_room(width, height)
         QApplication.processEvents()
@@ -218,18 +218,18 @@ def test_no_word_is_cut_in_any_room(page: ResultPage) -> None:
         assert page.cycles.isVisible() == (width > 940)
 
 
-def test_every_cell_of_a_stride_is_said_and_the_mark_is_a_box_to_tick(
+def test_every_cell_of_a_stride_is_stated_and_the_mark_is_a_box_to_tick(
     page: ResultPage, session: Session, analysis: Analysis
 ) -> None:
-    strides, said = page.strides.list, Qt.ItemDataRole.AccessibleTextRole
+    strides, stated = page.strides.list, Qt.ItemDataRole.AccessibleTextRole
     row = first_used(page)
     line = strides.lines[row]
-    heard = [str(strides.cells.index(row, column).data(said)) for column in range(strides.cells.columnCount())]
-    assert heard[STRIDE] == heard[STATE] == heard[KNEE_SHAPE] == f"Left stride {line.number}, used"
-    assert heard[1:3] == [f"start (s): {line.start_s:.1f}", f"duration (s): {line.end_s - line.start_s:.2f}"]
+    received = [str(strides.cells.index(row, column).data(stated)) for column in range(strides.cells.columnCount())]
+    assert received[STRIDE] == received[STATE] == received[KNEE_SHAPE] == f"Left stride {line.number}, used"
+    assert received[1:3] == [f"start (s): {line.start_s:.1f}", f"duration (s): {line.end_s - line.start_s:.2f}"]
     ticked = Qt.ItemDataRole.CheckStateRole
     assert strides.cells.index(row, STRIDE).data(ticked) == Qt.CheckState.Checked
     assert strides.cells.index(row, STATE).data(ticked) is None
     page.show_visit(AnalysedVisit(session, without(session, analysis, line)), can_choose=True)
     assert strides.cells.index(row, STRIDE).data(ticked) == Qt.CheckState.Unchecked
-    assert str(strides.cells.index(row, STRIDE).data(said)) == f"Left stride {line.number}, excluded by hand"
+    assert str(strides.cells.index(row, STRIDE).data(stated)) == f"Left stride {line.number}, excluded by hand"

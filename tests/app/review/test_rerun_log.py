@@ -92,8 +92,8 @@ def test_every_sample_and_angle_comes_back(tmp_path: Path, monkeypatch: pytest.M
     np.testing.assert_allclose(band_deg[:, 1] - band_deg[:, 0], 4 * np.rad2deg(angle.sd_rad))
 
 
-GOOD, BAD = READ, assess([GateReason("zero", Verdict.WITHHELD)])
-SIGN = assess([GateReason("sign", Verdict.WITHHELD, 0.1, 0.25)])
+GOOD, BAD = READ, assess([GateReason("zero", Verdict.NOT_REPORTED)])
+SIGN = assess([GateReason("sign", Verdict.NOT_REPORTED, 0.1, 0.25)])
 NOBODYS = {"/angles/left_knee/result", "/angles/left_knee/result_shape", "/withheld/left_knee/result"}
 
 
@@ -120,7 +120,7 @@ def lies_at(path: Path, timeline: str) -> set[str]:
 
 
 @pytest.mark.parametrize(
-    ("said", "entity", "name"),
+    ("stated", "entity", "name"),
     [
         ((GOOD, GOOD, GOOD), "/angles/left_knee/result", "result °"),
         (
@@ -133,10 +133,10 @@ def lies_at(path: Path, timeline: str) -> set[str]:
         ((BAD, BAD, GOOD), "/withheld/left_knee/result", "result, withheld °"),
     ],
 )
-def test_a_curve_lies_where_what_may_be_said_of_it_lets_it(
-    tmp_path: Path, said: tuple[Assessment, Assessment, Assessment], entity: str, name: str
+def test_a_curve_lies_where_what_may_be_stated_of_it_lets_it(
+    tmp_path: Path, stated: tuple[Assessment, Assessment, Assessment], entity: str, name: str
 ) -> None:
-    session, analysis = judged_visit(*said)
+    session, analysis = judged_visit(*stated)
     path = tmp_path / "session.rrd"
     write_log(session, analysis, path)
     assert lies_at(path, "walking_1") == {entity}
@@ -157,7 +157,7 @@ def test_a_curve_lies_where_what_may_be_said_of_it_lets_it(
     assert "'Data quality'" in shown
 
 
-def test_once_a_strap_slipped_a_curve_is_withheld(tmp_path: Path) -> None:
+def test_once_a_strap_slipped_a_curve_is_not_reported(tmp_path: Path) -> None:
     session, analysis = judged_visit(GOOD, GOOD, GOOD, slipped_from_s=5.2)
     path = tmp_path / "session.rrd"
     write_log(session, analysis, path)
@@ -174,7 +174,7 @@ def text_of(path: Path, entity: str) -> str:
     return str(document["TextDocument:text"][0][0])
 
 
-def test_the_log_says_what_may_be_read_and_why_not(tmp_path: Path) -> None:
+def test_the_log_states_what_may_be_read_and_why_not(tmp_path: Path) -> None:
     write_log(*judged_visit(GOOD, BAD, SIGN), tmp_path / "session.rrd")
     first, second = text_of(tmp_path / "session.rrd", "/may_be_read").split("## walking_2")
     assert "| left knee | shape | read |  |" in first
@@ -185,7 +185,7 @@ def test_the_log_says_what_may_be_read_and_why_not(tmp_path: Path) -> None:
     assert "| both legs | between | not measured |  |" in first
 
 
-def test_the_log_says_what_it_is_for(tmp_path: Path) -> None:
+def test_the_log_states_what_it_is_for(tmp_path: Path) -> None:
     write_log(*visit(), tmp_path / "session.rrd")
     assert "Research use. Not a medical device." in text_of(tmp_path / "session.rrd", "/may_be_read")
 
@@ -265,10 +265,10 @@ def test_the_events_are_those_of_the_table(walk: tuple[Path, Analysis], side: Si
     folder, _ = walk
     found = words(folder / "session.rrd", f"/events/{side}", "TextLog:text")
     with (folder / "events.csv").open(newline="") as file:
-        told = [(float(row["time_s"]), row["event"]) for row in csv.DictReader(file) if row["side"] == side]
-    assert len(told) > 15
-    assert [event for _, event in found] == [event for _, event in told]
-    assert [time_s for time_s, _ in found] == pytest.approx([time_s for time_s, _ in told], abs=1e-5)
+        reported = [(float(row["time_s"]), row["event"]) for row in csv.DictReader(file) if row["side"] == side]
+    assert len(reported) > 15
+    assert [event for _, event in found] == [event for _, event in reported]
+    assert [time_s for time_s, _ in found] == pytest.approx([time_s for time_s, _ in reported], abs=1e-5)
 
 
 @pytest.mark.parametrize("side", Side)
@@ -319,31 +319,31 @@ def test_phases_and_curves_are_in_the_colours_of_their_side(walk: tuple[Path, An
             assert colours[f"/angles/{side}_knee/{name}"] == [[int(colour[1:] + "FF", 16)]]
 
 
-def doubtful(analysis: Analysis, **said: Assessment) -> Analysis:
+def doubtful(analysis: Analysis, **stated: Assessment) -> Analysis:
     """The walk with another verdict of the left knee, or of the left leg's timing."""
     (recording,) = analysis.recordings
     verdicts = recording.verdicts
     joints, legs = dict(verdicts.joints), dict(verdicts.legs)
-    if "timing" in said:
-        legs[Side.LEFT] = replace(verdicts.leg(Side.LEFT), timing=said["timing"])
+    if "timing" in stated:
+        legs[Side.LEFT] = replace(verdicts.leg(Side.LEFT), timing=stated["timing"])
     else:
-        joints[Joint.LEFT_KNEE] = replace(verdicts.joint(Joint.LEFT_KNEE), **said)
+        joints[Joint.LEFT_KNEE] = replace(verdicts.joint(Joint.LEFT_KNEE), **stated)
     return replace(analysis, recordings=(replace(recording, verdicts=replace(verdicts, joints=joints, legs=legs)),))
 
 
 @pytest.mark.parametrize(
-    ("said", "gone"),
+    ("stated", "gone"),
     [
         ({}, set()),
         ({"shape": BAD}, {Joint.LEFT_KNEE}),
         ({"sign": SIGN}, {Joint.LEFT_KNEE}),
-        ({"timing": assess([GateReason("strides", Verdict.WITHHELD, 1, 3)])}, {Joint.LEFT_KNEE, Joint.LEFT_ANKLE}),
+        ({"timing": assess([GateReason("strides", Verdict.NOT_REPORTED, 1, 3)])}, {Joint.LEFT_KNEE, Joint.LEFT_ANKLE}),
     ],
 )
-def test_no_lane_where_the_times_or_the_curve_may_not_be_told(
-    walk: tuple[Path, Analysis], tmp_path: Path, said: dict[str, Assessment], gone: set[Joint]
+def test_no_lane_where_the_times_or_the_curve_may_not_be_reported(
+    walk: tuple[Path, Analysis], tmp_path: Path, stated: dict[str, Assessment], gone: set[Joint]
 ) -> None:
-    write_log(WALKED, doubtful(walk[1], **said), tmp_path / "session.rrd")
+    write_log(WALKED, doubtful(walk[1], **stated), tmp_path / "session.rrd")
     found = entities(tmp_path / "session.rrd", "walking_1")
     assert {joint for joint in LEG_JOINTS if f"/angles/{joint}/phases/swing" not in found} == gone
 
@@ -354,7 +354,7 @@ def panel_of(session: Session, analysis: Analysis, path: Path) -> str:
     return text
 
 
-def test_beside_the_legs_stands_the_answer_with_a_verdict_for_each_joint(walk: tuple[Path, Analysis]) -> None:
+def test_beside_the_legs_is_the_answer_with_a_verdict_for_each_joint(walk: tuple[Path, Analysis]) -> None:
     folder, analysis = walk
     ((time_s, text),) = words(folder / "session.rrd", "/answer", "TextDocument:text")
     assert time_s == pytest.approx(WALKED.recordings[-1].imu[Site.LEFT_THIGH].time_s[0])  # there from the beginning
@@ -369,7 +369,7 @@ def test_beside_the_legs_stands_the_answer_with_a_verdict_for_each_joint(walk: t
 
 
 @pytest.mark.parametrize(
-    ("said", "row", "is_grey"),
+    ("stated", "row", "is_grey"),
     [
         (
             {"shape": SIGN},
@@ -393,25 +393,25 @@ def test_beside_the_legs_stands_the_answer_with_a_verdict_for_each_joint(walk: t
         ),
     ],
 )
-def test_the_panel_says_what_is_withheld_why_and_that_it_is_grey(
-    walk: tuple[Path, Analysis], tmp_path: Path, said: dict[str, Assessment], row: str, is_grey: bool
+def test_the_panel_states_what_is_not_reported_why_and_that_it_is_grey(
+    walk: tuple[Path, Analysis], tmp_path: Path, stated: dict[str, Assessment], row: str, is_grey: bool
 ) -> None:
-    text = panel_of(WALKED, doubtful(walk[1], **said), tmp_path / "session.rrd")
+    text = panel_of(WALKED, doubtful(walk[1], **stated), tmp_path / "session.rrd")
     assert row in text
     assert ("The left leg and foot are shown in grey." in text) == is_grey
     assert "The right" not in text
 
 
 def test_a_foot_alone_is_grey_where_only_its_ankle_is_no_pose(walk: tuple[Path, Analysis], tmp_path: Path) -> None:
-    (recording,), said = walk[1].recordings, dict(walk[1].recordings[0].verdicts.joints)
-    said[Joint.RIGHT_ANKLE] = replace(said[Joint.RIGHT_ANKLE], height=BAD)
-    doubted = replace(recording, verdicts=replace(recording.verdicts, joints=said))
+    (recording,), stated = walk[1].recordings, dict(walk[1].recordings[0].verdicts.joints)
+    stated[Joint.RIGHT_ANKLE] = replace(stated[Joint.RIGHT_ANKLE], height=BAD)
+    doubted = replace(recording, verdicts=replace(recording.verdicts, joints=stated))
     text = panel_of(WALKED, replace(walk[1], recordings=(doubted,)), tmp_path / "session.rrd")
     assert "- **Right ankle: no standing reference.** The right foot is shown in grey." in text
     assert "leg and foot are shown in grey" not in text
 
 
-def test_the_panel_says_when_a_strap_slipped(walk: tuple[Path, Analysis], tmp_path: Path) -> None:
+def test_the_panel_states_when_a_strap_slipped(walk: tuple[Path, Analysis], tmp_path: Path) -> None:
     (recording,) = walk[1].recordings
     slipped = replace(walk[1], recordings=(replace(recording, slipped_from_s={Side.RIGHT: 3.25}),))
     text = panel_of(WALKED, slipped, tmp_path / "session.rrd")
@@ -432,10 +432,10 @@ def test_nobodys_name_is_in_the_panel(walk: tuple[Path, Analysis], tmp_path: Pat
     assert "iller" not in panel_of(session, analysis, tmp_path / "session.rrd")
 
 
-def test_a_view_is_called_withheld_where_no_walk_shows_its_curve(walk: tuple[Path, Analysis]) -> None:
-    withheld = doubtful(walk[1], shape=BAD)
+def test_a_view_is_called_not_reported_where_no_walk_shows_its_curve(walk: tuple[Path, Analysis]) -> None:
+    not_reported = doubtful(walk[1], shape=BAD)
     free = replace(walk[1].recordings[0], kind=RecordingKind.FREE_MOTION)
-    both = replace(withheld, recordings=(free, *withheld.recordings))
+    both = replace(not_reported, recordings=(free, *not_reported.recordings))
     assert name_of_view(both, Joint.LEFT_KNEE) == "left knee: not reported"
     assert name_of_view(both, Joint.RIGHT_KNEE) == "right knee: flexion, °"
 
@@ -459,8 +459,8 @@ def test_a_body_lies_along_its_segment_wherever_that_points(straight: tuple[floa
 def test_the_table_of_verdicts_begins_with_the_walk(walk: tuple[Path, Analysis]) -> None:
     free = replace(walk[1].recordings[0], name="free", kind=RecordingKind.FREE_MOTION)
     both = replace(walk[1], recordings=(free, *walk[1].recordings))
-    said = document(both, {"free": "free_motion_1", walk[1].recordings[0].name: "walking_1"})
-    assert 0 < said.index("## walking_1") < said.index("## free_motion_1")
+    stated = document(both, {"free": "free_motion_1", walk[1].recordings[0].name: "walking_1"})
+    assert 0 < stated.index("## walking_1") < stated.index("## free_motion_1")
 
 
 def test_two_legs_walk_above_the_curves_and_say_that_they_are_drawn(walk: tuple[Path, Analysis]) -> None:
@@ -501,10 +501,10 @@ def test_two_legs_walk_above_the_curves_and_say_that_they_are_drawn(walk: tuple[
 def test_a_leg_is_grey_where_an_angle_that_bends_it_is_no_pose(walk: tuple[Path, Analysis], tmp_path: Path) -> None:
     _, analysis = walk
     session = WALKED
-    (recording,), said = analysis.recordings, dict(analysis.recordings[0].verdicts.joints)
-    said[Joint.LEFT_KNEE] = replace(said[Joint.LEFT_KNEE], height=BAD)
-    said[Joint.RIGHT_ANKLE] = replace(said[Joint.RIGHT_ANKLE], sign=SIGN)
-    doubted = replace(recording, verdicts=replace(recording.verdicts, joints=said))
+    (recording,), stated = analysis.recordings, dict(analysis.recordings[0].verdicts.joints)
+    stated[Joint.LEFT_KNEE] = replace(stated[Joint.LEFT_KNEE], height=BAD)
+    stated[Joint.RIGHT_ANKLE] = replace(stated[Joint.RIGHT_ANKLE], sign=SIGN)
+    doubted = replace(recording, verdicts=replace(recording.verdicts, joints=stated))
     write_log(session, replace(analysis, recordings=(doubted,)), tmp_path / "session.rrd")
     chunks = list(RrdReader(tmp_path / "session.rrd").stream())
     drawn = {c.entity_path for c in chunks if "walking_1" in c.timeline_names and c.entity_path.startswith("/legs")}
@@ -522,7 +522,7 @@ def test_a_leg_is_grey_where_an_angle_that_bends_it_is_no_pose(walk: tuple[Path,
 def test_rerun_itself_finds_the_file_whole(walk: tuple[Path, Analysis], tmp_path: Path) -> None:
     session, _ = visit()
     write_log(replace(session, recordings=()), Analysis(Method.ROBUST, False, (), ()), tmp_path / "empty.rrd")
-    settings = tmp_path / "settings"  # of its own, so that nothing is asked for and nobody told
+    settings = tmp_path / "settings"  # of its own, so that nothing is asked for and nobody reported
     quiet = os.environ | {"XDG_CONFIG_HOME": str(settings), "APPDATA": str(settings), "HOME": str(settings)}
     for arguments in (["analytics", "disable"], ["rrd", "verify", walk[0] / "session.rrd", tmp_path / "empty.rrd"]):
         done = subprocess.run([sys.executable, "-m", "rerun", *arguments], env=quiet, capture_output=True, check=False)

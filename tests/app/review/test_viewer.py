@@ -55,14 +55,14 @@ def test_it_is_shown_on_this_computer_only_from_a_folder_of_this_user_only(tmp_p
     program, seen = stand_in(tmp_path)
     viewer, root = Viewer(tmp_path / "review", program), tmp_path / "review"
     viewer.open(*EMPTY)
-    told = wait_for(seen)
+    reported = wait_for(seen)
     for part in ('"--bind", "127.0.0.1"', '"--memory-limit", "2GB"'):
-        assert part in told
+        assert part in reported
     (folder,) = [path for path in root.iterdir() if path.is_dir()]
     assert stat.S_IMODE(folder.stat().st_mode) == 0o700
     (log,) = folder.glob("*.rrd")
-    assert f'"{log}"' in told
-    assert f'"bytes": {log.stat().st_size}' in told
+    assert f'"{log}"' in reported
+    assert f'"bytes": {log.stat().st_size}' in reported
     assert (folder / "settings" / "analytics").read_text() == "disable"
     viewer.close()
     assert list(root.iterdir()) == []
@@ -95,7 +95,7 @@ def test_what_an_ended_run_left_is_removed_and_what_another_window_shows_is_not(
     one.close()
 
 
-def test_a_viewer_that_fails_is_told_and_its_log_removed(tmp_path: Path) -> None:
+def test_a_viewer_that_fails_is_reported_and_its_log_removed(tmp_path: Path) -> None:
     program, _ = stand_in(tmp_path, ends=True)
     viewer = Viewer(tmp_path / "review", program)
     viewer.open(*EMPTY)
@@ -107,7 +107,7 @@ def test_a_viewer_that_fails_is_told_and_its_log_removed(tmp_path: Path) -> None
     viewer.close()
 
 
-def test_without_a_viewer_or_a_screen_a_sentence_says_so(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_without_a_viewer_or_a_screen_a_sentence_states_so(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     with pytest.raises(ViewerRefusedError, match="not installed"):
         Viewer(tmp_path, None).open(*EMPTY)
     monkeypatch.delenv("DISPLAY")
@@ -121,7 +121,7 @@ def test_without_a_viewer_or_a_screen_a_sentence_says_so(tmp_path: Path, monkeyp
     assert list(tmp_path.iterdir()) == []
 
 
-def test_a_viewer_that_does_not_start_is_told(tmp_path: Path) -> None:
+def test_a_viewer_that_does_not_start_is_reported(tmp_path: Path) -> None:
     viewer = Viewer(tmp_path / "review", tmp_path / "missing")
     with pytest.raises(ViewerRefusedError, match="could not be started"):
         viewer.open(*EMPTY)

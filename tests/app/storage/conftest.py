@@ -42,7 +42,7 @@ def postgres_url() -> Iterator[str]:
 # what stations share is in no program yet, and takes a tenth of the default run
 @pytest.fixture(params=["sqlite", pytest.param("postgres", marks=pytest.mark.endurance)])
 def make_engine(request: pytest.FixtureRequest, tmp_path: Path) -> Iterator[MakeEngine]:
-    """Makes engines on one new, empty database, as many stations as are wanted."""
+    """Makes engines on one new, empty database, as many stations as are required."""
     made: list[Engine] = []
     if request.param == "sqlite":
 
@@ -92,16 +92,16 @@ def tables(database: Database, ddl: dict[str, list[str]]) -> Database:
             for statement in ddl[kind]:
                 connection.exec_driver_sql(statement)
         return database
-    said: list[str] = []
+    stated: list[str] = []
 
     def listen(connection: object, cursor: object, statement: str, *_: object) -> None:
         if statement.lstrip().startswith(("CREATE", "ALTER", "DROP", "INSERT", "UPDATE", "DO", "GRANT", "REVOKE")):
-            said.append(statement)
+            stated.append(statement)
 
     event.listen(database.engine, "before_cursor_execute", listen)
     bring_up_to_date(database)
     event.remove(database.engine, "before_cursor_execute", listen)
-    ddl[kind] = said
+    ddl[kind] = stated
     return database
 
 

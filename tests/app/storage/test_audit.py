@@ -24,7 +24,7 @@ from core.samples import Patient
 DATA_KEY = bytes(range(32))
 KEY = derived_from(DATA_KEY).audit
 FORGED = derived_from(bytes(32)).audit
-TOLD = ("at", "operator", "action", "subject", "details")
+REPORTED = ("at", "operator", "action", "subject", "details")
 WRITE = """
 import sys
 from pathlib import Path
@@ -48,7 +48,7 @@ def chain(length: int) -> list[AuditEntry]:
 
 
 def linked(entries: list[AuditEntry], start: int) -> list[AuditEntry]:
-    """What a forger does who knows all but the key: numbers and hashes from `start` on made anew, with another key."""
+    """What a forger does who knows all but the key: numbers and hashes from `start` on made again, with another key."""
     result = entries[:start]
     for entry in entries[start:]:
         before = result[-1] if result else None
@@ -71,7 +71,7 @@ def tampered(entries: list[AuditEntry], rng: random.Random) -> list[AuditEntry]:
             at = rng.randrange(n + 1)
             changed.insert(at, replace(rng.choice(entries), details=f'{{"forged":{rng.random()}}}'))
         case "edit":
-            field = rng.choice(TOLD)
+            field = rng.choice(REPORTED)
             changed[at] = replace(entries[at], **{field: getattr(entries[at], field) + rng.choice(" x0")})
         case "remove":
             del changed[at : at + rng.choice([1, 1, 3])]
@@ -106,7 +106,7 @@ def test_every_insertion_edit_deletion_and_reordering_is_noticed(times: int) -> 
     assert verify(entries, KEY, checkpoint).faults == ()
 
 
-def test_one_change_is_told_once_and_where() -> None:
+def test_one_change_is_reported_once_and_where() -> None:
     entries = chain(60)
     entries[30] = replace(entries[30], operator="somebody")
     (fault,) = verify(entries, KEY).faults

@@ -11,7 +11,7 @@ ROOT = Path(__file__).parents[3]
 
 @pytest.fixture(autouse=True)
 def _stations_find_the_tests(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.syspath_prepend(ROOT)  # which a station is told by the process that starts it
+    monkeypatch.syspath_prepend(ROOT)  # which a station is given by the process that starts it
 
 
 @pytest.mark.endurance
@@ -26,18 +26,19 @@ def test_no_acknowledged_edit_of_two_stations_is_lost(
     assert min(verdict.contested, verdict.merged) > 5  # how often they meet is chance
 
 
-def judged(folder: Path, is_old: bool, said: str = "knee B") -> EditsJudged:
-    """What is found where one station writes over another's word; `is_old`: told that it was shown what was before."""
+def judged(folder: Path, is_old: bool, stated: str = "knee B") -> EditsJudged:
+    """What is found where one station writes over another's word; `is_old`: reported that it was shown what was
+    before."""
     things = prepare(str(folder))
     patient = things[0]
-    for code, upon, word in (("aa", "", "knee A"), ("bb", "knee A", "knee B")):
+    for code, base, word in (("aa", "", "knee A"), ("bb", "knee A", "knee B")):
         with open_station(str(folder)) as station:
             station.log_in(code)
-            station.edits.patient(patient.id, {"device": upon}, {"device": word})
-    told = {"row": str(patient.id), "table": "patients", "field": "device", "is_contested": False}
+            station.edits.patient(patient.id, {"device": base}, {"device": word})
+    reported = {"row": str(patient.id), "table": "patients", "field": "device", "is_contested": False}
     logs = {
-        "aa": [{**told, "upon": "", "said": "knee A"}],
-        "bb": [{**told, "upon": "" if is_old else "knee A", "said": said}],
+        "aa": [{**reported, "upon": "", "said": "knee A"}],
+        "bb": [{**reported, "upon": "" if is_old else "knee A", "said": stated}],
     }
     return judge(str(folder), things, logs)
 
@@ -49,5 +50,5 @@ def test_a_word_that_was_written_over_unseen_or_is_in_no_history_is_a_fault(tmp_
     assert judged(tmp_path / "well", is_old=False).faults == []
     (unseen,) = judged(tmp_path / "unseen", is_old=True).faults
     assert unseen.endswith("overwrote knee A unseen")
-    (nowhere,) = judged(tmp_path / "nowhere", is_old=False, said="knee C").faults
+    (nowhere,) = judged(tmp_path / "nowhere", is_old=False, stated="knee C").faults
     assert '"knee C" of bb is not in the history' in nowhere

@@ -1,4 +1,4 @@
-"""A disk that refuses to be written, or was remounted read-only, costs nothing that was said to be saved."""
+"""A disk that refuses to be written, or was remounted read-only, costs nothing that was stated to be saved."""
 
 import errno
 import time
@@ -93,18 +93,18 @@ def silent(_share: float, _what: str) -> None:
 
 @REFUSED
 @pytest.mark.parametrize("has_shelter", [True, False])
-def test_a_recording_keeps_what_was_written_and_says_what_happened(
+def test_a_recording_keeps_what_was_written_and_states_what_happened(
     disk: FailingDisk, opened: OpenedLibrary, number: int, has_shelter: bool
 ) -> None:
-    recording_id, said = uuid7(), list[Trouble]()
-    told = Recording("walk", RecordingKind.WALKING, "walk", {})
-    opened.library.recordings.start(visit_of(opened), told, False, recording_id)
+    recording_id, stated = uuid7(), list[Trouble]()
+    reported = Recording("walk", RecordingKind.WALKING, "walk", {})
+    opened.library.recordings.start(visit_of(opened), reported, False, recording_id)
     writer = JournalWriter.create(
         opened.recordings,
         recording_id,
         opened.data_key,
         room=NO_ROOM_ASKED,
-        on_trouble=said.append,
+        on_trouble=stated.append,
         shelter=opened.shelter if has_shelter else None,
     )
     header = writer.header
@@ -116,9 +116,9 @@ def test_a_recording_keeps_what_was_written_and_says_what_happened(
             disk.fail(number)
         writer.received(source, line(sent))
         time.sleep(0.001)
-    wait_for(lambda: bool(said))
+    wait_for(lambda: bool(stated))
     summary = writer.stop()
-    assert said == [Trouble.MOVED if has_shelter else Trouble.DISK_GONE]
+    assert stated == [Trouble.MOVED if has_shelter else Trouble.DISK_GONE]
     assert summary.state is (State.CLOSED if has_shelter else State.BROKEN)
     disk.mend()
     with again(opened) as later:
@@ -135,21 +135,21 @@ def test_a_recording_keeps_what_was_written_and_says_what_happened(
 
 @REFUSED
 @pytest.mark.parametrize("closes_first", [False, True])
-def test_what_was_saved_is_there_and_what_was_not_is_said(
+def test_what_was_saved_is_there_and_what_was_not_is_stated(
     disk: FailingDisk, opened: OpenedLibrary, number: int, closes_first: bool
 ) -> None:
     """The disk fails at every third write of a save in turn, and, where it `closes_first`, at those of closing."""
-    visit_id, said, saved = visit_of(opened), list[str](), 0
+    visit_id, stated, saved = visit_of(opened), list[str](), 0
     for after in range(0, MOST_WRITES, 3):
-        visit, wanted = opened.library.sessions.get(visit_id), f"note {after}"
+        visit, required = opened.library.sessions.get(visit_id), f"note {after}"
         disk.fail(number, after)
         try:
-            opened.library.sessions.change(visit, replace(visit.details, notes=wanted))
-            may_be = {wanted}
+            opened.library.sessions.change(visit, replace(visit.details, notes=required))
+            may_be = {required}
             saved += 1
         except LibraryError as error:
-            may_be = {visit.details.notes, wanted}
-            said.append(str(error))
+            may_be = {visit.details.notes, required}
+            stated.append(str(error))
         if closes_first:
             opened.library.close()
         disk.mend()
@@ -158,13 +158,13 @@ def test_what_was_saved_is_there_and_what_was_not_is_said(
         if saved == 3:
             break
     opened.library.close()
-    assert len(said) > 3
-    assert set(said) <= SENTENCES
+    assert len(stated) > 3
+    assert set(stated) <= SENTENCES
 
 
 @REFUSED
 def test_a_backup_onto_it_is_refused_and_none_is_half_there(disk: FailingDisk, tmp_path: Path, number: int) -> None:
-    into, said, after = disk.folder / "backups", list[str](), 0
+    into, stated, after = disk.folder / "backups", list[str](), 0
     into.mkdir()
     with made(tmp_path / "sound") as opened:
         record_some(opened.recordings, opened.data_key)
@@ -173,14 +173,14 @@ def test_a_backup_onto_it_is_refused_and_none_is_half_there(disk: FailingDisk, t
             try:
                 assert back_up(opened, into).faults == ()
             except LibraryError as error:
-                said.append(error.what)
+                stated.append(error.what)
             disk.mend()
             after += 1 + after // 4
             assert after < MOST_WRITES
         (found,) = find_backups(into)  # whole, also where it was refused after it had its name
         assert restore(found.folder, tmp_path / "restored", opened.data_key, "hk") == ()
-    assert len(said) > 10
-    assert {one.partition(" (")[0] for one in said} <= {
+    assert len(stated) > 10
+    assert {one.partition(" (")[0] for one in stated} <= {
         "This folder is not writable",
         "The library file cannot be read or written",  # of the copy, which is opened as a library is
         "The library file cannot be opened for writing",

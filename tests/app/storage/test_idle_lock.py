@@ -51,7 +51,7 @@ def test_who_works_is_not_locked_out() -> None:
     assert controller.locks == 1
 
 
-def test_only_the_passphrase_unlocks_and_the_minutes_begin_anew() -> None:
+def test_only_the_passphrase_unlocks_and_the_minutes_begin_again() -> None:
     controller = FakeController()
     controller.wait(300.0)
     controller.idle.note_activity()

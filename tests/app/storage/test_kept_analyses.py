@@ -122,9 +122,9 @@ def test_anything_that_an_analysis_is_given_makes_it_another_one(session: Sessio
     keys = [key_of(inputs_of(one)) for one in (session, *changed)]
     assert len(set(keys)) == len(keys)
     words = replace(session, notes="tired", operator="hk", surface="lawn", started="2026-11-22", software="x")
-    told = replace(session.patient, code="P-2", height_m=1.8, device="knee")
+    reported = replace(session.patient, code="P-2", height_m=1.8, device="knee")
     same = [
-        replace(words, patient=told, unknown={"mood": "good"}),
+        replace(words, patient=reported, unknown={"mood": "good"}),
         with_walk(session, lambda walk: replace(walk, condition="AFO", note="n", started="s", unknown={"a": 1})),
         with_block(session, lambda block: replace(block, sensor="other", unknown={"t": np.ones(len(block))})),
     ]
@@ -148,7 +148,7 @@ def test_every_field_is_either_in_the_key_or_kept_from_the_analysis(session: Ses
         SensorInfo: {"rate_hz", "rate_kind"},
     }
     given = bare(session)
-    told = {
+    reported = {
         Session: given,
         Recording: given.recordings[1],
         Patient: given.patient,
@@ -158,7 +158,7 @@ def test_every_field_is_either_in_the_key_or_kept_from_the_analysis(session: Ses
         for field in fields(kind):
             if field.name not in names:
                 empty: Any = kind() if kind in (Patient, SensorInfo) else None
-                value = getattr(told[kind], field.name)
+                value = getattr(reported[kind], field.name)
                 assert value in ("", None, (), {}) or value == getattr(empty, field.name, None), (kind, field.name)
 
 

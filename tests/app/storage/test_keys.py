@@ -58,7 +58,7 @@ def test_a_passphrase_that_somebody_else_chose_is_marked_until_its_operator_choo
     slots.set_keyring_slot(data_key, "ab", b"any other change of the file")
     slots.set_passphrase(data_key, "hk", "words that nobody else knows")
     assert slots.is_given("ab")
-    changed = slots.sealed_anew(data_key, bytes(32), ("hk", "ab"))
+    changed = slots.sealed_again(data_key, bytes(32), ("hk", "ab"))
     assert changed.content["given_passphrases"] == ["ab"]
     with pytest.raises(KeyRefusedError, match="Another person chose this passphrase"):
         slots.set_passphrase(data_key, "ab", f" {NEW} ")
@@ -191,13 +191,13 @@ def test_a_slot_whose_words_were_changed_does_not_open(slots: KeySlots, tmp_path
 
 
 @pytest.mark.parametrize("content", [b"", b"{}", b"[1]", b'{"format": "gaitwright-keys/9", "slots": []}'])
-def test_a_damaged_file_is_said_to_be_damaged(slots: KeySlots, tmp_path: Path, content: bytes) -> None:
+def test_a_damaged_file_is_stated_to_be_damaged(slots: KeySlots, tmp_path: Path, content: bytes) -> None:
     (tmp_path / "keys.json").write_bytes(content)
     with pytest.raises(KeyRefusedError, match="damaged"):
         slots.open("hk", OLD)
 
 
-def test_a_missing_file_says_where_to_find_it(slots: KeySlots) -> None:
+def test_a_missing_file_states_where_to_find_it(slots: KeySlots) -> None:
     with pytest.raises(KeyRefusedError, match="backup"):
         slots.open("hk", OLD)
 
@@ -288,7 +288,7 @@ def test_the_recovery_keys_slot_is_not_removed(slots: KeySlots) -> None:
         ("memory_kib", "64"),
     ],
 )
-def test_a_damaged_slot_is_said_to_be_damaged(slots: KeySlots, tmp_path: Path, field: str, value: object) -> None:
+def test_a_damaged_slot_is_stated_to_be_damaged(slots: KeySlots, tmp_path: Path, field: str, value: object) -> None:
     slots.create("hk", OLD)
     content = json.loads((tmp_path / "keys.json").read_text())
     content["slots"][0][field] = value

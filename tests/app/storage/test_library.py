@@ -1,4 +1,4 @@
-"""A library opens for whom it knows, keeps what it was given, and says in words what it cannot do."""
+"""A library opens for whom it knows, keeps what it was given, and states in words what it cannot do."""
 
 import datetime
 import random
@@ -93,7 +93,7 @@ def test_making_a_library_that_was_interrupted_is_finished(tmp_path: Path) -> No
         assert [operator.code for operator in library.operators.list()] == ["hk"]
 
 
-def test_no_library_and_no_rights_are_said(tmp_path: Path) -> None:
+def test_no_library_and_no_rights_are_stated(tmp_path: Path) -> None:
     with pytest.raises(LibraryError, match="no library"):
         Library.open(tmp_path, DATA_KEY)
     assert list(tmp_path.iterdir()) == []
@@ -117,20 +117,20 @@ def test_what_is_no_library_is_refused(tmp_path: Path, content: bytes) -> None:
 
 
 @pytest.mark.endurance
-def test_what_was_said_to_be_kept_is_there_after_a_kill(tmp_path: Path) -> None:
+def test_what_was_stated_to_be_kept_is_there_after_a_kill(tmp_path: Path) -> None:
     Library.create(tmp_path, DATA_KEY, FIRST).close()
     rng = random.Random(1)
     for kill in range(12):
         with subprocess.Popen([sys.executable, "-c", WRITE, tmp_path, str(kill)], stdout=subprocess.PIPE) as writer:
             assert writer.stdout is not None
-            said = [writer.stdout.readline()]
+            stated = [writer.stdout.readline()]
             time.sleep(rng.uniform(0.1, 0.4))
             writer.kill()
-            said += writer.stdout.read().splitlines()
+            stated += writer.stdout.read().splitlines()
         with Library.open(tmp_path, DATA_KEY) as library:
             library.log_in("hk")
             kept = [entry.details for entry in library.audit.entries(f"kill:{kill}", last=100_000)]
-            assert len(said) <= len(kept) <= len(said) + 1  # one may be kept and not said yet
+            assert len(stated) <= len(kept) <= len(stated) + 1  # one may be kept and not stated yet
             assert kept == [f'{{"k":{k}}}' for k in range(len(kept))]
             assert library.faults() == ()
             assert library.audit.verify().faults == ()

@@ -12,7 +12,7 @@ from app.storage.login_delay import FILE, LONGEST_DELAY_S, UNKEPT_DELAY_S, Login
 
 
 class Clock:
-    """A monotonic clock that begins anew with every program."""
+    """A monotonic clock that begins again with every program."""
 
     def __init__(self) -> None:
         self.now_s = 0.0
@@ -59,7 +59,7 @@ def test_wrong_passphrases_make_the_next_try_wait(tmp_path: Path, clock: Clock) 
     assert started(tmp_path, clock).left_s("hk") == 0.0
 
 
-def test_a_restart_begins_the_wait_anew_whatever_the_clock_says(tmp_path: Path, clock: Clock) -> None:
+def test_a_restart_begins_the_wait_again_whatever_the_clock_states(tmp_path: Path, clock: Clock) -> None:
     try_wrong(started(tmp_path, clock), "hk", 5)
     for now_s in (0.0, 1e9, -1e9):
         later = Clock()

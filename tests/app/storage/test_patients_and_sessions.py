@@ -96,7 +96,7 @@ def walk(library: Library, visit: StoredSession) -> StoredRecording:
     return library.recordings.close(started.id, RecordingState.CLOSED, {0: "ab" * 32})
 
 
-def test_a_patient_comes_back_as_told(library: Library, patient: StoredPatient, clock: Clock) -> None:
+def test_a_patient_comes_back_as_reported(library: Library, patient: StoredPatient, clock: Clock) -> None:
     assert patient.details == FULL
     assert (patient.version, patient.created_at, patient.sessions, patient.last_session) == (1, clock.now, 0, "")
     assert library.patients.get(patient.id) == patient
@@ -105,7 +105,7 @@ def test_a_patient_comes_back_as_told(library: Library, patient: StoredPatient, 
 
 
 @pytest.mark.parametrize(
-    ("told", "words"),
+    ("reported", "words"),
     [
         (Patient(code=" "), "needs a code"),
         (Patient(code=" p-001 "), "Another patient has this code"),
@@ -116,12 +116,12 @@ def test_a_patient_comes_back_as_told(library: Library, patient: StoredPatient, 
     ],
 )
 def test_what_cannot_be_a_patient_is_refused(
-    library: Library, patient: StoredPatient, told: Patient, words: str
+    library: Library, patient: StoredPatient, reported: Patient, words: str
 ) -> None:
     with pytest.raises(LibraryError, match=words):
-        library.patients.create(told)
+        library.patients.create(reported)
     with pytest.raises(LibraryError, match=words if "Another" not in words else None):
-        library.patients.change(library.patients.create(Patient(code="P-3")), told)
+        library.patients.change(library.patients.create(Patient(code="P-3")), reported)
 
 
 def test_patients_are_found_by_any_part_of_their_code_latest_first(library: Library) -> None:
@@ -179,7 +179,7 @@ def test_what_was_changed_again_is_not_undone_over_it(library: Library, patient:
     assert library.patients.get(patient.id).details.aids == "cane"
 
 
-def test_of_two_who_change_at_once_the_second_is_told(
+def test_of_two_who_change_at_once_the_second_is_reported(
     library: Library, patient: StoredPatient, visit: StoredSession, walk: StoredRecording
 ) -> None:
     library.patients.change(patient, replace(FULL, aids="frame"))
@@ -198,8 +198,8 @@ def test_of_two_who_change_at_once_the_second_is_told(
         library.sessions.delete(visit)
 
 
-def test_a_session_comes_back_as_told(library: Library, patient: StoredPatient) -> None:
-    told = Session(
+def test_a_session_comes_back_as_reported(library: Library, patient: StoredPatient) -> None:
+    reported = Session(
         (),
         patient=FULL,
         zero_rad={Joint.LEFT_KNEE: math.radians(5.3), Joint.RIGHT_ANKLE: -0.0},
@@ -212,8 +212,8 @@ def test_a_session_comes_back_as_told(library: Library, patient: StoredPatient) 
         findings=(Finding("acc_in_g", Severity.WARNING, "walk 1", {"factor": 9.81}),),
         unknown={"weather": "rain", "zero": {"left_hip": 1.0}},
     )
-    visit = library.sessions.create(patient.id, told)
-    assert visit.details == told
+    visit = library.sessions.create(patient.id, reported)
+    assert visit.details == reported
     assert library.sessions.get(visit.id) == visit
     library.sessions.place(visit.id, SENSORS)
     for recording in (WALK, replace(WALK, name="walk 2", is_restrapped_before=True, is_kept=False)):
@@ -232,18 +232,18 @@ def test_a_session_needs_a_patient_who_is_there(library: Library, patient: Store
 
 
 @pytest.mark.parametrize(
-    "told",
+    "reported",
     [
         Session((), zero_rad={Joint.LEFT_KNEE: math.nan}),
         Session((), zero_rad={Joint.LEFT_KNEE: 5.3}),
         Session((), turned_sign={Joint.LEFT_KNEE: 0}),
     ],
 )
-def test_a_zero_or_sign_out_of_range_is_refused(library: Library, visit: StoredSession, told: Session) -> None:
+def test_a_zero_or_sign_out_of_range_is_refused(library: Library, visit: StoredSession, reported: Session) -> None:
     with pytest.raises(LibraryError, match="The joint value must be"):
-        library.sessions.create(visit.patient_id, told)
+        library.sessions.create(visit.patient_id, reported)
     with pytest.raises(LibraryError, match="The joint value must be"):
-        library.sessions.change(visit, told)
+        library.sessions.change(visit, reported)
 
 
 def test_sessions_are_found_by_their_words(library: Library, patient: StoredPatient, walk: StoredRecording) -> None:
@@ -265,9 +265,9 @@ def test_sessions_are_found_by_their_words(library: Library, patient: StoredPati
 
 
 def test_zero_and_sign_are_corrected_and_taken_back(library: Library, visit: StoredSession) -> None:
-    told = replace(visit.details, zero_rad={Joint.LEFT_KNEE: 0.1}, turned_sign={Joint.LEFT_KNEE: -1}, notes="new")
-    changed = library.sessions.change(visit, told, comment="better")
-    assert (changed.details, changed.comment) == (told, "better")
+    reported = replace(visit.details, zero_rad={Joint.LEFT_KNEE: 0.1}, turned_sign={Joint.LEFT_KNEE: -1}, notes="new")
+    changed = library.sessions.change(visit, reported, comment="better")
+    assert (changed.details, changed.comment) == (reported, "better")
     assert changed.version > visit.version
     (correction,) = library.corrections.of_session(visit.id)
     assert {change.field for change in correction.changes} == {"zero_rad", "turned_sign", "notes", "comment"}
@@ -339,8 +339,8 @@ def test_recordings_of_one_session_have_names_of_their_own(
         library.recordings.change(second, WALK)
 
 
-def test_what_was_told_of_a_recording_is_corrected_and_taken_back(library: Library, walk: StoredRecording) -> None:
-    told = replace(
+def test_what_was_reported_of_a_recording_is_corrected_and_taken_back(library: Library, walk: StoredRecording) -> None:
+    reported = replace(
         WALK,
         condition="barefoot",
         is_kept=False,
@@ -351,8 +351,8 @@ def test_what_was_told_of_a_recording_is_corrected_and_taken_back(library: Libra
             "alignment A", (PartChange(ProsthesisPart.PYLON, height_mm=3.0, text="\N{SNOWMAN}"),)
         ),
     )
-    changed = library.recordings.change(walk, told)
-    assert changed.details == told
+    changed = library.recordings.change(walk, reported)
+    assert changed.details == reported
     (correction,) = library.corrections.of_session(walk.session_id)
     assert {"left_out", "alignment"} <= {change.field for change in correction.changes}
     assert "left_out" in library.audit.entries(f"session:{walk.session_id}")[-1].details

@@ -90,8 +90,8 @@ def written_and_killed(tmp_path: Path, key: str, names: list[str], rounds: int, 
         time.sleep(after_s)
         assert writer.poll() is None, writer.stderr.read().decode()
         writer.send_signal(signal.SIGKILL)
-        said = writer.stdout.read() + writer.stderr.read()
-    assert [name for name in names if name.encode() in said] == []
+        stated = writer.stdout.read() + writer.stderr.read()
+    assert [name for name in names if name.encode() in stated] == []
 
 
 @pytest.fixture
@@ -127,7 +127,7 @@ def test_the_same_names_are_found_where_nothing_is_encrypted(tmp_path: Path, nam
 
 
 @pytest.mark.parametrize("encoding", ["utf-8", "utf-16-le", "utf-16-be"])
-def test_a_name_is_found_wherever_it_stands(tmp_path: Path, names: list[str], encoding: str) -> None:
+def test_a_name_is_found_wherever_it_is(tmp_path: Path, names: list[str], encoding: str) -> None:
     for offset in range(9):
         (tmp_path / "file").write_bytes(bytes(offset) + names[7].upper().encode(encoding) + bytes(offset))
         assert found(tmp_path, names) == {names[7]}

@@ -1,4 +1,4 @@
-"""What is said of a recording is asked once, and taken back in the order in which it was said."""
+"""What is stated about a recording is asked once, and taken back in the order in which it was stated."""
 
 import json
 import time
@@ -32,7 +32,7 @@ def visit(library: Library) -> StoredSession:
     return library.sessions.create(library.patients.create(Patient(code="P-1")).id, Session(()))
 
 
-def test_corrections_are_taken_back_in_their_order_whatever_the_clock_says(
+def test_corrections_are_taken_back_in_their_order_whatever_the_clock_states(
     library: Library, visit: StoredSession, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     """Set back between two, it makes the later one's id sort before the earlier one's."""
@@ -92,14 +92,14 @@ def test_what_was_turned_goes_with_the_rows_to_another_database(
     engine.dispose()
 
 
-def test_a_journal_says_what_was_turned_and_one_of_an_earlier_version_is_read() -> None:
-    told_at = UUID(int=1)
-    belonging = Belonging(told_at, TURNED)
+def test_a_journal_states_what_was_turned_and_one_of_an_earlier_version_is_read() -> None:
+    reported_at = UUID(int=1)
+    belonging = Belonging(reported_at, TURNED)
     assert Belonging.parsed(belonging.text()) == belonging
     without = replace(WALK, note="")  # which a journal does not say
-    earlier = json.loads(Belonging(told_at, without).text().removeprefix(BELONGING))
+    earlier = json.loads(Belonging(reported_at, without).text().removeprefix(BELONGING))
     assert "alignment" not in earlier  # which earlier versions could not read
-    assert Belonging.parsed(BELONGING + json.dumps(earlier)) == Belonging(told_at, without)
+    assert Belonging.parsed(BELONGING + json.dumps(earlier)) == Belonging(reported_at, without)
 
 
 TIMED = replace(WALK, test=PlannedTest(TimedProtocol.SIX_MINUTES, start_key_s=2.5))
@@ -121,7 +121,7 @@ def test_which_test_it_was_is_in_the_row_its_history_and_its_journal(library: Li
     assert "test" not in json.loads(Belonging(UUID(int=1), WALK).text().removeprefix(BELONGING))
 
 
-def test_keys_that_a_journal_tells_are_the_tests_unless_the_row_has_its_own() -> None:
+def test_keys_that_a_journal_shows_are_the_tests_unless_the_row_has_its_own() -> None:
     marks = [(1.0, "left_foot silent"), (2.0, key_text(KeyMeaning.START)), (9.5, key_text(KeyMeaning.END))]
     plain = PlannedTest(TimedProtocol.TEN_METRES)
     assert with_keys(plain, marks) == replace(plain, start_key_s=2.0, end_key_s=9.5)

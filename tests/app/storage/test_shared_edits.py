@@ -58,10 +58,10 @@ def history(stations: TwoStations) -> list[tuple[str, str, object, object, bool]
     ]
 
 
-def test_different_fields_are_merged_and_it_is_told_what_the_other_changed(stations: TwoStations) -> None:
-    upon = patient_fields(FULL)
-    stations.theirs.edits.patient(stations.patient_id, upon, upon | {"height_m": 1.80})
-    edited = stations.ours.edits.patient(stations.patient_id, upon, upon | {"aids": "frame"})
+def test_different_fields_are_merged_and_it_is_reported_what_the_other_changed(stations: TwoStations) -> None:
+    base = patient_fields(FULL)
+    stations.theirs.edits.patient(stations.patient_id, base, base | {"height_m": 1.80})
+    edited = stations.ours.edits.patient(stations.patient_id, base, base | {"aids": "frame"})
     assert edited.stored.details == replace(FULL, height_m=1.80, aids="frame")
     assert edited.contests == ()
     assert [(one.field, one.value, one.by) for one in edited.others] == [("height_m", 1.80, "B. Berger")]
@@ -71,28 +71,28 @@ def test_different_fields_are_merged_and_it_is_told_what_the_other_changed(stati
 def test_two_who_agree_on_two_goals_lose_neither_and_of_one_figure_are_asked(stations: TwoStations) -> None:
     speed = Goal("speed_m_s", GoalOf.WALK, 1.2, DAY, "hk")
     knee, more = Goal("knee_range_deg", GoalOf.LEFT, 55.0, DAY, "bb"), replace(speed, value=1.4, by="bb")
-    upon = patient_fields(FULL)
-    stations.theirs.edits.patient(stations.patient_id, upon, patient_fields(replace(FULL, goals=(knee,))))
-    edited = stations.ours.edits.patient(stations.patient_id, upon, patient_fields(replace(FULL, goals=(speed,))))
+    base = patient_fields(FULL)
+    stations.theirs.edits.patient(stations.patient_id, base, patient_fields(replace(FULL, goals=(knee,))))
+    edited = stations.ours.edits.patient(stations.patient_id, base, patient_fields(replace(FULL, goals=(speed,))))
     assert set(edited.stored.details.goals) == {speed, knee}
     assert [one.field for one in edited.others] == ["goals.knee_range_deg.left"]
-    edited = stations.theirs.edits.patient(stations.patient_id, upon, patient_fields(replace(FULL, goals=(knee, more))))
+    edited = stations.theirs.edits.patient(stations.patient_id, base, patient_fields(replace(FULL, goals=(knee, more))))
     assert [one.field for one in edited.contests] == ["goals.speed_m_s.both"]
     assert set(stations.ours.patients.get(stations.patient_id).details.goals) == {speed, knee}
 
 
-def test_the_same_said_by_both_is_no_conflict_and_no_correction(stations: TwoStations) -> None:
-    upon = patient_fields(FULL)
-    stations.theirs.edits.patient(stations.patient_id, upon, upon | {"height_m": 1.80})
-    edited = stations.ours.edits.patient(stations.patient_id, upon, upon | {"height_m": 1.80})
+def test_the_same_stated_by_both_is_no_conflict_and_no_correction(stations: TwoStations) -> None:
+    base = patient_fields(FULL)
+    stations.theirs.edits.patient(stations.patient_id, base, base | {"height_m": 1.80})
+    edited = stations.ours.edits.patient(stations.patient_id, base, base | {"height_m": 1.80})
     assert (edited.contests, edited.others) == ((), ())
     assert history(stations) == [("bb", "height_m", 1.68, 1.80, False)]
 
 
 def test_the_same_field_is_contested_and_both_are_in_history_and_audit(stations: TwoStations) -> None:
-    upon = patient_fields(FULL)
-    stations.theirs.edits.patient(stations.patient_id, upon, upon | {"height_m": 1.80})
-    edited = stations.ours.edits.patient(stations.patient_id, upon, upon | {"height_m": 1.82, "aids": "frame"})
+    base = patient_fields(FULL)
+    stations.theirs.edits.patient(stations.patient_id, base, base | {"height_m": 1.80})
+    edited = stations.ours.edits.patient(stations.patient_id, base, base | {"height_m": 1.82, "aids": "frame"})
     (contest,) = edited.contests
     assert (contest.field, contest.mine, contest.theirs, contest.by) == ("height_m", 1.82, 1.80, "B. Berger")
     assert contest.at is not None
@@ -114,18 +114,18 @@ def test_the_same_field_is_contested_and_both_are_in_history_and_audit(stations:
     assert stations.ours.audit.verify(BEGINNING).faults == ()
 
 
-def test_who_made_a_value_what_it_is_is_not_who_wanted_another(stations: TwoStations) -> None:
-    upon = patient_fields(FULL)
-    stations.theirs.edits.patient(stations.patient_id, upon, upon | {"height_m": 1.80})
-    stations.ours.edits.patient(stations.patient_id, upon, upon | {"height_m": 1.82})
-    again = stations.ours.edits.patient(stations.patient_id, upon, upon | {"height_m": 1.84})
+def test_who_made_a_value_what_it_is_is_not_who_required_another(stations: TwoStations) -> None:
+    base = patient_fields(FULL)
+    stations.theirs.edits.patient(stations.patient_id, base, base | {"height_m": 1.80})
+    stations.ours.edits.patient(stations.patient_id, base, base | {"height_m": 1.82})
+    again = stations.ours.edits.patient(stations.patient_id, base, base | {"height_m": 1.84})
     assert [contest.by for contest in again.contests] == ["B. Berger"]
 
 
-def test_a_change_between_question_and_answer_is_asked_anew(stations: TwoStations) -> None:
-    upon = patient_fields(FULL)
-    stations.theirs.edits.patient(stations.patient_id, upon, upon | {"height_m": 1.80})
-    stations.ours.edits.patient(stations.patient_id, upon, upon | {"height_m": 1.82})
+def test_a_change_between_question_and_answer_is_asked_again(stations: TwoStations) -> None:
+    base = patient_fields(FULL)
+    stations.theirs.edits.patient(stations.patient_id, base, base | {"height_m": 1.80})
+    stations.ours.edits.patient(stations.patient_id, base, base | {"height_m": 1.82})
     stations.theirs.edits.patient(stations.patient_id, {"height_m": 1.80}, {"height_m": 1.79})
     answered = stations.ours.edits.patient(stations.patient_id, {"height_m": 1.80}, {"height_m": 1.82})
     assert [(one.mine, one.theirs) for one in answered.contests] == [(1.82, 1.79)]
@@ -138,22 +138,22 @@ def test_a_patient_who_is_gone_is_not_edited_out_of_sight(stations: TwoStations,
         patients.merge(patients.create(Patient("P-8")), patients.get(stations.patient_id))
     else:
         patients.delete(patients.get(stations.patient_id))
-    upon = patient_fields(FULL)
+    base = patient_fields(FULL)
     with pytest.raises(LibraryError, match="been merged with another" if is_merged else "since been deleted"):
-        stations.ours.edits.patient(stations.patient_id, upon, upon | {"height_m": 1.82})
+        stations.ours.edits.patient(stations.patient_id, base, base | {"height_m": 1.82})
     assert patients.get(stations.patient_id).details.height_m == 1.68
 
 
 def test_two_joints_and_the_words_of_a_session_do_not_overwrite_each_other(stations: TwoStations) -> None:
-    """As setting one zero once wrote all of them anew."""
-    upon = session_fields(Session(()), "", Limits())
+    """As setting one zero once wrote all of them again."""
+    base = session_fields(Session(()), "", Limits())
     theirs: Values = {"zero_rad.left_knee": 0.1, "turned_sign.right_knee": -1, "comment": "Drags."}
-    stations.theirs.edits.session(stations.session_id, upon, {**upon, **theirs})
+    stations.theirs.edits.session(stations.session_id, base, {**base, **theirs})
     mine: Values = {"zero_rad.right_knee": 0.2, "without_ankle.left": True, "comment": "Limps."}
-    edited = stations.ours.edits.session(stations.session_id, upon, {**upon, **mine})
-    told = edited.stored.details
-    assert told.zero_rad == {Joint.LEFT_KNEE: 0.1, Joint.RIGHT_KNEE: 0.2}
-    assert told.turned_sign == {Joint.RIGHT_KNEE: -1}
+    edited = stations.ours.edits.session(stations.session_id, base, {**base, **mine})
+    reported = edited.stored.details
+    assert reported.zero_rad == {Joint.LEFT_KNEE: 0.1, Joint.RIGHT_KNEE: 0.2}
+    assert reported.turned_sign == {Joint.RIGHT_KNEE: -1}
     assert edited.stored.limits == Limits(frozenset({Side.LEFT}))
     assert [(one.field, one.mine, one.theirs, one.by) for one in edited.contests] == [
         ("comment", "Limps.", "Drags.", "B. Berger")
@@ -165,9 +165,9 @@ def test_two_joints_and_the_words_of_a_session_do_not_overwrite_each_other(stati
 
 
 def test_strides_that_two_left_out_are_all_left_out_and_nobody_is_asked(stations: TwoStations) -> None:
-    upon = recording_fields(WALK)
-    stations.theirs.edits.recording(stations.walk_id, upon, upon | {"left_out_s.left": (4.0,), "condition": "AFO"})
-    edited = stations.ours.edits.recording(stations.walk_id, upon, upon | {"left_out_s.left": (7.0,)})
+    base = recording_fields(WALK)
+    stations.theirs.edits.recording(stations.walk_id, base, base | {"left_out_s.left": (4.0,), "condition": "AFO"})
+    edited = stations.ours.edits.recording(stations.walk_id, base, base | {"left_out_s.left": (7.0,)})
     assert edited.stored.details.left_out_s == {Side.LEFT: (4.0, 7.0)}
     assert edited.stored.details.condition == "AFO"
     assert edited.contests == ()
@@ -194,7 +194,7 @@ def test_sides_that_both_swapped_are_swapped_once(stations: TwoStations) -> None
         assert placement.sensors == SWAPPED
 
 
-def test_another_placement_said_meanwhile_is_contested_and_stays(stations: TwoStations) -> None:
+def test_another_placement_stated_meanwhile_is_contested_and_stays(stations: TwoStations) -> None:
     visit = stations.ours.sessions.get(stations.session_id)
     seen = {visit.recordings[0].id: visit.placements[0].id}
     only = {Site.LEFT_SHANK: WORN[Site.LEFT_THIGH]}

@@ -32,12 +32,12 @@ ASKED = ("aids", "height_m", "is_kept")
 
 @pytest.mark.endurance
 @given(FIELDS, FIELDS, FIELDS)
-def test_what_one_side_alone_changed_stands_and_what_both_changed_otherwise_is_contested(
-    upon: Values, mine: Values, theirs: Values
+def test_what_one_side_alone_changed_is_and_what_both_changed_otherwise_is_contested(
+    base: Values, mine: Values, theirs: Values
 ) -> None:
-    merge = three_way(upon, mine, theirs)
+    merge = three_way(base, mine, theirs)
     for field in ASKED:
-        is_mine, is_theirs = mine[field] != upon[field], theirs[field] != upon[field]
+        is_mine, is_theirs = mine[field] != base[field], theirs[field] != base[field]
         assert (field in merge.contested) is (is_mine and is_theirs and mine[field] != theirs[field])
         assert (field in merge.theirs_only) is (is_theirs and not is_mine)
         if field not in merge.contested:
@@ -49,11 +49,11 @@ def test_what_one_side_alone_changed_stands_and_what_both_changed_otherwise_is_c
 @pytest.mark.endurance
 @given(FIELDS, FIELDS, FIELDS)
 def test_a_stride_that_either_side_left_out_or_took_in_is_left_out_or_taken_in(
-    upon: Values, mine: Values, theirs: Values
+    base: Values, mine: Values, theirs: Values
 ) -> None:
     before, own, other, merged = (
         set(one["left_out_s.left"])  # type: ignore[arg-type]  # a tuple, as the strategy has it
-        for one in (upon, mine, theirs, three_way(upon, mine, theirs).merged)
+        for one in (base, mine, theirs, three_way(base, mine, theirs).merged)
     )
     assert merged >= (own - before) | (other - before)
     assert not merged & ((before - own) | (before - other))
@@ -62,40 +62,40 @@ def test_a_stride_that_either_side_left_out_or_took_in_is_left_out_or_taken_in(
 
 @pytest.mark.endurance
 @given(FIELDS, FIELDS, FIELDS)
-def test_it_is_the_same_from_either_side(upon: Values, mine: Values, theirs: Values) -> None:
-    here, there = three_way(upon, mine, theirs), three_way(upon, theirs, mine)
+def test_it_is_the_same_from_either_side(base: Values, mine: Values, theirs: Values) -> None:
+    here, there = three_way(base, mine, theirs), three_way(base, theirs, mine)
     assert set(here.contested) == set(there.contested)
-    for field in upon:
+    for field in base:
         if field not in here.contested:
             assert here.merged[field] == there.merged[field]
 
 
 @pytest.mark.endurance
 @given(FIELDS, FIELDS)
-def test_equal_edits_are_no_conflict_and_no_news(upon: Values, both: Values) -> None:
-    merge = three_way(upon, both, both)
+def test_equal_edits_are_no_conflict_and_no_news(base: Values, both: Values) -> None:
+    merge = three_way(base, both, both)
     assert (merge.merged, merge.contested, merge.theirs_only) == (both, (), ())
 
 
 @given(FIELDS, FIELDS, FIELDS)
-def test_what_was_said_since_is_neither_lost_nor_said_upon_what_was_never_shown(
-    sent: Values, said: Values, held: Values
+def test_what_was_stated_since_is_neither_lost_nor_stated_base_what_was_never_shown(
+    sent: Values, stated: Values, held: Values
 ) -> None:
-    shown, still_said = rebased(sent, said, held)
+    shown, still_stated = rebased(sent, stated, held)
     for field in sent:
-        if said[field] != sent[field]:
-            assert still_said[field] == said[field]
-            assert shown[field] in (sent[field], said[field])
+        if stated[field] != sent[field]:
+            assert still_stated[field] == stated[field]
+            assert shown[field] in (sent[field], stated[field])
         else:
-            assert still_said[field] == shown[field] == held[field]
+            assert still_stated[field] == shown[field] == held[field]
 
 
 def test_a_side_is_one_word_of_two_columns() -> None:
     """Else one station's affected side could stand beside the other's prosthetic one."""
-    upon = patient_fields(Patient(affected_side="left", prosthetic_side="none"))
+    base = patient_fields(Patient(affected_side="left", prosthetic_side="none"))
     mine = patient_fields(Patient(affected_side="right", prosthetic_side="none"))
     theirs = patient_fields(Patient(affected_side="none", prosthetic_side="left"))
-    assert three_way(upon, mine, theirs).contested == ("sides",)
+    assert three_way(base, mine, theirs).contested == ("sides",)
 
 
 def test_fields_and_back_are_the_same() -> None:
@@ -106,10 +106,10 @@ def test_fields_and_back_are_the_same() -> None:
     goals = with_goal(goals, Goal("speed_m_s", GoalOf.WALK, 1.3, DAY, "bb"))
     patient = Patient("P-1", 1970, "female", 1.7, 60.0, "knee", "stick", "none", "both", {"x": 1}, goals)
     assert with_patient_fields(Patient(unknown={"x": 1}), patient_fields(patient)) == patient
-    told = Session((), surface="grass", zero_rad={Joint.LEFT_KNEE: 0.0}, turned_sign={Joint.LEFT_ANKLE: -1})
+    reported = Session((), surface="grass", zero_rad={Joint.LEFT_KNEE: 0.0}, turned_sign={Joint.LEFT_ANKLE: -1})
     limits = Limits(frozenset({Side.LEFT}), cannot_stand=True)
-    values = session_fields(told, "words", limits)
-    assert with_session_fields(Session(()), "", Limits(), values) == (told, "words", limits)
+    values = session_fields(reported, "words", limits)
+    assert with_session_fields(Session(()), "", Limits(), values) == (reported, "words", limits)
     turned = AlignmentChange("A", (PartChange(ProsthesisPart.KNEE_UNIT, turns=-0.5),))
     walk = Recording(
         "walk 1",

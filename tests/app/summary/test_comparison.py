@@ -13,13 +13,13 @@ KNEE = next(measure for measure in MEASURES if measure.column == "knee_stance_to
 
 
 def part(letter: str, visit: int, knee_deg: float, *, is_readable: bool = True) -> Part:
-    told = None if is_readable else unsure(Joint.LEFT_KNEE)
-    walk = walked(f"walk {letter}", knee_deg=knee_deg, told=told)
-    return Part(letter, letter, (walk,), analysis(walk, told=told).calibrated_for(walk), visit=visit)
+    reported = None if is_readable else unsure(Joint.LEFT_KNEE)
+    walk = walked(f"walk {letter}", knee_deg=knee_deg, reported=reported)
+    return Part(letter, letter, (walk,), analysis(walk, reported=reported).calibrated_for(walk), visit=visit)
 
 
 def test_a_change_from_the_next_visit_that_can_be_read_has_the_error_of_visits() -> None:
-    """The chosen base cannot be read, so that a walk of its own visit is told against another visit."""
+    """The chosen base cannot be read, so that a walk of its own visit is reported against another visit."""
     parts = (part("1A", 1, 50.0), part("1B", 1, 50.0, is_readable=False), part("2A", 2, 44.0))
     comparison = Comparison(Contrast.CHOSEN, parts, base=1)
     (row,) = (
@@ -30,7 +30,7 @@ def test_a_change_from_the_next_visit_that_can_be_read_has_the_error_of_visits()
     assessments = tuple(found.assessment(Side.LEFT, KNEE.column) for found in (row.part, row.against))
     assert row.difference == compare(KNEE.column, ComparisonKind.VISITS, one, other, assessments)
     attached = compare(KNEE.column, ComparisonKind.ATTACHED, one, other, assessments)
-    assert attached.error < row.difference.error  # which would have said more than can be known
+    assert attached.error < row.difference.error  # which would have stated more than can be known
 
 
 def test_walks_of_one_strapping_have_the_error_of_one() -> None:

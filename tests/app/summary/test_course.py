@@ -26,7 +26,7 @@ def only(found: Course) -> CourseCondition:
     return one
 
 
-def test_each_condition_is_told_by_itself_and_its_walks_together() -> None:
+def test_each_condition_is_reported_by_itself_and_its_walks_together() -> None:
     found = course(
         (walked("walk 1", speed_m_s=1.0), "shoes"),
         (walked("walk 2", speed_m_s=0.6), "stick"),
@@ -43,9 +43,9 @@ def test_each_condition_is_told_by_itself_and_its_walks_together() -> None:
 
 def test_of_two_strappings_the_last_counts() -> None:
     walks = [(walked("walk 1", knee_deg=40.0), "shoes"), (walked("walk 2", knee_deg=50.0), "shoes")]
-    told = recordings(*walks)
-    told[1] = replace(told[1], is_restrapped_before=True)
-    found = only(course_of(analysis(*(one for one, _ in walks)), told))
+    reported = recordings(*walks)
+    reported[1] = replace(reported[1], is_restrapped_before=True)
+    found = only(course_of(analysis(*(one for one, _ in walks)), reported))
     knee = found.figure(KNEE, Side.LEFT)
     assert knee is not None
     assert knee.found.mean == pytest.approx(50.0)
@@ -69,44 +69,47 @@ def test_a_figure_has_half_of_the_error_between_visits_for_its_whisker() -> None
 
 def test_a_change_is_judged_as_the_comparison_of_visits_judges_it() -> None:
     """Home and Compare say the same: also where the walks' speeds differ, and a lag is unsure."""
-    told = calibrations(Joint.LEFT_KNEE, lag_sd_s=0.004)
-    first, last = walked(knee_deg=40.0, speed_m_s=0.7, told=told), walked(knee_deg=52.0, speed_m_s=1.1, told=told)
-    parts = [conditions_of(analysis(one, told=told), recordings((one, "shoes")))[0] for one in (first, last)]
+    reported = calibrations(Joint.LEFT_KNEE, lag_sd_s=0.004)
+    first, last = (
+        walked(knee_deg=40.0, speed_m_s=0.7, reported=reported),
+        walked(knee_deg=52.0, speed_m_s=1.1, reported=reported),
+    )
+    parts = [conditions_of(analysis(one, reported=reported), recordings((one, "shoes")))[0] for one in (first, last)]
     compared = {
         (row.measure.column, row.side): row.difference for row in Comparison(Contrast.VISITS, tuple(parts)).rows
     }
-    courses = [only(course((one, "shoes"), told=told)) for one in (first, last)]
+    courses = [only(course((one, "shoes"), reported=reported)) for one in (first, last)]
     assert change(courses[1], courses[0], KNEE, Side.LEFT) == compared[KNEE, Side.LEFT]
     assert change(courses[1], courses[0], KNEE, Side.RIGHT) == compared[KNEE, Side.RIGHT]
     assert change(courses[1], courses[0], SPEED) == compared[SPEED, Side.LEFT]
 
 
-def test_what_is_withheld_leaves_a_gap_and_is_named() -> None:
-    told = unsure(Joint.LEFT_KNEE)
-    found = only(course((walked(told=told), "shoes"), told=told))
+def test_what_is_not_reported_leaves_a_gap_and_is_named() -> None:
+    reported = unsure(Joint.LEFT_KNEE)
+    found = only(course((walked(reported=reported), "shoes"), reported=reported))
     knee, sound = (found.figure(KNEE, side) for side in Side)
     assert knee is not None
     assert sound is not None
-    assert (knee.verdict, knee.is_told) == (Verdict.WITHHELD, False)
+    assert (knee.verdict, knee.is_reported) == (Verdict.NOT_REPORTED, False)
     assert math.isnan(knee.found.mean)
     assert math.isnan(knee.whisker)
-    assert sound.is_told
-    assert found.withheld == (Joint.LEFT_KNEE,)
+    assert sound.is_reported
+    assert found.not_reported == (Joint.LEFT_KNEE,)
     readable = only(course((walked(), "shoes")))
     judged = change(readable, found, KNEE, Side.LEFT)
     assert judged is not None
-    assert judged.judgement is Judgement.WITHHELD
-    assert readable.withheld == ()
+    assert judged.judgement is Judgement.NOT_REPORTED
+    assert readable.not_reported == ()
 
 
 def test_two_strides_are_no_mean() -> None:
     found = only(course((walked(strides=2), "shoes")))
     for one in found.figures:
-        assert not one.is_told
+        assert not one.is_reported
     assert found.strides == 4
 
 
-def test_stance_between_the_legs_is_told_where_both_are() -> None:
+def test_stance_between_the_legs_is_reported_where_both_are() -> None:
     found = only(course((walked(stance_percent=64.0), "shoes"))).between_legs(STANCE)
     assert found is not None
     assert found.difference == pytest.approx(4.0)
@@ -127,8 +130,10 @@ def test_the_toe_off_of_a_prosthesis_is_remembered_so_that_stance_is_not_judged(
 
 
 def test_what_is_kept_is_what_was_found() -> None:
-    told = unsure(Joint.LEFT_KNEE)
-    found = course((walked(told=told), "shoes"), (walked("walk 2", strides=1, told=told), ""), told=told)
+    reported = unsure(Joint.LEFT_KNEE)
+    found = course(
+        (walked(reported=reported), "shoes"), (walked("walk 2", strides=1, reported=reported), ""), reported=reported
+    )
     written = json.dumps(course_in_json(found), allow_nan=False)
     read = course_from_json(json.loads(written))
     assert repr(read) == repr(found)
@@ -149,7 +154,7 @@ def test_a_visit_without_a_walk_has_no_conditions() -> None:
     assert course_from_json(course_in_json(found)) == found
 
 
-def test_a_timed_test_stands_with_its_condition_as_the_mean_of_its_attempts() -> None:
+def test_a_timed_test_is_with_its_condition_as_the_mean_of_its_attempts() -> None:
     found = course(
         (walked("walk 1"), "shoes"),
         (timed(TimedProtocol.TEN_METRES, time_s=10.0, name="walk 2"), "shoes"),
@@ -178,23 +183,23 @@ def test_a_condition_of_tests_from_a_chair_alone_has_no_figure_of_walking() -> N
     assert change(barefoot, barefoot, SPEED) is None
 
 
-def test_what_rests_on_the_feet_is_withheld_with_them_and_what_ends_at_the_tape_is_not() -> None:
-    def told(*, is_end_by_key: bool) -> Verdict:
+def test_what_rests_on_the_feet_is_not_reported_with_them_and_what_ends_at_the_tape_is_not() -> None:
+    def reported(*, is_end_by_key: bool) -> Verdict:
         slow = walked("walk 9", speed_m_s=0.05)  # no speed that anybody walks at
         test = timed(TimedProtocol.TEN_METRES, is_end_by_key=is_end_by_key)
         found = only(course((replace(slow, timed=test.timed), "shoes"))).test(COLUMNS[TimedProtocol.TEN_METRES])
         assert found is not None
-        assert found.is_told is (found.verdict is not Verdict.WITHHELD)
+        assert found.is_reported is (found.verdict is not Verdict.NOT_REPORTED)
         return found.verdict
 
-    assert told(is_end_by_key=False) is Verdict.WITHHELD
-    assert told(is_end_by_key=True) is Verdict.READ
+    assert reported(is_end_by_key=False) is Verdict.NOT_REPORTED
+    assert reported(is_end_by_key=True) is Verdict.READ
 
 
 def test_a_test_that_was_broken_off_has_no_value_and_is_kept_as_it_is() -> None:
     found = course((timed(TimedProtocol.UP_AND_GO, time_s=math.nan), "shoes"))
     test = only(found).test(COLUMNS[TimedProtocol.UP_AND_GO])
     assert test is not None
-    assert not test.is_told
+    assert not test.is_reported
     again = course_from_json(json.loads(json.dumps(course_in_json(found))))
     assert str(again) == str(found)

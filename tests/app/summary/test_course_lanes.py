@@ -58,8 +58,8 @@ def shoes(knee_deg: float = 50.0, speed_m_s: float = 1.0, stance_percent: float 
 
 
 def gated() -> Course:
-    told = unsure(Joint.LEFT_KNEE)
-    return course((walked(told=told), SHOES), told=told)
+    reported = unsure(Joint.LEFT_KNEE)
+    return course((walked(reported=reported), SHOES), reported=reported)
 
 
 def lane(found: tuple[CourseLane, ...], kind: LaneKind) -> CourseLane:
@@ -93,8 +93,8 @@ def test_a_visit_that_cannot_be_read_is_a_gap_and_the_change_counts_from_the_fir
     visits = [visit(1, gated()), visit(2, shoes(40.0)), visit(3, gated()), visit(4, shoes(60.0))]
     knee = lane(lanes(visits), KNEE_LANE)
     points = knee.lines[0].points
-    assert [point.is_told for point in points] == [False, True, False, True]
-    assert points[0].verdict is Verdict.WITHHELD
+    assert [point.is_reported for point in points] == [False, True, False, True]
+    assert points[0].verdict is Verdict.NOT_REPORTED
     (change,) = knee.changes
     assert (change.first, change.since_last) == (1, None)
     assert change.since_first is not None
@@ -133,11 +133,11 @@ def test_one_visit_makes_no_trend_and_two_do() -> None:
     assert (change.since_first, change.since_last) == (None, None)
 
 
-def test_a_lane_says_every_value_with_its_day_and_unit() -> None:
+def test_a_lane_states_every_value_with_its_day_and_unit() -> None:
     visits = [visit(5, shoes(speed_m_s=0.71, stance_percent=56.0)), visit(10, shoes(speed_m_s=1.12))]
     found = lanes(visits)
-    said = lane_in_words(lane(found, SPEED_LANE), visits)
-    assert said == (
+    stated = lane_in_words(lane(found, SPEED_LANE), visits)
+    assert stated == (
         "Walking speed: 0.71 metres per second on 20 Jun, 1.12 metres per second on 20 "
         "Nov. +0.41 since 20 Jun, beyond error (0.20 \u2020)."
     )
@@ -155,8 +155,8 @@ def test_a_lane_says_every_value_with_its_day_and_unit() -> None:
 
 def test_with_two_conditions_each_value_has_its_own() -> None:
     visits = [visit(1, course((walked(), SHOES), (walked("walk 2"), "")))]
-    said = lane_in_words(lane(lanes(visits), SPEED_LANE), visits)
-    assert said == (
+    stated = lane_in_words(lane(lanes(visits), SPEED_LANE), visits)
+    assert stated == (
         "Walking speed, shoes: 1.00 metres per second on 20 Feb. Walking speed, no "
         "condition recorded: 1.00 metres per second on 20 Feb."
     )
@@ -176,7 +176,7 @@ def difference(
 
 
 @pytest.mark.parametrize(
-    ("found", "said"),
+    ("found", "stated"),
     [
         (difference(Judgement.EXCEEDS_ERROR), "beyond error (9.2)"),
         (difference(Judgement.INSIDE_ERROR, is_unverified=True), "within error (9.2 \u2020)"),
@@ -188,21 +188,21 @@ def difference(
         (difference(Judgement.TOO_FEW_STRIDES, math.nan), "too few strides to judge"),
     ],
 )
-def test_each_judgement_has_its_words(found: Difference, said: str) -> None:
-    assert judged_in_words(found, KNEE_LANE) == said
-    assert since_last_in_words(found, KNEE_LANE) == f"since last visit +3°, {said.split(' (', maxsplit=1)[0]}"
+def test_each_judgement_has_its_words(found: Difference, stated: str) -> None:
+    assert judged_in_words(found, KNEE_LANE) == stated
+    assert since_last_in_words(found, KNEE_LANE) == f"since last visit +3°, {stated.split(' (', maxsplit=1)[0]}"
 
 
 def test_what_is_drawn_is_explained_and_nothing_else() -> None:
     two = lanes([visit(1, shoes(40.0)), visit(2, shoes(60.0))])
-    said = key_in_words(two)
-    assert said.startswith("Whisker: half the error of a change. Grey: first visit ± error. †")
+    stated = key_in_words(two)
+    assert stated.startswith("Whisker: half the error of a change. Grey: first visit ± error. †")
     assert key_in_words(lanes([visit(1, shoes())])) == "Whisker: half the error of a change."
     assert key_in_words(lanes([visit(1, shoes(strides=5))])) == ""  # under ten strides nothing is judged
 
 
-def latest(days_ago: int = 1, *withheld: Joint, has_walk: bool = True, has_report: bool = True) -> LatestVisit:
-    return LatestVisit(UUID(int=1), TODAY - datetime.timedelta(days=days_ago), withheld, has_walk, has_report)
+def latest(days_ago: int = 1, *not_reported: Joint, has_walk: bool = True, has_report: bool = True) -> LatestVisit:
+    return LatestVisit(UUID(int=1), TODAY - datetime.timedelta(days=days_ago), not_reported, has_walk, has_report)
 
 
 def test_what_is_next_is_the_first_that_holds() -> None:
@@ -249,8 +249,8 @@ def test_a_lane_holds_its_goals_and_the_leg_that_they_are_of() -> None:
     assert [line.side for line in knee.lines] == [Side.LEFT, Side.RIGHT]
     assert lane_in_words(knee, visits).endswith("Goal: Knee flexion, stance to swing, right: at least 72°.")
     before = replace(right, agreed=datetime.date(2026, 3, 19))  # the day before the last visit
-    told = lane_in_words(lane(lanes(visits, goals=[before]), KNEE_LANE), visits)
-    assert told.endswith("right: at least 72°. Not reached, beyond measurement error (±9.3°).")
+    reported = lane_in_words(lane(lanes(visits, goals=[before]), KNEE_LANE), visits)
+    assert reported.endswith("right: at least 72°. Not reached, beyond measurement error (±9.3°).")
     same_day = replace(right, agreed=datetime.date(2026, 3, 20))
     assert "Not reached" not in lane_in_words(lane(lanes(visits, goals=[same_day]), KNEE_LANE), visits)
     apart = goal(STANCE_LANE.column, GoalOf.BETWEEN, 2.0)
@@ -268,9 +268,9 @@ def test_a_goal_that_is_reached_is_next_after_the_report_and_before_a_long_time(
         "Goals",
     )
     near = reached_at([goal(SPEED_LANE.column, GoalOf.WALK, 0.95)], shoes(speed_m_s=1.0))
-    said = next_step(None, replace(latest(), reached=near), TODAY)
-    assert said is not None
-    assert said.sentence.endswith("measured 1.00\N{NO-BREAK SPACE}m/s, within error, so not certain.")
+    stated = next_step(None, replace(latest(), reached=near), TODAY)
+    assert stated is not None
+    assert stated.sentence.endswith("measured 1.00\N{NO-BREAK SPACE}m/s, within error, so not certain.")
     unwritten = next_step(None, replace(latest(has_report=False), reached=reached), TODAY)
     assert unwritten is not None
     assert unwritten.verb == "Open"
@@ -291,10 +291,10 @@ def test_a_test_that_was_done_once_has_a_lane_and_one_that_a_goal_is_of() -> Non
     visits = [visit(1, shoes()), visit(2, with_tests(12.5, 30.0)), visit(3, with_tests(10.0))]
     assert kinds_of_tests(visits, ()) == (TEN_METRES, UP_AND_GO)
     assert kinds_of_tests(visits[:1], ()) == ()
-    wanted = Goal(COLUMNS[TimedProtocol.SIX_MINUTES], GoalOf.WALK, 400.0, TODAY)
-    assert kinds_of_tests(visits[:1], [wanted]) == (LaneKind(wanted.column),)
-    assert lane_kinds([wanted]) == lane_kinds()
-    assert without_lane([wanted]) == ()
+    required = Goal(COLUMNS[TimedProtocol.SIX_MINUTES], GoalOf.WALK, 400.0, TODAY)
+    assert kinds_of_tests(visits[:1], [required]) == (LaneKind(required.column),)
+    assert lane_kinds([required]) == lane_kinds()
+    assert without_lane([required]) == ()
 
 
 def test_the_lane_of_a_test_has_whiskers_and_a_verdict_where_an_error_is_known_only() -> None:
@@ -317,7 +317,7 @@ def test_the_lane_of_a_test_has_whiskers_and_a_verdict_where_an_error_is_known_o
     assert lane_in_words(up, visits).startswith("Timed Up and Go: 30.0 seconds on 20 Feb, 24.0 seconds on 20 Mar")
 
 
-def test_a_goal_of_a_test_is_reached_where_the_test_was_done_and_told_of_speed_alone() -> None:
+def test_a_goal_of_a_test_is_reached_where_the_test_was_done_and_reported_of_speed_alone() -> None:
     both = course((walked(), STICK), (timed(TimedProtocol.TEN_METRES, time_s=8.0), SHOES))
     ten = goal(TEN_METRES.column, GoalOf.WALK, 1.0)
     (reached,) = reached_at([ten], both)

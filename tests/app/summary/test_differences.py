@@ -1,4 +1,4 @@
-"""Do the tables of differences keep quiet about what is withheld in one of the two, and tell the rest?"""
+"""Do the tables of differences keep quiet about what is not reported in one of the two, and report the rest?"""
 
 import csv
 from dataclasses import replace
@@ -23,12 +23,12 @@ from core.alignment import AlignmentChange, PartChange, ProsthesisPart
 from core.body import Joint, Side
 from core.results import Analysis, Calibration, Method, SideGait, ZeroKind
 from core.samples import Recording, RecordingKind, Session
-from tests.core.verdicts.built_walk import Told, calibrations, judged_walk, leg, walk
+from tests.core.verdicts.built_walk import Reported, calibrations, judged_walk, leg, walk
 
 
-def part(letter: str, told: Told | None = None, **changes: Any) -> Part:
+def part(letter: str, reported: Reported | None = None, **changes: Any) -> Part:
     """A condition of one walk."""
-    found = told or calibrations()
+    found = reported or calibrations()
     return Part(letter, f"condition {letter}", (judged_walk(walk(**changes), found),), found)
 
 
@@ -42,7 +42,7 @@ def differences(folder: Path, *parts: Part) -> dict[tuple[str, str], dict[str, s
     return {(row["side"], row["parameter"]): row for row in table(folder / "differences.csv")}
 
 
-def test_what_can_be_read_is_told_with_its_error_and_what_it_contains(tmp_path: Path) -> None:
+def test_what_can_be_read_is_reported_with_its_error_and_what_it_contains(tmp_path: Path) -> None:
     found = differences(tmp_path, part("A"), part("B", left=leg(Side.LEFT, knee_range_deg=66.0)))
     row = found["left", "knee_range_deg"]
     assert (row["difference"], row["status"], row["verdict"]) == ("6.00000", "read", "exceeds_error")
@@ -53,7 +53,7 @@ def test_what_can_be_read_is_told_with_its_error_and_what_it_contains(tmp_path: 
     assert ("left", "knee_curve_difference_deg") in found
 
 
-def test_what_is_withheld_in_one_of_the_two_has_no_difference_and_no_error(tmp_path: Path) -> None:
+def test_what_is_not_reported_in_one_of_the_two_has_no_difference_and_no_error(tmp_path: Path) -> None:
     bad = part("B", calibrations(Joint.LEFT_KNEE, sign_margin=1.0))
     found = differences(tmp_path, part("A"), bad)
     for name in ("knee_range_deg", "knee_swing_peak_deg"):
@@ -72,8 +72,8 @@ def test_care_reaches_the_row(tmp_path: Path) -> None:
     assert found["left", "ankle_range_deg"]["status"] == "read"
 
 
-def test_figures_of_both_legs_are_withheld_where_a_walk_withholds_them(tmp_path: Path) -> None:
-    """Of a condition of two walks the worse holds, although the other walk alone could tell."""
+def test_figures_of_both_legs_are_not_reported_where_a_walk_withholds_them(tmp_path: Path) -> None:
+    """Of a condition of two walks the worse holds, although the other walk alone could report."""
     good, bad = part("A"), walk(left=leg(Side.LEFT, stance_percent=20.0))
     pooled = replace(good, letter="B", walks=(*good.walks, judged_walk(bad)))
     assert np.isnan(pooled.of_both("cadence_steps_min"))
@@ -124,7 +124,7 @@ def test_legs_are_set_side_by_side_with_their_status(tmp_path: Path) -> None:
     assert time["verdict"] == "no_published_figure"
 
 
-def test_a_changed_alignment_is_told_against_the_one_it_was_changed_from_too(tmp_path: Path) -> None:
+def test_a_changed_alignment_is_reported_against_the_one_it_was_changed_from_too(tmp_path: Path) -> None:
     def changed_from(one: Part, since: str) -> Part:
         return replace(one, alignment=AlignmentChange(since, (PartChange(ProsthesisPart.PYLON, height_mm=3.0),)))
 
@@ -134,8 +134,8 @@ def test_a_changed_alignment_is_told_against_the_one_it_was_changed_from_too(tmp
     assert [comparison.base_of(one).letter for one in comparison.parts] == ["A", "A", "B"]
     write_differences(rows_along_chain(comparison), tmp_path / "differences.csv")
     rows = [row for row in table(tmp_path / "differences.csv") if row["parameter"] == "knee_range_deg"]
-    told = {(row["part"], row["against_part"]): row["difference"] for row in rows if row["side"] == "left"}
-    assert told == {("B", "A"): "6.00000", ("C", "A"): "10.00000", ("C", "B"): "4.00000"}
+    reported = {(row["part"], row["against_part"]): row["difference"] for row in rows if row["side"] == "left"}
+    assert reported == {("B", "A"): "6.00000", ("C", "A"): "10.00000", ("C", "B"): "4.00000"}
     alone = Comparison(Contrast.CONDITIONS, (first, changed_from(part("B"), "gone")))
     assert alone.base_of(alone.parts[1]) is alone.parts[0]
     assert len(list(rows_along_chain(alone))) == len(list(rows_of(alone)))
@@ -151,7 +151,7 @@ def with_fitting(of: SideGait, heel_rise_deg: float, pitch_deg: float) -> SideGa
     return replace(of, parameters={**of.parameters, **fitting})
 
 
-def test_measures_for_fitting_are_told_with_their_errors(tmp_path: Path) -> None:
+def test_measures_for_fitting_are_reported_with_their_errors(tmp_path: Path) -> None:
     before = part("A", left=with_fitting(leg(Side.LEFT), 60.0, 12.0))
     after = part("B", left=with_fitting(leg(Side.LEFT), 66.0, 13.0))
     found = differences(tmp_path, before, after)
@@ -164,7 +164,7 @@ def test_measures_for_fitting_are_told_with_their_errors(tmp_path: Path) -> None
     assert names.index("knee_range_deg") < names.index("foot_heel_rise_deg")
 
 
-def test_a_withheld_knee_withholds_what_the_shank_leans(tmp_path: Path) -> None:
+def test_a_not_reported_knee_withholds_what_the_shank_leans(tmp_path: Path) -> None:
     bad = part("B", calibrations(Joint.LEFT_KNEE, sign_margin=1.0), left=with_fitting(leg(Side.LEFT), 66.0, 13.0))
     found = differences(tmp_path, part("A", left=with_fitting(leg(Side.LEFT), 60.0, 12.0)), bad)
     row = found["left", "shank_at_mid_stance_deg"]
@@ -193,7 +193,7 @@ def knee(low_deg: float, high_deg: float, n: int) -> SideGait:
     return leg(Side.LEFT, n, knee_range_deg=np.linspace(low_deg, high_deg, n))
 
 
-def test_each_figure_stands_under_its_name_and_with_its_walks(tmp_path: Path) -> None:
+def test_each_figure_is_under_its_name_and_with_its_walks(tmp_path: Path) -> None:
     """Held against the strides themselves, column by column."""
     before, after = knee(58.0, 62.0, 12), knee(63.0, 71.0, 14)
     one = Part("A", "barefoot", (judged_walk(walk(left=before)),), calibrations())
@@ -217,14 +217,14 @@ def test_each_figure_stands_under_its_name_and_with_its_walks(tmp_path: Path) ->
     assert (cadence["difference"], cadence["verdict"]) == ("0.00000", "inside_error")
 
 
-def test_a_withheld_figure_is_of_the_part_that_it_is_told_of(tmp_path: Path) -> None:
+def test_a_not_reported_figure_is_of_the_part_that_it_is_reported_of(tmp_path: Path) -> None:
     bad = part("B", calibrations(Joint.LEFT_KNEE, sign_margin=1.0))
     found = differences(tmp_path, part("A"), bad)
     for row in (found["left", "knee_range_deg"], found["left", "ankle_range_deg"], found["both", "speed_m_s"]):
         assert (row["part"], row["against_part"]) == ("B", "A")
 
 
-def test_curves_are_told_of_every_joint_that_can_be_and_how_far_they_are_apart(tmp_path: Path) -> None:
+def test_curves_are_reported_of_every_joint_that_can_be_and_how_far_they_are_apart(tmp_path: Path) -> None:
     """The first joint of a leg, or of the other leg, takes none of those after it along."""
     higher = part("B", left=leg(Side.LEFT, knee_least_deg=4.0), right=leg(Side.RIGHT, ankle_least_deg=-7.0))
     found = differences(tmp_path, part("A"), higher)
@@ -246,11 +246,11 @@ def test_curves_are_told_of_every_joint_that_can_be_and_how_far_they_are_apart(t
     }
 
 
-@pytest.mark.parametrize(("strides", "is_told"), [(2, False), (3, True)])
-def test_a_curve_of_fewer_than_three_strides_is_not_compared(tmp_path: Path, strides: int, is_told: bool) -> None:
+@pytest.mark.parametrize(("strides", "is_reported"), [(2, False), (3, True)])
+def test_a_curve_of_fewer_than_three_strides_is_not_compared(tmp_path: Path, strides: int, is_reported: bool) -> None:
     """Its verdict withholds it already; what is pooled of a walk of two and none counts for itself."""
     found = differences(tmp_path, part("A"), part("B", left=leg(Side.LEFT, strides)))
-    assert (("left", "knee_curve_difference_deg") in found) is is_told
+    assert (("left", "knee_curve_difference_deg") in found) is is_reported
 
 
 def test_a_mean_curve_has_its_spread_and_its_strides_under_their_names(tmp_path: Path) -> None:

@@ -60,8 +60,8 @@ def test_a_foot_lands_before_the_body_and_leaves_behind_it(visit: tuple[Session,
 def test_lengths_are_shares_of_the_height_and_the_hips_stand_side_by_side(visit: tuple[Session, Analysis]) -> None:
     session, analysis = visit
     unknown = replace(session, patient=replace(session.patient, height_m=None))
-    for told, height_m in ((session, HEIGHT_M), (unknown, UNKNOWN_HEIGHT_M)):
-        legs = draw_legs(told, analysis, walk_of(analysis))
+    for reported, height_m in ((session, HEIGHT_M), (unknown, UNKNOWN_HEIGHT_M)):
+        legs = draw_legs(reported, analysis, walk_of(analysis))
         left, right = legs[Side.LEFT], legs[Side.RIGHT]
         np.testing.assert_allclose(
             left.leg_m[:, 0] - right.leg_m[:, 0], [[0, HIPS * height_m, 0]] * len(left.time_s), atol=1e-12
@@ -81,8 +81,8 @@ def test_the_shank_is_as_long_as_its_centres_lie_apart_unless_that_cannot_be(
     found = dict(span.joints)
     found[Joint.LEFT_KNEE] = replace(found[Joint.LEFT_KNEE], centre_distal_m=along * 0.1)
     found[Joint.LEFT_ANKLE] = replace(found[Joint.LEFT_ANKLE], centre_proximal_m=along * (0.1 - apart_m))
-    told = replace(analysis, calibrations=(replace(span, joints=found),))
-    leg = draw_legs(session, told, walk_of(told))[Side.LEFT]
+    reported = replace(analysis, calibrations=(replace(span, joints=found),))
+    leg = draw_legs(session, reported, walk_of(reported))[Side.LEFT]
     assert leg.shank_m == pytest.approx(drawn_m)
     np.testing.assert_allclose(np.linalg.norm(leg.leg_m[:, 2] - leg.leg_m[:, 1], axis=1), drawn_m)
 

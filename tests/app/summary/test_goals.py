@@ -28,7 +28,7 @@ from app.summary.goals import (
     reached_at,
     value_in_words,
 )
-from app.wording.measures import goal_in_words, spoken_value, wanted
+from app.wording.measures import goal_in_words, required, spoken_value
 from core.analysis import analyse
 from core.body import Joint, Side
 from core.goals import NO_GOALS, Goal, GoalOf, agreed_by
@@ -70,7 +70,7 @@ def only(found: Course) -> CourseCondition:
         (40.0, GoalStanding.REACHED),
     ],
 )
-def test_a_knee_of_50_degrees_stands_to_its_goal_as_the_error_between_visits_allows(
+def test_a_knee_of_50_degrees_is_to_its_goal_as_the_error_between_visits_allows(
     goal: float, standing: GoalStanding
 ) -> None:
     walk = walked(knee_deg=50.0)
@@ -97,13 +97,13 @@ def test_a_goal_of_the_walk_and_one_between_the_legs() -> None:
 
 
 def test_a_gated_figure_is_in_no_goal_statement() -> None:
-    told = unsure(Joint.LEFT_KNEE)
-    walk = walked(knee_deg=70.0, told=told)
-    found = measured(knee(50.0), replace(part(walk), calibrated=told))
-    assert (found.standing, found.verdict) == (GoalStanding.UNKNOWN, Verdict.WITHHELD)
+    reported = unsure(Joint.LEFT_KNEE)
+    walk = walked(knee_deg=70.0, reported=reported)
+    found = measured(knee(50.0), replace(part(walk), calibrated=reported))
+    assert (found.standing, found.verdict) == (GoalStanding.UNKNOWN, Verdict.NOT_REPORTED)
     assert math.isnan(found.value)
     assert goal_sentence(found) == ""
-    kept = course((walk, "shoes"), told=told)
+    kept = course((walk, "shoes"), reported=reported)
     assert in_course(knee(50.0), only(kept)).standing is GoalStanding.UNKNOWN
     apart = Goal(KNEE, GoalOf.BETWEEN, 5.0, DAY, is_at_most=True)
     assert in_course(apart, only(kept)).standing is GoalStanding.UNKNOWN
@@ -133,7 +133,7 @@ def test_few_strides_have_a_value_and_no_statement() -> None:
     assert found.value == pytest.approx(60.0, abs=0.3)
 
 
-def test_what_is_reached_in_every_condition_is_said_once_and_the_surest_first() -> None:
+def test_what_is_reached_in_every_condition_is_stated_once_and_the_surest_first() -> None:
     goals = [knee(45.0), Goal(SPEED, GoalOf.WALK, 0.7, DAY), knee(75.0, GoalOf.RIGHT)]
     found = reached_at(goals, course((walked(knee_deg=60.0), "shoes"), (walked("walk 2", knee_deg=46.0), "stick")))
     assert [one.goal for one in found] == [goals[1], goals[0]]
@@ -144,11 +144,11 @@ def test_what_is_reached_in_every_condition_is_said_once_and_the_surest_first() 
     assert reached_at(goals, course((walked(knee_deg=30.0, speed_m_s=0.4), "shoes"))) == ()
 
 
-def test_a_sentence_says_goal_value_error_and_standing() -> None:
-    said = {
+def test_a_sentence_states_goal_value_error_and_standing() -> None:
+    stated = {
         value: goal_sentence(GoalFigure(knee(50.0), value, 9.2, Verdict.READ)) for value in (40.0, 49.0, 51.0, 60.0)
     }
-    assert said == {
+    assert stated == {
         40.0: "Goal: Knee flexion, stance to swing, left: at least 50°; measured 40.0°, not reached, "
         "beyond measurement error (±9.2°).",
         49.0: "Goal: Knee flexion, stance to swing, left: at least 50°; measured 49.0°, not reached, "
@@ -170,7 +170,7 @@ def test_goals_are_called_by_whose_they_are_and_by_their_limit() -> None:
         "goal 1.20\u00a0m/s",
         "goal L 55°",
     ]
-    assert wanted(apart) == "difference at most 2.5\N{NO-BREAK SPACE}%"
+    assert required(apart) == "difference at most 2.5\N{NO-BREAK SPACE}%"
     assert goal_in_words(right) == "Stance, right: at most 62\u00a0%"
     assert goal_in_words(speed) == "Walking speed: at least 1.20\u00a0m/s"
     assert spoken_value("cadence_steps_min", "104") == "104 steps per minute"
@@ -198,8 +198,8 @@ def test_the_table_judges_only_what_was_agreed_before_the_day() -> None:
     assert rows(walked(), knee(45.0), day=DAY - datetime.timedelta(days=1)) == []
 
 
-def test_a_withheld_value_is_an_empty_cell() -> None:
-    (row,) = rows(walked(knee_deg=60.0, told=unsure(Joint.LEFT_KNEE)), knee(45.0))
+def test_a_not_reported_value_is_an_empty_cell() -> None:
+    (row,) = rows(walked(knee_deg=60.0, reported=unsure(Joint.LEFT_KNEE)), knee(45.0))
     assert (row["value"], row["error"], row["status"], row["standing"]) == ("", "", "withheld", "unknown")
 
 
@@ -211,13 +211,13 @@ def agreed() -> Session:
     return replace(session, patient=patient, started="2026-11-21T10:00:00+01:00")
 
 
-def test_folder_and_summary_tell_the_same_and_who_agreed_stays_away(agreed: Session, tmp_path: Path) -> None:
+def test_folder_and_summary_show_the_same_and_who_agreed_stays_away(agreed: Session, tmp_path: Path) -> None:
     write_results(agreed, analyse(agreed), tmp_path)
     with (tmp_path / GOALS).open(encoding="utf-8", newline="") as file:
         table = list(csv.DictReader(file))
-    told = json.loads((tmp_path / "summary.json").read_text())["walks"]["walk 1"]["goals"]
-    assert [row["standing"] for row in table] == [one["standing"] for one in told] == ["reached", "short"]
-    assert [float(row["value"]) for row in table] == pytest.approx([one["value"] for one in told], abs=1e-5)
+    reported = json.loads((tmp_path / "summary.json").read_text())["walks"]["walk 1"]["goals"]
+    assert [row["standing"] for row in table] == [one["standing"] for one in reported] == ["reached", "short"]
+    assert [float(row["value"]) for row in table] == pytest.approx([one["value"] for one in reported], abs=1e-5)
     whole = (tmp_path / GOALS).read_text() + (tmp_path / "summary.json").read_text()
     assert "Keller" not in whole
     assert "ferry" not in whole
@@ -247,9 +247,9 @@ def test_a_bundle_holds_what_had_been_agreed_and_does_not_say_whether_it_is_reac
 
 
 def test_the_day_of_a_session_decides(agreed: Session) -> None:
-    assert len(agreed_with(agreed).told) == 2
+    assert len(agreed_with(agreed).reported) == 2
     assert agreed_with(replace(agreed, started="")).held == ()
-    assert agreed_with(replace(agreed, started="2026-09-30T23:00:00+02:00")).told == ()
+    assert agreed_with(replace(agreed, started="2026-09-30T23:00:00+02:00")).reported == ()
     assert of_part(part(walked())) == ()
 
 
@@ -268,14 +268,14 @@ def test_a_goal_of_a_timed_test_is_held_against_the_tests_of_the_walks_and_no_ot
     ten = Goal("ten_metres_speed_m_s", GoalOf.WALK, 1.0, DAY)
     up = Goal("up_and_go_time_s", GoalOf.WALK, 12.0, DAY, is_at_most=True)
     walk = timed(TimedProtocol.TEN_METRES, time_s=8.0)
-    told, other = measured(ten, part(walk)), measured(up, part(walk))
-    assert told.value == pytest.approx(1.25)
-    assert (told.standing, told.verdict) == (GoalStanding.REACHED, Verdict.READ)
+    reported, other = measured(ten, part(walk)), measured(up, part(walk))
+    assert reported.value == pytest.approx(1.25)
+    assert (reported.standing, reported.verdict) == (GoalStanding.REACHED, Verdict.READ)
     assert (other.standing, other.verdict) == (GoalStanding.UNKNOWN, Verdict.NOT_MEASURED)
     assert measured(ten, part(walked())).verdict is Verdict.NOT_MEASURED
     risen = measured(up, part(timed(TimedProtocol.UP_AND_GO, time_s=9.0)))
     assert risen.value == pytest.approx(9.0)
     assert risen.standing is GoalStanding.NOT_JUDGED
-    assert [goal_figures(one, NO_GOALS)["unit"] for one in (told, risen)] == ["m/s", "s"]
-    assert value_in_words(told) == "1.25\N{NO-BREAK SPACE}m/s"
+    assert [goal_figures(one, NO_GOALS)["unit"] for one in (reported, risen)] == ["m/s", "s"]
+    assert value_in_words(reported) == "1.25\N{NO-BREAK SPACE}m/s"
     assert goal_mark(up) == "goal \N{LESS-THAN OR EQUAL TO}12\N{NO-BREAK SPACE}s"

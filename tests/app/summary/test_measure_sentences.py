@@ -3,7 +3,7 @@
 import pytest
 
 from app.summary.measure_sentences import (
-    Told,
+    Reported,
     change_sentence,
     legs_sentence,
     likely_sentence,
@@ -18,8 +18,8 @@ from core.verdicts.measurement_error import Difference, Judgement
 
 def changed(column: str, difference: float, now: float, before: float) -> str:
     who = who_in_sentence(column, Side.LEFT)
-    said = change_sentence(column, who, difference, Told("with B", now), Told("with A", before))
-    return said.replace("\N{NO-BREAK SPACE}", " ")
+    stated = change_sentence(column, who, difference, Reported("with B", now), Reported("with A", before))
+    return stated.replace("\N{NO-BREAK SPACE}", " ")
 
 
 def test_a_joint_does_what_its_measure_is_of() -> None:
@@ -37,11 +37,11 @@ def test_a_share_of_the_gait_cycle_is_named_so_that_it_is_no_relative_change() -
 
 @pytest.mark.parametrize("column", COMPARED)
 def test_every_compared_measure_has_a_whole_sentence_with_all_its_values(column: str) -> None:
-    said = changed(column, -4.0, 50.0, 54.0)
-    assert said[0].isupper()
-    assert said.endswith(").")
-    assert all(number in said for number in ("50", "4", "54"))
-    assert "{" not in said
+    stated = changed(column, -4.0, 50.0, 54.0)
+    assert stated[0].isupper()
+    assert stated.endswith(").")
+    assert all(number in stated for number in ("50", "4", "54"))
+    assert "{" not in stated
 
 
 def test_a_difference_is_subtracted_before_it_is_rounded_and_the_values_show_it() -> None:
@@ -50,7 +50,7 @@ def test_a_difference_is_subtracted_before_it_is_rounded_and_the_values_show_it(
 
 
 def test_a_null_result_has_both_values_and_what_would_fit() -> None:
-    now, before = Told("with B", 61.0), Told("with A", 60.0)
+    now, before = Reported("with B", 61.0), Reported("with A", 60.0)
     similar = similar_sentence("knee_range_deg", "Prosthetic side", 1.0, now, before)
     assert similar == "Prosthetic side: knee range of motion is similar with A and with B, 60.0° and 61.0°."
     found = Difference(1.0, 3.0, Judgement.INSIDE_ERROR)
@@ -58,10 +58,10 @@ def test_a_null_result_has_both_values_and_what_would_fit() -> None:
     assert likely == "The change of +1.0° may be measurement error: likely between \N{MINUS SIGN}2.0° and +4.0°."
 
 
-def test_the_legs_are_told_with_a_verb_too() -> None:
+def test_the_legs_are_reported_with_a_verb_too() -> None:
     found = Difference(-5.0, 2.0, Judgement.EXCEEDS_ERROR)
-    said = legs_sentence("ankle_rocker_deg", found, ("left", "right"), (10.0, 15.0))
-    assert said == "The left ankle dorsiflexes 5.0° less in stance than the right: 10.0° against 15.0°."
+    stated = legs_sentence("ankle_rocker_deg", found, ("left", "right"), (10.0, 15.0))
+    assert stated == "The left ankle dorsiflexes 5.0° less in stance than the right: 10.0° against 15.0°."
 
 
 def test_a_measure_has_one_name_in_a_table_and_within_a_sentence() -> None:

@@ -19,10 +19,10 @@ TEST = PlannedTest(TimedProtocol.TEN_METRES)
 TARGET = "target cadence both 110 steps/min: 5 of 12 strides"
 
 
-def walked(*told: tuple[str, AlignmentChange | None] | Recording) -> tuple[Recording, ...]:
+def walked(*reported: tuple[str, AlignmentChange | None] | Recording) -> tuple[Recording, ...]:
     """Walks in order, each by its condition and what was changed before it."""
     found = []
-    for number, one in enumerate(told, start=1):
+    for number, one in enumerate(reported, start=1):
         name = f"walk {number}"
         if isinstance(one, Recording):
             found.append(replace(one, name=name))
@@ -44,17 +44,17 @@ def analysed(recordings: tuple[Recording, ...]) -> Analysis:
 
 
 def of(condition: str, test: PlannedTest | None = None, note: str = "", *, is_restrapped: bool = False) -> Recording:
-    told = Recording("", RecordingKind.WALKING, "", {}, condition=condition, test=test, note=note)
-    return replace(told, is_restrapped_before=is_restrapped)
+    reported = Recording("", RecordingKind.WALKING, "", {}, condition=condition, test=test, note=note)
+    return replace(reported, is_restrapped_before=is_restrapped)
 
 
 @pytest.mark.parametrize(
-    ("told", "expected"),
+    ("reported", "expected"),
     [
         ([("A", None), ("B", AlignmentChange("A", UP)), ("A", None)], ["A", "B", "A2"]),
         ([("A", None), ("A", None), ("B", AlignmentChange("A", UP)), ("A", None)], ["A", "A", "B", "A3"]),
         ([("A", None), ("B", AlignmentChange("A", UP)), ("A", None), ("A", None)], ["A", "B", "A2", "A2"]),
-        # nobody has said that B is another alignment, or it is none
+        # nobody has stated that B is another alignment, or it is none
         ([("Barefoot", None), ("Shoes", None), ("Barefoot", None)], ["A", "B", "A"]),
         (
             [("A", None), ("B", AlignmentChange("A", UP)), ("B", AlignmentChange("A", UP)), ("Shoes", None)],
@@ -63,28 +63,30 @@ def of(condition: str, test: PlannedTest | None = None, note: str = "", *, is_re
     ],
 )
 def test_walks_with_what_the_prosthesis_was_put_back_to_are_taken_by_themselves(
-    told: list[tuple[str, AlignmentChange | None]], expected: list[str]
+    reported: list[tuple[str, AlignmentChange | None]], expected: list[str]
 ) -> None:
-    assert letters(walked(*told)) == expected
+    assert letters(walked(*reported)) == expected
 
 
 def test_put_back_by_hand_and_written_down_as_a_change_it_is_no_return() -> None:
     """C is what A was, so who walks with A again was elsewhere only in between."""
-    told = walked(("A", None), ("B", AlignmentChange("A", UP)), ("C", AlignmentChange("B", DOWN)), ("C", None))
-    assert letters(told) == ["A", "B", "C", "C"]
+    reported = walked(("A", None), ("B", AlignmentChange("A", UP)), ("C", AlignmentChange("B", DOWN)), ("C", None))
+    assert letters(reported) == ["A", "B", "C", "C"]
 
 
-def test_sensors_strapped_on_anew_begin_another_pool() -> None:
-    told = walked(of("A"), of("A", is_restrapped=True), of("A"))
-    assert letters(told) == ["A", "B", "B"]
+def test_sensors_strapped_on_again_begin_another_pool() -> None:
+    reported = walked(of("A"), of("A", is_restrapped=True), of("A"))
+    assert letters(reported) == ["A", "B", "B"]
 
 
 def test_attempts_at_one_test_are_together_and_each_walk_towards_a_target_is_alone() -> None:
-    told = walked(of("A"), of("A", test=TEST), of("A", note=TARGET), of("A", test=TEST), of("A", note=TARGET), of("A"))
-    assert letters(told) == ["A", "A2", "A3", "A2", "A5", "A"]
+    reported = walked(
+        of("A"), of("A", test=TEST), of("A", note=TARGET), of("A", test=TEST), of("A", note=TARGET), of("A")
+    )
+    assert letters(reported) == ["A", "A2", "A3", "A2", "A5", "A"]
 
 
-def test_a_condition_that_was_walked_stands_without_its_tests_and_else_by_them() -> None:
+def test_a_condition_that_was_walked_is_without_its_tests_and_else_by_them() -> None:
     both = walked(of("A", test=TEST), of("A"), of("B", test=TEST))
     found = conditions_of(analysed(both), both)
     assert [(part.letter, part.is_apart) for part in found] == [("A2", False), ("B", True)]
@@ -93,5 +95,5 @@ def test_a_condition_that_was_walked_stands_without_its_tests_and_else_by_them()
 
 
 def test_a_visit_is_compared_by_its_walks_also_where_a_test_followed_on_another_strapping() -> None:
-    told = walked(of("A"), of("A", test=TEST, is_restrapped=True))
-    assert by_condition(analysed(told), told)["A"].walks[0].name == "walk 1"
+    reported = walked(of("A"), of("A", test=TEST, is_restrapped=True))
+    assert by_condition(analysed(reported), reported)["A"].walks[0].name == "walk 1"

@@ -110,8 +110,8 @@ def test_the_error_lies_about_the_first_visit_that_can_be_read(session: Session,
     shown = trend(found, "knee_range_deg")
     assert shown.band is not None
     assert sum(shown.band) / 2 == pytest.approx(shown.values[1])
-    withheld = compared(session, (analysis, analysis, gated))
-    assert trend(withheld, "knee_range_deg").band is None
+    not_reported = compared(session, (analysis, analysis, gated))
+    assert trend(not_reported, "knee_range_deg").band is None
 
 
 def test_visits_lie_to_the_scale_of_days_where_these_are_known(session: Session, analysis: Analysis) -> None:

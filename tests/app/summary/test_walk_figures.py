@@ -1,4 +1,4 @@
-"""The figures of a walk: means over the strides used, a band from the same windows, and what cannot be told."""
+"""The figures of a walk: means over the strides used, a band from the same windows, and what cannot be reported."""
 
 import csv
 from dataclasses import replace
@@ -21,7 +21,7 @@ from app.summary.reference_bands import (
 from app.summary.walk_figures import (
     MAY_BE_MIRRORED,
     NO_ZERO,
-    WITHHELD,
+    NOT_REPORTED,
     Figure,
     few_strides_in_words,
     peak_figures,
@@ -70,7 +70,7 @@ def test_a_peak_is_the_mean_over_the_strides_used_alone(analysis: Analysis) -> N
     assert peak.mean == pytest.approx(float(cycles_deg[:, 55:91].max(axis=1).mean()))
 
 
-def test_the_band_of_a_peak_stands_where_the_groups_mean_curve_has_its_own(walk: RecordingAnalysis) -> None:
+def test_the_band_of_a_peak_is_where_the_groups_mean_curve_has_its_own(walk: RecordingAnalysis) -> None:
     found = peak_figures(alone(walk), reference_curves())
     group = reference_curves()
     at = 55 + int(np.argmax(group.knee_mean_deg[55:91]))
@@ -81,7 +81,7 @@ def test_the_band_of_a_peak_stands_where_the_groups_mean_curve_has_its_own(walk:
     assert all(figure.band is None for figures in peak_figures(alone(walk), None).values() for figure in figures)
 
 
-def test_without_a_zero_only_what_needs_none_is_told(analysis: Analysis) -> None:
+def test_without_a_zero_only_what_needs_none_is_reported(analysis: Analysis) -> None:
     walk = walk_of(recalibrated(analysis, [Joint.LEFT_KNEE], zero=ZeroKind.NONE))
     for figure in peak_figures(alone(walk), reference_curves())["knee"]:
         holds = figure.name in ("Range of motion", "Time of peak flexion, swing, %")
@@ -90,23 +90,23 @@ def test_without_a_zero_only_what_needs_none_is_told(analysis: Analysis) -> None
         assert Side.RIGHT in figure.sides
 
 
-def test_of_a_joint_that_may_be_mirrored_only_the_range_is_told(analysis: Analysis) -> None:
+def test_of_a_joint_that_may_be_mirrored_only_the_range_is_reported(analysis: Analysis) -> None:
     walk = walk_of(recalibrated(analysis, [Joint.RIGHT_ANKLE], is_sign_certain=False))
     for figure in peak_figures(alone(walk), reference_curves())["ankle"]:
         expected = {} if figure.name == "Range of motion" else {Side.RIGHT: MAY_BE_MIRRORED}
         assert dict(figure.unknown) == expected, figure.name
 
 
-def test_of_sensors_that_are_no_neighbours_nothing_is_told_and_the_other_leg_is(analysis: Analysis) -> None:
+def test_of_sensors_that_are_no_adjacent_nothing_is_reported_and_the_other_leg_is(analysis: Analysis) -> None:
     walk = walk_of(recalibrated(analysis, [Joint.RIGHT_ANKLE], is_same_joint=False))
     for figure in peak_figures(alone(walk), reference_curves())["ankle"]:
-        assert dict(figure.unknown) == {Side.RIGHT: WITHHELD}, figure.name
+        assert dict(figure.unknown) == {Side.RIGHT: NOT_REPORTED}, figure.name
         assert set(figure.sides) == {Side.LEFT}, figure.name
     both = recalibrated(analysis, [Joint.LEFT_ANKLE, Joint.RIGHT_ANKLE], is_same_joint=False)
     assert all(figure.band is None for figure in peak_figures(alone(walk_of(both)), reference_curves())["ankle"])
     figures = time_distance_figures(alone(walk), None, frozenset(Side))
     assert named(figures, "Stance").with_care == {Side.RIGHT}  # the foot's sensor may not be on this foot
-    assert named(figures, "Double support").unknown_both == WITHHELD
+    assert named(figures, "Double support").unknown_both == NOT_REPORTED
     assert (
         named(time_distance_figures(alone(walk_of(analysis)), None, frozenset(Side)), "Double support").unknown_both
         == ""
@@ -135,7 +135,7 @@ def test_time_and_distance_stand_beside_the_group_of_the_walks_speed(walk: Recor
     assert length / named(figures, "Stride time").sides[Side.LEFT].mean == pytest.approx(0.95, abs=0.05)
 
 
-def test_a_prosthetic_leg_stands_beside_no_band_and_the_sound_one_does(analysis: Analysis) -> None:
+def test_a_prosthetic_leg_is_beside_no_band_and_the_sound_one_does(analysis: Analysis) -> None:
     walk = walk_of(analysis)
     assert sides_with_band(alone(walk)) == set(Side)
     prosthetic = replace(walk.gait[Side.RIGHT], is_toe_off_biased=True)
@@ -190,23 +190,23 @@ def test_strides_left_out_are_counted_with_their_reasons(walk: RecordingAnalysis
     reason = (Reason.GAP, *few.gait[Side.LEFT].strides.reason[1:])
     strides = replace(few.gait[Side.LEFT].strides, reason=reason)
     gait = replace(few.gait[Side.LEFT], strides=strides)
-    said = strides_in_words(alone(replace(few, gait={Side.LEFT: gait})), Side.LEFT)
-    assert said == f"L: 0 strides used, {left_out + 1} excluded ({left_out} turning, 1 with missing samples)."
+    stated = strides_in_words(alone(replace(few, gait={Side.LEFT: gait})), Side.LEFT)
+    assert stated == f"L: 0 strides used, {left_out + 1} excluded ({left_out} turning, 1 with missing samples)."
 
 
 @pytest.mark.parametrize("reason", [reason for reason in Reason if reason is not Reason.USED])
 def test_every_reason_to_leave_a_stride_out_has_its_words(walk: RecordingAnalysis, reason: Reason) -> None:
     gait = walk.gait[Side.LEFT]
     strides = replace(gait.strides, reason=(reason,) * len(gait.strides))
-    said = strides_in_words(alone(replace(walk, gait={Side.LEFT: replace(gait, strides=strides)})), Side.LEFT)
-    assert said.startswith(f"L: 0 strides used, {len(gait.strides)} excluded (")
-    assert "_" not in said
+    stated = strides_in_words(alone(replace(walk, gait={Side.LEFT: replace(gait, strides=strides)})), Side.LEFT)
+    assert stated.startswith(f"L: 0 strides used, {len(gait.strides)} excluded (")
+    assert "_" not in stated
 
 
-def test_what_few_strides_cost_is_said_by_side(walk: RecordingAnalysis) -> None:
+def test_what_few_strides_cost_is_stated_by_side(walk: RecordingAnalysis) -> None:
     assert few_strides_in_words(alone(with_used(with_used(walk, Side.LEFT, 10), Side.RIGHT, 11))) == ""
-    said = few_strides_in_words(alone(with_used(with_used(walk, Side.LEFT, 2), Side.RIGHT, 9)))
-    assert said == "L: fewer than 3 strides, no mean. R: fewer than 10 strides, no SD."
+    stated = few_strides_in_words(alone(with_used(with_used(walk, Side.LEFT, 2), Side.RIGHT, 9)))
+    assert stated == "L: fewer than 3 strides, no mean. R: fewer than 10 strides, no SD."
     assert (
         few_strides_in_words(alone(with_used(with_used(walk, Side.LEFT, 0), Side.RIGHT, 11))) == ""
     )  # there is no mean
@@ -225,7 +225,7 @@ def test_a_stride_with_a_gap_is_in_no_mean_cycle(walk: RecordingAnalysis) -> Non
     assert found.toe_off_percent == pytest.approx(float(gait.strides.stance_percent[:5].mean()))
 
 
-def test_strides_left_out_by_hand_are_said_in_words_in_the_summary_and_in_every_table(
+def test_strides_left_out_by_hand_are_stated_in_words_in_the_summary_and_in_every_table(
     analysis: Analysis, tmp_path: Path
 ) -> None:
     """Who reads one file only has to know as well."""
@@ -233,8 +233,8 @@ def test_strides_left_out_by_hand_are_said_in_words_in_the_summary_and_in_every_
     strides = walk.gait[Side.RIGHT].strides
     out = np.flatnonzero(strides.is_used)[:2]
     middle_s = [float(strides.start_s[k] + strides.end_s[k]) / 2 for k in out]
-    told = Recording(walk.name, walk.kind, walk.folder, {}, left_out_s={Side.RIGHT: tuple(middle_s)})
-    found = leave_out(analysis, [told])
+    reported = Recording(walk.name, walk.kind, walk.folder, {}, left_out_s={Side.RIGHT: tuple(middle_s)})
+    found = leave_out(analysis, [reported])
     (left,) = (recording for recording in found.recordings if recording.gait)
     assert by_hand_in_words(walk) == ""
     assert by_hand_in_words(left) == f"2 of {len(strides)} right strides excluded by hand."

@@ -1,4 +1,4 @@
-"""What columns mean is told once; a file that was damaged asks for it anew."""
+"""What columns mean is reported once; a file that was damaged asks for it again."""
 
 from pathlib import Path
 

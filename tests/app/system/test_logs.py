@@ -131,9 +131,9 @@ def test_an_exception_keeps_its_kind_and_where_in_our_source_it_was_raised() -> 
 
     with pytest.raises(FileNotFoundError) as caught:
         read_header(Path("Anna.journal"))
-    told = list(pseudonymised(caught.value))
-    assert told[0] == f"builtins.FileNotFoundError {errno.errorcode[errno.ENOENT]}"
-    assert any("at app.storage.journal.header line" in line and line.endswith("read_header") for line in told)
+    reported = list(pseudonymised(caught.value))
+    assert reported[0] == f"builtins.FileNotFoundError {errno.errorcode[errno.ENOENT]}"
+    assert any("at app.storage.journal.header line" in line and line.endswith("read_header") for line in reported)
 
 
 def test_files_are_the_owners_and_never_more_than_five(folder: Path, monkeypatch: pytest.MonkeyPatch) -> None:

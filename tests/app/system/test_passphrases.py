@@ -1,4 +1,4 @@
-"""How long a passphrase holds: what is tried first is refused and told why, and times are on the cautious side."""
+"""How long a passphrase holds: what is tried first is refused and reported why, and times are on the cautious side."""
 
 import subprocess
 import sys
@@ -44,7 +44,7 @@ def test_passphrases_are_judged_by_how_long_they_hold(passphrase: str, expected:
         ("q9x vv zt b", "It is too short for the characters it uses"),
     ],
 )
-def test_a_refusal_says_why_and_what_to_do(passphrase: str, why: str) -> None:
+def test_a_refusal_states_why_and_what_to_do(passphrase: str, why: str) -> None:
     what, remedy = refusal_of_passphrase(passphrase, SHORTEST)
     assert why in what
     assert "could guess it within" in what
@@ -52,9 +52,9 @@ def test_a_refusal_says_why_and_what_to_do(passphrase: str, why: str) -> None:
     assert strength_in_words(passphrase, SHORTEST) == f"{what}. {remedy}."
 
 
-def test_a_long_random_phrase_is_told_no_fault() -> None:
-    said = strength_in_words("lamp river onion seventeen cloud", SHORTEST)
-    assert said == "Strong: guessing it would take longer than anyone would wait."
+def test_a_long_random_phrase_is_reported_no_fault() -> None:
+    stated = strength_in_words("lamp river onion seventeen cloud", SHORTEST)
+    assert stated == "Strong: guessing it would take longer than anyone would wait."
 
 
 def test_what_anybody_knows_of_an_operator_is_worth_little() -> None:
@@ -66,7 +66,7 @@ def test_what_anybody_knows_of_an_operator_is_worth_little() -> None:
     assert strength_of("lamp river onion seventeen cloud", SHORTEST, known) is Strength.STRONG
 
 
-def test_what_is_too_short_is_told_so() -> None:
+def test_what_is_too_short_is_reported_so() -> None:
     assert "At least 10 characters" in strength_in_words("short", SHORTEST)
     assert held_for_s("") == 0.0
 

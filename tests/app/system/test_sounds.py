@@ -92,7 +92,7 @@ def played(folder: Path) -> list[str]:
 
 
 def is_gone(process: int) -> bool:
-    """Tell whether nothing is left of a process; one that ended and was not waited for is still there."""
+    """Return whether nothing is left of a process; one that ended and was not waited for is still there."""
     try:
         os.kill(process, 0)
     except ProcessLookupError:
@@ -103,9 +103,9 @@ def is_gone(process: int) -> bool:
 @pytest.fixture
 def beeps(monkeypatch: pytest.MonkeyPatch) -> list[threading.Thread]:
     """Note the thread of every beep."""
-    heard: list[threading.Thread] = []
-    monkeypatch.setattr(QApplication, "beep", lambda: heard.append(threading.current_thread()))
-    return heard
+    received: list[threading.Thread] = []
+    monkeypatch.setattr(QApplication, "beep", lambda: received.append(threading.current_thread()))
+    return received
 
 
 def test_a_sound_is_given_to_the_player(qtbot: QtBot, tmp_path: Path) -> None:
@@ -123,7 +123,7 @@ def test_a_player_that_has_ended_leaves_no_process_behind(qtbot: QtBot, tmp_path
     qtbot.waitUntil(lambda: is_gone(int(number.read_text())))
 
 
-def test_two_sounds_never_overlap_and_of_those_that_wait_the_latest_is_heard(qtbot: QtBot, tmp_path: Path) -> None:
+def test_two_sounds_never_overlap_and_of_those_that_wait_the_latest_is_received(qtbot: QtBot, tmp_path: Path) -> None:
     flag = tmp_path / "sounding"
     alone = f"os.mkdir({str(flag)!r}); time.sleep(0.1); os.rmdir({str(flag)!r})"  # mkdir refuses where one sounds
     loudspeaker = Loudspeaker([player(tmp_path, alone), player(tmp_path, "print()")])

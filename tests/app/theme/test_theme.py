@@ -85,7 +85,7 @@ def test_the_dark_theme_reaches_what_is_shown_already(qtbot: QtBot, look: ThemeN
     assert name(light.surface) not in colours_in(line.grab().toImage(), line.rect().adjusted(8, 4, -8, -4))
 
 
-def test_what_cannot_be_pressed_is_not_painted_as_wished(qtbot: QtBot, look: ThemeNotifier) -> None:
+def test_what_cannot_be_pressed_is_not_painted_as_requested(qtbot: QtBot, look: ThemeNotifier) -> None:
     button = Button(look, "Go", ButtonKind.PRIMARY)
     qtbot.addWidget(button)
     button.setEnabled(False)
@@ -191,11 +191,13 @@ def test_enter_belongs_to_the_page_and_not_to_a_chip_or_segment(qtbot: QtBot, lo
     assert (pressed, chips.chosen, segmented.choice) == (["button"], (), "l")
 
 
-def test_a_notice_that_is_told_before_it_is_shown_has_the_ink_of_a_caution(qtbot: QtBot, look: ThemeNotifier) -> None:
+def test_a_notice_that_is_reported_before_it_is_shown_has_the_ink_of_a_caution(
+    qtbot: QtBot, look: ThemeNotifier
+) -> None:
     look.set_dark(True)
     notice = Notice(look)
     qtbot.addWidget(notice)
-    notice.tell(None, "The left leg moved.", is_caution=True)
+    notice.show_message(None, "The left leg moved.", is_caution=True)
     notice.resize(300, 60)
     notice.show()
     assert name(look.theme.colours.caution_ink) in colours_in(notice.grab().toImage())

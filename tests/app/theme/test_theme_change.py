@@ -46,20 +46,20 @@ PARTS: tuple[Make, ...] = (
 @pytest.mark.parametrize("make", PARTS)
 def test_a_part_that_another_size_reaches_later_looks_as_one_made_at_it(qtbot: QtBot, make: Make) -> None:
     look = ThemeNotifier()
-    told = make(look)
-    qtbot.addWidget(told)
-    told.resize(900, 700)
-    told.show()
-    before = told.grab().toImage()
+    reported = make(look)
+    qtbot.addWidget(reported)
+    reported.resize(900, 700)
+    reported.show()
+    before = reported.grab().toImage()
     look.set_scale(1.5)
     made = make(look)
     qtbot.addWidget(made)
-    for part in (told, made):
+    for part in (reported, made):
         part.resize(900, 700)
         part.show()
     qtbot.wait(20)
-    for part in (told, made):  # only one of two windows is in front, and has a ring
+    for part in (reported, made):  # only one of two windows is in front, and has a ring
         if (focused := part.focusWidget()) is not None:
             focused.clearFocus()
-    qtbot.waitUntil(lambda: told.grab().toImage() == made.grab().toImage(), timeout=2_000)  # layouts come later
-    assert told.grab().toImage() != before
+    qtbot.waitUntil(lambda: reported.grab().toImage() == made.grab().toImage(), timeout=2_000)  # layouts come later
+    assert reported.grab().toImage() != before

@@ -1,4 +1,4 @@
-"""The action bar: what is filled, what is told, the inverse bar, and focus that is never lost."""
+"""The action bar: what is filled, what is reported, the inverse bar, and focus that is never lost."""
 
 import gc
 import weakref
@@ -39,25 +39,25 @@ def ground(bar: ActionBar) -> QColor:
     return bar.grab().toImage().pixelColor(4, bar.height() // 2)
 
 
-def test_a_verb_is_filled_only_if_pressing_it_is_wished(bar: ActionBar) -> None:
+def test_a_verb_is_filled_only_if_pressing_it_is_requested(bar: ActionBar) -> None:
     bar.show_state(BarState(idle("Continue to walking", "Enter")))
     assert bar.primary.is_filled
-    bar.show_state(BarState(idle("Stop early", "Space", is_wished=False)))
+    bar.show_state(BarState(idle("Stop early", "Space", is_requested=False)))
     assert not bar.primary.is_filled
 
 
-def test_each_verb_tells_that_it_was_pressed(bar: ActionBar, qtbot: QtBot) -> None:
+def test_each_verb_shows_that_it_was_pressed(bar: ActionBar, qtbot: QtBot) -> None:
     quiet = (idle("Repeat one leg"), idle("Swap"))
     bar.show_state(BarState(idle("Go on"), others=(idle("Keep"), idle("Discard")), quiet=quiet))
-    told: list[str] = []
-    bar.back_pressed.connect(lambda: told.append("Back"))
-    bar.pressed.connect(lambda action: told.append(action.text))
+    reported: list[str] = []
+    bar.back_pressed.connect(lambda: reported.append("Back"))
+    bar.pressed.connect(lambda action: reported.append(action.text))
     for button in (bar.back, *bar.quiet, *bar.others, bar.primary):
         QTest.mouseClick(button, Qt.MouseButton.LeftButton)
-    assert told == ["Back", "Repeat one leg", "Swap", "Keep", "Discard", "Go on"]
+    assert reported == ["Back", "Repeat one leg", "Swap", "Keep", "Discard", "Go on"]
 
 
-def test_a_button_does_what_it_says_also_where_the_words_stay_and_the_deed_does_not(bar: ActionBar) -> None:
+def test_a_button_does_what_it_states_also_where_the_words_stay_and_the_deed_does_not(bar: ActionBar) -> None:
     done: list[str] = []
     bar.pressed.connect(lambda action: action.run())
     for deed in ("left", "right"):
@@ -80,16 +80,16 @@ def test_words_of_a_screen_reader_follow_the_verb(bar: ActionBar) -> None:
 
 
 def test_a_verb_that_is_off_cannot_be_pressed(bar: ActionBar) -> None:
-    told: list[BarAction] = []
-    bar.pressed.connect(told.append)
+    reported: list[BarAction] = []
+    bar.pressed.connect(reported.append)
     bar.show_state(BarState(replace(idle("Stand still"), is_enabled=False), note="Two sensors are still to be placed."))
     QTest.mouseClick(bar.primary, Qt.MouseButton.LeftButton)
-    assert told == []
+    assert reported == []
 
 
 def test_the_bar_is_inverse_while_recording_and_at_no_other_time(bar: ActionBar) -> None:
-    told: list[bool] = []
-    bar.recording_changed.connect(told.append)
+    reported: list[bool] = []
+    bar.recording_changed.connect(reported.append)
     bar.show_state(BarState(idle("Start walk")))
     assert ground(bar) == QColor(LIGHT.surface)
     bar.show_state(recording())
@@ -97,7 +97,7 @@ def test_the_bar_is_inverse_while_recording_and_at_no_other_time(bar: ActionBar)
     assert bar.back.isHidden()
     bar.show_state(BarState(idle("Start walk")))
     assert ground(bar) == QColor(LIGHT.surface)
-    assert told == [True, False]
+    assert reported == [True, False]
 
 
 def test_the_time_goes_on_without_anything_else_being_painted(bar: ActionBar) -> None:
@@ -109,7 +109,7 @@ def test_the_time_goes_on_without_anything_else_being_painted(bar: ActionBar) ->
     assert bar.primary.geometry() == before
 
 
-def test_the_bell_tells_whether_it_is_on(bar: ActionBar, qtbot: QtBot) -> None:
+def test_the_bell_shows_whether_it_is_on(bar: ActionBar, qtbot: QtBot) -> None:
     bar.show_state(recording())
     assert bar.sound.text() == "Sound on"
     with qtbot.waitSignal(bar.sound_pressed):
@@ -118,7 +118,7 @@ def test_the_bell_tells_whether_it_is_on(bar: ActionBar, qtbot: QtBot) -> None:
     assert bar.sound.text() == "Sound off"
 
 
-def test_without_back_the_first_quiet_verb_stands_in_its_place(bar: ActionBar) -> None:
+def test_without_back_the_first_quiet_verb_is_in_its_place(bar: ActionBar) -> None:
     bar.show_state(BarState(idle("Go on"), quiet=(idle("New patient"),)))
     back = bar.back.x()
     bar.show_state(BarState(idle("Go on"), quiet=(idle("New patient"),), has_back=False))

@@ -34,7 +34,7 @@ def test_a_path_that_cannot_be_read_is_refused() -> None:
         read_path("M 0 0 C 1 1 2 2")
 
 
-def test_the_patients_right_stands_at_the_left_and_changes_over_from_behind(figure: BodyFigure) -> None:
+def test_the_patients_right_is_at_the_left_and_changes_over_from_behind(figure: BodyFigure) -> None:
     middle = figure.width() / 2
     for site in LEG_SITES:
         assert (figure.anchor(site).x() > middle) == (site.side is Side.LEFT)
@@ -55,7 +55,7 @@ def test_each_place_is_found_where_it_is_drawn(figure: BodyFigure, is_legs_only:
         assert thigh_or_shank < figure.joint_anchor(joint).y() < below
 
 
-def test_the_figure_says_its_places(figure: BodyFigure) -> None:
+def test_the_figure_states_its_places(figure: BodyFigure) -> None:
     figure.show_worn({Site.LEFT_THIGH: SensorMark.WORN, Site.RIGHT_FOOT: SensorMark.SILENT})
     figure.emphasise(Site.LEFT_SHANK)
     assert figure.accessibleDescription() == "L thigh: worn; R foot: no signal; marked: L shank"

@@ -1,4 +1,4 @@
-"""Where a box of choices opens, what stands above it staying in sight, and what of its words is cut where."""
+"""Where a box of choices opens, what is above it staying in sight, and what of its words is cut where."""
 
 import pytest
 from PySide6.QtCore import QEvent, QPoint, QRect
@@ -83,7 +83,7 @@ def test_what_is_cut_in_the_box_is_whole_in_its_list(qtbot: QtBot) -> None:
 
 @pytest.mark.parametrize("chosen", [0, 3])
 def test_a_box_opens_below_itself(qtbot: QtBot, chosen: int) -> None:
-    """With the last line chosen, the list lay over what stands above."""
+    """With the last line chosen, the list lay over what is above."""
     box, popup = opened(qtbot, top=200, lines=4, chosen=chosen)
     assert popup.top() == box.bottom() + 1
 

@@ -1,4 +1,4 @@
-"""What is typed into a field: kept as it was, judged when it is left, and told to who cannot see it."""
+"""What is typed into a field: kept as it was, judged when it is left, and asked to who cannot see it."""
 
 import pytest
 from PySide6.QtCore import QPoint, QPointF, Qt
@@ -35,7 +35,7 @@ def knee(look: ThemeNotifier) -> NumberField:
     return NumberField(look, "Knee flexion", low=-60, high=150, decimals=1, unit="°", side=Side.LEFT)
 
 
-def test_a_field_tells_side_label_unit_and_state_to_readers_of_screens(
+def test_a_field_shows_side_label_unit_and_state_to_readers_of_screens(
     qtbot: QtBot, window: QWidget, look: ThemeNotifier
 ) -> None:
     mass = Field(look, "Mass", unit="kg", is_optional=True)
@@ -74,7 +74,7 @@ def test_what_is_pasted_is_one_line_that_can_be_seen(
     field.set_text("A")
     with qtbot.waitSignal(field.edited) as edited:
         field.line_edit.insert(pasted)
-        field.line_edit.textEdited.emit(field.line_edit.text())  # as a paste tells it
+        field.line_edit.textEdited.emit(field.line_edit.text())  # as a paste reports it
     assert edited.args == [f"A{taken}"]
     assert field.text == f"A{taken}"
     assert field.line_edit.cursorPosition() == len(field.line_edit.text())
@@ -88,7 +88,7 @@ def test_a_secret_is_taken_as_it_is(qtbot: QtBot, window: QWidget, look: ThemeNo
     assert field.text == "a\tb"
 
 
-def test_what_has_no_room_is_told_and_what_was_written_elsewhere_is_kept_whole(
+def test_what_has_no_room_is_reported_and_what_was_written_elsewhere_is_kept_whole(
     qtbot: QtBot, window: QWidget, look: ThemeNotifier
 ) -> None:
     field = Field(look, "Code", most=5)
@@ -130,7 +130,7 @@ def test_a_number_takes_comma_point_and_either_minus(
 
 
 @pytest.mark.parametrize("typed", ["151", "-61", "inf", "nan", "15°"])
-def test_a_number_that_does_not_fit_stays_and_says_what_fits(
+def test_a_number_that_does_not_fit_stays_and_states_what_fits(
     qtbot: QtBot, window: QWidget, look: ThemeNotifier, typed: str
 ) -> None:
     field = knee(look)

@@ -18,7 +18,7 @@ from core.body import Joint
 from core.live.excitation import HUMAN, PROSTHESIS, ExcitationState
 
 
-def state(axis_deg: float, centre_mm: float, floor_deg: float = 4.0, **told: bool) -> ExcitationState:
+def state(axis_deg: float, centre_mm: float, floor_deg: float = 4.0, **reported: bool) -> ExcitationState:
     return ExcitationState(
         axis_sd_rad=math.radians(axis_deg),
         centre_sd_m=centre_mm / 1000,
@@ -26,8 +26,8 @@ def state(axis_deg: float, centre_mm: float, floor_deg: float = 4.0, **told: boo
         centre_sd_with_floor_m=centre_mm / 1000,
         sign_margin=2.0,
         wanting=1.0,
-        is_closed=told.get("is_closed", False),
-        is_plateau=told.get("is_plateau", False),
+        is_closed=reported.get("is_closed", False),
+        is_plateau=reported.get("is_plateau", False),
         trend=0.5,
         missing=None,
         moved_s=5.0,
@@ -40,18 +40,18 @@ def test_figures_have_two_digits(value: float, written: str) -> None:
 
 
 @pytest.mark.parametrize(
-    ("value", "wanted", "written"), [(1.52, 1.5, "1.6"), (1.5, 1.5, "1.5"), (1.7, 1.5, "1.7"), (10.3, 10.0, "11")]
+    ("value", "required", "written"), [(1.52, 1.5, "1.6"), (1.5, 1.5, "1.5"), (1.7, 1.5, "1.7"), (10.3, 10.0, "11")]
 )
-def test_what_is_not_yet_as_wanted_does_not_read_as_if_it_were(value: float, wanted: float, written: str) -> None:
-    assert two_digits(value, wanted) == written
+def test_what_is_not_yet_as_required_does_not_read_as_if_it_were(value: float, required: float, written: str) -> None:
+    assert two_digits(value, required) == written
 
 
-def test_in_german_a_figure_and_what_is_wanted_have_a_comma() -> None:
+def test_in_german_a_figure_and_what_is_required_have_a_comma() -> None:
     use_language("de")
     try:
         face = gauge_face(Joint.LEFT_KNEE, state(3.84, 6.2), HUMAN, is_now=True)
         assert face.axis is not None
-        assert (face.axis.figure, face.axis.wanted) == ("3,8", "1,5°")
+        assert (face.axis.figure, face.axis.required) == ("3,8", "1,5°")
         assert (two_digits(1.52, 1.5), two_digits(10.3, 10.0)) == ("1,6", "11")
     finally:
         use_language("en")
@@ -62,8 +62,8 @@ def test_a_knee_has_both_rings_and_shows_figures_without_floors() -> None:
     assert face.state is GaugeState.ENOUGH
     assert face.axis is not None
     assert face.centre is not None
-    assert (face.axis.figure, face.axis.wanted, face.axis.share) == ("0.8", "1.5°", 1.0)
-    assert (face.centre.figure, face.centre.wanted, face.centre.share) == ("6.2", "10 mm", 1.0)
+    assert (face.axis.figure, face.axis.required, face.axis.share) == ("0.8", "1.5°", 1.0)
+    assert (face.centre.figure, face.centre.required, face.centre.share) == ("6.2", "10 mm", 1.0)
 
 
 def test_an_ankle_has_its_centre_only() -> None:
@@ -91,14 +91,14 @@ def test_a_ring_closes_by_as_much_with_each_halving() -> None:
     assert 0 < shares[0] < shares[-1] < 1
 
 
-def test_more_is_wanted_of_a_prosthesis() -> None:
+def test_more_is_required_of_a_prosthesis() -> None:
     human = gauge_face(Joint.LEFT_KNEE, state(1.0, 6), HUMAN, is_now=False)
     hinge = gauge_face(Joint.LEFT_KNEE, state(1.0, 6, floor_deg=0.15), PROSTHESIS, is_now=False)
     assert human.axis is not None
     assert human.axis.is_met
     assert hinge.axis is not None
     assert hinge.centre is not None
-    assert (hinge.axis.is_met, hinge.axis.wanted, hinge.centre.wanted) == (False, "0.5°", "5 mm")
+    assert (hinge.axis.is_met, hinge.axis.required, hinge.centre.required) == (False, "0.5°", "5 mm")
 
 
 def test_an_open_ring_never_looks_closed() -> None:
@@ -140,12 +140,12 @@ def test_an_axis_that_is_only_uncertain_is_not_called_no_hinge(joint: Joint) -> 
     assert gauge_face(joint, uncertain, PROSTHESIS, is_now=False).state is GaugeState.PLATEAU
 
 
-def test_of_an_ankles_hinge_nothing_is_said_before_its_axis_is_known() -> None:
+def test_of_an_ankles_hinge_nothing_is_stated_before_its_axis_is_known() -> None:
     found = state(20, 4, floor_deg=6.0, is_closed=True)
     assert gauge_face(Joint.LEFT_ANKLE, found, PROSTHESIS, is_now=False).state is GaugeState.CENTRE
 
 
-def test_a_gauge_is_told_to_readers_of_screens(qtbot: QtBot, look: ThemeNotifier) -> None:
+def test_a_gauge_is_reported_to_readers_of_screens(qtbot: QtBot, look: ThemeNotifier) -> None:
     gauge = Gauge(look, Joint.LEFT_KNEE)
     qtbot.addWidget(gauge)
     gauge.show_face(gauge_face(Joint.LEFT_KNEE, state(11, 34), HUMAN, is_now=True))
@@ -156,17 +156,17 @@ def test_a_gauge_is_told_to_readers_of_screens(qtbot: QtBot, look: ThemeNotifier
     assert gauge.accessibleName() == "Left knee, No foot sensor: no left ankle angle."
 
 
-def test_an_ankles_gauge_tells_readers_of_screens_what_it_judges(qtbot: QtBot, look: ThemeNotifier) -> None:
-    said = {}
+def test_an_ankles_gauge_shows_readers_of_screens_what_it_judges(qtbot: QtBot, look: ThemeNotifier) -> None:
+    stated = {}
     for joint in (Joint.LEFT_ANKLE, Joint.LEFT_KNEE):
         gauge = Gauge(look, joint)
         qtbot.addWidget(gauge)
         gauge.show_face(gauge_face(joint, state(1, 6, is_closed=True), HUMAN, is_now=False))
-        said[joint] = gauge.accessibleName()
-    assert said[Joint.LEFT_ANKLE] == (
+        stated[joint] = gauge.accessibleName()
+    assert stated[Joint.LEFT_ANKLE] == (
         "Left ankle, axis found while walking, centre 6.0 mm, under 10 mm required, Enough movement for centre"
     )
-    assert said[Joint.LEFT_KNEE] == (
+    assert stated[Joint.LEFT_KNEE] == (
         "Left knee, axis 1.0°, under 1.5° required, centre 6.0 mm, under 10 mm required, Enough movement"
     )
 

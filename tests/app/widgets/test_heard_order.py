@@ -1,4 +1,4 @@
-"""Are the parts of a widget heard as they stand in it, however late they came into it?"""
+"""Are the parts of a widget received as they stand in it, however late they came into it?"""
 
 from PySide6.QtGui import QAccessible
 from PySide6.QtWidgets import QGridLayout, QLabel, QVBoxLayout, QWidget
@@ -7,12 +7,12 @@ from pytestqt.qtbot import QtBot
 from app.widgets.heard_order import hear_as_laid_out
 
 
-def heard(widget: QWidget) -> list[str]:
-    told = QAccessible.queryAccessibleInterface(widget)
-    return [told.child(k).text(QAccessible.Text.Name) for k in range(told.childCount())]
+def received(widget: QWidget) -> list[str]:
+    reported = QAccessible.queryAccessibleInterface(widget)
+    return [reported.child(k).text(QAccessible.Text.Name) for k in range(reported.childCount())]
 
 
-def test_what_came_into_a_widget_last_is_heard_where_it_stands(qtbot: QtBot) -> None:
+def test_what_came_into_a_widget_last_is_received_where_it_is(qtbot: QtBot) -> None:
     page = QWidget()
     qtbot.addWidget(page)
     column, grid = QVBoxLayout(page), QGridLayout()
@@ -23,15 +23,15 @@ def test_what_came_into_a_widget_last_is_heard_where_it_stands(qtbot: QtBot) -> 
     for name, row, at in (("fourth", 1, 1), ("third", 1, 0), ("second", 0, 1), ("first", 0, 0)):
         grid.addWidget(QLabel(name), row, at)
     tabs.addWidget(QLabel("tabs"))
-    assert heard(page) != ["tabs", "first", "second", "third", "fourth", "verb"]
+    assert received(page) != ["tabs", "first", "second", "third", "fourth", "verb"]
     hear_as_laid_out(page)
-    assert heard(page) == ["tabs", "first", "second", "third", "fourth", "verb"]
+    assert received(page) == ["tabs", "first", "second", "third", "fourth", "verb"]
 
 
-def test_a_widget_without_a_layout_is_heard_as_before(qtbot: QtBot) -> None:
+def test_a_widget_without_a_layout_is_received_as_before(qtbot: QtBot) -> None:
     page = QWidget()
     qtbot.addWidget(page)
     for name in ("one", "other"):
         QLabel(name, page)
     hear_as_laid_out(page)
-    assert heard(page) == ["one", "other"]
+    assert received(page) == ["one", "other"]

@@ -45,14 +45,14 @@ def test_a_hip_reads_how_sure_its_heading_is(found: HipHeadingState | None, figu
 
 def test_an_open_hip_names_the_motion_and_a_closed_one_does_not(gauge: HipGauge) -> None:
     gauge.show_face(hip_face(heading(11.0), is_now=True))
-    assert gauge.said == "Walk 15 s with a turn, or lunge"
+    assert gauge.stated == "Walk 15 s with a turn, or lunge"
     assert gauge.accessibleName() == "Left hip, heading 11°, under 6° required, Walk 15 s with a turn, or lunge"
     gauge.show_face(hip_face(heading(4.0, is_sure=True), is_now=True))
     assert not gauge.face.is_now
-    assert gauge.said == "Enough movement"
+    assert gauge.stated == "Enough movement"
 
 
-def test_a_hip_without_its_thigh_says_why(gauge: HipGauge) -> None:
+def test_a_hip_without_its_thigh_states_why(gauge: HipGauge) -> None:
     gauge.show_face(HipFace(note="No sensor on L thigh: no left hip angle."))
     assert gauge.accessibleName() == "Left hip, No sensor on L thigh: no left hip angle."
 

@@ -34,5 +34,5 @@ def test_an_icon_is_drawn_in_the_ink_of_the_theme_alone(icon: Icon) -> None:
 
 
 @pytest.mark.usefixtures("qapp")
-def test_an_icon_of_another_ink_is_drawn_anew() -> None:
+def test_an_icon_of_another_ink_is_drawn_again() -> None:
     assert picture(Icon.PLAY, "#14202b") != picture(Icon.PLAY, "#edf1f4")

@@ -1,4 +1,4 @@
-"""A recovery key stands in even columns, is selected and copied as one text, and leaves nothing behind."""
+"""A recovery key is in even columns, is selected and copied as one text, and leaves nothing behind."""
 
 import pytest
 from PySide6.QtCore import QPoint, Qt

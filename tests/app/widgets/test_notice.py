@@ -1,4 +1,4 @@
-"""The notice: its icon stands beside the first line, however much room there is."""
+"""The notice: its icon is beside the first line, however much room there is."""
 
 import numpy as np
 import pytest
@@ -28,10 +28,10 @@ def middle_of(rows: FloatArray) -> float:
 
 @pytest.mark.parametrize("height", [44, 66, 120])
 @pytest.mark.parametrize("then", ["", "Drop it here."])
-def test_the_icon_stands_beside_the_first_line(qtbot: QtBot, height: int, then: str) -> None:
+def test_the_icon_is_beside_the_first_line(qtbot: QtBot, height: int, then: str) -> None:
     notice = Notice(ThemeNotifier(), size=16)
     qtbot.addWidget(notice)
-    notice.tell(Icon.CHECK, "All six are assigned and connected.", then)
+    notice.show_message(Icon.CHECK, "All six are assigned and connected.", then)
     notice.resize(500, max(height, notice.minimumSizeHint().height()))
     notice.show()
     dark = ink(notice)

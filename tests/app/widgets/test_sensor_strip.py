@@ -58,13 +58,15 @@ def strip(look: ThemeNotifier, qtbot: QtBot) -> SensorStrip:
 
 
 @pytest.mark.parametrize(("shown", "state", "words"), STATES)
-def test_a_tile_tells_the_gravest_thing_that_is_true(shown: SensorTile, state: TileState, words: str) -> None:
+def test_a_tile_shows_the_gravest_thing_that_is_true(shown: SensorTile, state: TileState, words: str) -> None:
     assert (shown.state, shown.words) == (state, words)
     assert shown.is_bad == (state in (TileState.LOW_BATTERY, TileState.LOSS, TileState.SILENT))
 
 
 @pytest.mark.parametrize(("shown", "state", "words"), STATES)
-def test_a_bad_tile_is_yellow_and_says_why(strip: SensorStrip, shown: SensorTile, state: TileState, words: str) -> None:
+def test_a_bad_tile_is_yellow_and_states_why(
+    strip: SensorStrip, shown: SensorTile, state: TileState, words: str
+) -> None:
     strip.show_tiles(fine() | {FOOT: shown})
     widget = strip.widgets[FOOT]
     assert words in [text.text for text in widget.painted_texts()]
@@ -86,7 +88,7 @@ def test_each_tile_is_a_part_of_its_own_for_a_screen_reader(strip: SensorStrip) 
     assert strip.widgets[FOOT].accessibleDescription() == "sensor 0A22, battery 84 %"
 
 
-def test_the_right_leg_stands_at_the_left_and_turns_with_the_figure(strip: SensorStrip) -> None:
+def test_the_right_leg_is_at_the_left_and_turns_with_the_figure(strip: SensorStrip) -> None:
     def from_left() -> list[Site]:
         return sorted(strip.widgets, key=lambda site: strip.widgets[site].x())
 
@@ -128,12 +130,12 @@ def test_what_comes_faster_than_can_be_read_waits_and_the_last_is_shown(strip: S
     qtbot.waitUntil(lambda: shown == [0.0, 29.0], timeout=2000)
 
 
-def test_it_tells_once_that_a_sensor_turned_bad(strip: SensorStrip) -> None:
-    told: list[int] = []
-    strip.turned_bad.connect(lambda: told.append(1))
+def test_it_shows_once_that_a_sensor_turned_bad(strip: SensorStrip) -> None:
+    reported: list[int] = []
+    strip.turned_bad.connect(lambda: reported.append(1))
     for tiles in (fine(), fine() | {FOOT: tile(silent_s=2.0)}, fine() | {FOOT: tile(silent_s=3.0)}, fine()):
         strip.show_at_once(tiles)
-    assert told == [1]
+    assert reported == [1]
 
 
 def test_arrows_go_from_tile_to_tile(strip: SensorStrip) -> None:
@@ -187,7 +189,7 @@ def _rest(shown: SensorTile) -> tuple[str, float | None, float, float, float, bo
     )
 
 
-def test_the_button_says_in_one_sentence_how_the_sensors_are() -> None:
+def test_the_button_states_in_one_sentence_how_the_sensors_are() -> None:
     foot, thigh = tile(silent_s=3.2), tile(Site.LEFT_THIGH, battery=0.1)
     unused = tile(Site.LEFT_FOOT, is_worn=False)
     assert sentence({}) == "No sensors yet"
@@ -213,7 +215,7 @@ def test_the_button_is_yellow_while_a_sensor_is_bad(look: ThemeNotifier, qtbot: 
 SEVEN = {site: tile(site) for site in Site}
 
 
-def test_a_seventh_tile_stands_between_the_legs_only_while_the_pelvis_wears_a_sensor(strip: SensorStrip) -> None:
+def test_a_seventh_tile_is_between_the_legs_only_while_the_pelvis_wears_a_sensor(strip: SensorStrip) -> None:
     strip.show_tiles(fine())
     settle()
     six = strip.grab().toImage()

@@ -40,7 +40,7 @@ def rail(look: ThemeNotifier, window: QWidget) -> StepRail:
     return rail
 
 
-def test_a_row_says_its_place_name_state_and_what_came_of_it(rail: StepRail) -> None:
+def test_a_row_states_its_place_name_state_and_what_came_of_it(rail: StepRail) -> None:
     assert [row.accessibleName() for row in rail.rows] == [
         "Step 1 of 5, Patient, done, Left prosthetic",
         "Step 2 of 5, Stand still, skipped, skipped, in report",
@@ -55,7 +55,7 @@ def test_rows_look_different_in_every_state(rail: StepRail) -> None:
     assert not any(one == other for k, one in enumerate(rings) for other in rings[:k])
 
 
-def test_a_press_tells_the_step(rail: StepRail, qtbot: QtBot) -> None:
+def test_a_press_shows_the_step(rail: StepRail, qtbot: QtBot) -> None:
     with qtbot.waitSignal(rail.step_pressed, check_params_cb=lambda number: number == 2):
         QTest.mouseClick(rail.rows[2], Qt.MouseButton.LeftButton)
     with qtbot.waitSignal(rail.below_pressed, check_params_cb=lambda name: name == "settings"):
@@ -85,7 +85,7 @@ def test_tab_stops_once_and_where_it_was_left(rail: StepRail) -> None:
     assert stops() == [rail.rows[1]]
 
 
-def test_rows_keep_the_focus_when_they_are_shown_anew(rail: StepRail) -> None:
+def test_rows_keep_the_focus_when_they_are_shown_again(rail: StepRail) -> None:
     rail.rows[3].setFocus()
     rail.show_rows(
         (*STEPS[:3], RailRow("Walking", "3 walks", StepState.DONE), RailRow("Results", "", StepState.CURRENT))

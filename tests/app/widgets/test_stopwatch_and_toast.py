@@ -1,4 +1,4 @@
-"""The stopwatch tells and never warns; the toast offers, stays under the mouse, and goes."""
+"""The stopwatch reports and never warns; the toast offers, stays under the mouse, and goes."""
 
 import pytest
 from PySide6.QtCore import QEvent, QPointF, Qt
@@ -58,7 +58,7 @@ def dark_of_line(stopwatch: Stopwatch) -> int:
         (3725.0, "62:05", "5 min target exceeded"),
     ],
 )
-def test_the_stopwatch_says_time_and_target(stopwatch: Stopwatch, elapsed_s: float, time: str, words: str) -> None:
+def test_the_stopwatch_states_time_and_target(stopwatch: Stopwatch, elapsed_s: float, time: str, words: str) -> None:
     stopwatch.show_elapsed(elapsed_s)
     assert [text.text for text in stopwatch.painted_texts()] == [words, time]
     assert stopwatch.accessibleName() == f"{time}, {words}"
@@ -92,10 +92,10 @@ def test_the_toast_offers_and_its_button_takes_back(toast: Toast, qtbot: QtBot) 
 
 
 def test_a_toast_that_has_gone_takes_nothing_back(toast: Toast) -> None:
-    told: list[int] = []
-    toast.undone.connect(lambda: told.append(1))
+    reported: list[int] = []
+    toast.undone.connect(lambda: reported.append(1))
     toast.undo()
-    assert told == []
+    assert reported == []
 
 
 def test_the_toast_goes_after_a_while(toast: Toast, qtbot: QtBot) -> None:
@@ -126,7 +126,7 @@ def test_long_words_make_the_toast_higher(toast: Toast) -> None:
 @pytest.mark.parametrize("scale", [0.8, 1.0, 2.0])
 @pytest.mark.parametrize("width", [1064, 736, 500])
 @pytest.mark.usefixtures("pseudo_language")
-def test_the_header_has_room_for_all_it_says(look: ThemeNotifier, qtbot: QtBot, scale: float, width: int) -> None:
+def test_the_header_has_room_for_all_it_states(look: ThemeNotifier, qtbot: QtBot, scale: float, width: int) -> None:
     look.set_scale(scale)
     header = Header(look, has_mark=False)
     qtbot.addWidget(header)

@@ -1,4 +1,4 @@
-"""The one table: what its cells paint and say, how it stands on a page, and how a list of it is worked by keys."""
+"""The one table: what its cells paint and say, how it is on a page, and how a list of it is worked by keys."""
 
 import math
 from collections.abc import Sequence
@@ -61,7 +61,7 @@ def colour(image: QImage, x: float, y: float = 14) -> str:
 
 
 def is_ink(image: QImage, x: float, y: float = 14) -> bool:
-    """Tell whether a line in ink, whose edges are smoothed, goes through a pixel of a light theme."""
+    """Return whether a line in ink, whose edges are smoothed, goes through a pixel of a light theme."""
     return image.pixelColor(round(x), round(y)).lightness() < 80
 
 
@@ -147,13 +147,13 @@ def test_a_table_is_as_high_as_its_rows_and_shares_all_of_its_width(qtbot: QtBot
     assert table.minimumWidth() == sum(table.needed_widths)
 
 
-def test_every_cell_is_said_with_its_row_and_column(qtbot: QtBot, look: ThemeNotifier) -> None:
+def test_every_cell_is_stated_with_its_row_and_column(qtbot: QtBot, look: ThemeNotifier) -> None:
     table = table_of(qtbot, look, [row("Knee range", "+2.0", hint="Over the whole stride."), row("Swing", "−12.1")])
     model = table.model()
-    said = Qt.ItemDataRole.AccessibleTextRole
-    assert model.index(0, 0).data(said) == "Knee range"
-    assert model.index(1, 1).data(said) == "Swing: −12.1"
-    assert model.index(1, 2).data(said) == "12.1 of error 9.2"
+    stated = Qt.ItemDataRole.AccessibleTextRole
+    assert model.index(0, 0).data(stated) == "Knee range"
+    assert model.index(1, 1).data(stated) == "Swing: −12.1"
+    assert model.index(1, 2).data(stated) == "12.1 of error 9.2"
     assert model.index(0, 1).data(Qt.ItemDataRole.ToolTipRole) == "Over the whole stride."
     assert model.index(1, 1).data(Qt.ItemDataRole.ToolTipRole) is None
     assert model.headerData(1, Qt.Orientation.Horizontal) == "L − R"

@@ -1,4 +1,4 @@
-"""A text that wraps keeps a unit in one line, and says what it was told."""
+"""A text that wraps keeps a unit in one line, and states what it was reported."""
 
 import pytest
 from pytestqt.qtbot import QtBot

@@ -75,6 +75,6 @@ def test_a_leg_has_its_colour_and_one_value_is_a_point_in_the_middle(theme: Them
     assert painted(cell, theme).pixelColor(round(point.x()), 14) == theme.curve(Side.LEFT)
 
 
-def test_it_says_its_values_and_is_copied_as_nothing() -> None:
+def test_it_states_its_values_and_is_copied_as_nothing() -> None:
     cell = TrendCell((0.0, 1.0), (1.0, 2.0), (1.0, 2.0), spoken="Walking speed: 1 0.71, 2 1.12")
-    assert (cell.said, cell.words) == ("Walking speed: 1 0.71, 2 1.12", "")
+    assert (cell.stated, cell.words) == ("Walking speed: 1 0.71, 2 1.12", "")

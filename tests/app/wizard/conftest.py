@@ -78,7 +78,7 @@ def radio() -> Iterator[FastRadio]:
 
 @pytest.fixture
 def choice(source: ReplaySource) -> SourceChoice:
-    """Where the visit's sensors are heard; files about DOTs have their own."""
+    """Where the visit's sensors are received; files about DOTs have their own."""
     return SourceChoice("fast", "Fast patient", lambda: Acquisition([source], source.now_ns), is_simulated=True)
 
 

@@ -3,7 +3,7 @@
 from pytestqt.qtbot import QtBot
 
 from app.acquisition.acquisition import Acquisition
-from app.acquisition.dot_fleet import DotFleet, HeardDot
+from app.acquisition.dot_fleet import DotFleet, ReceivedDot
 from app.widgets.table import CellTable, TableModel, TableRow
 from app.wizard.sensors.step import SensorsStep
 from app.wizard.visit import Visit
@@ -19,13 +19,13 @@ WAIT_MS = 20_000
 
 
 def dot_choice(radio: FastRadio) -> SourceChoice:
-    """What a search that heard them offers."""
-    heard = [HeardDot(DotSensor(radio, one), one.rssi_dbm) for one in radio.air.announced()]
+    """What a search that received them offers."""
+    received = [ReceivedDot(DotSensor(radio, one), one.rssi_dbm) for one in radio.air.announced()]
 
     def never() -> Acquisition:
         raise SourceRefusedError("They are to be set up first", "Choose them")
 
-    return SourceChoice(DRIVER, "Movella DOT", never, is_simulated=True, make_fleet=lambda: DotFleet(radio, heard))
+    return SourceChoice(DRIVER, "Movella DOT", never, is_simulated=True, make_fleet=lambda: DotFleet(radio, received))
 
 
 def rows_of(table: CellTable) -> tuple[TableRow, ...]:

@@ -1,4 +1,4 @@
-"""The time of a simulated patient, which goes on only when everybody has heard what was before.
+"""The time of a simulated patient, which goes on only when everybody has received what was before.
 
 A replay by the machine's clock goes on while a busy machine's screen, library or live estimator is late: then a walk is
 over before its recording has begun, and strides are never seen. Here nobody misses anything, however long it takes.
@@ -25,12 +25,12 @@ PATIENCE_MS = 120_000
 
 
 class PatientTime:
-    """A clock for a replay and for the acquisition that hears it.
+    """A clock for a replay and for the acquisition that receives it.
 
     Attributes
     ----------
     is_held
-        Whether time stands still; asked before each tick.
+        Whether time is still; asked before each tick.
     """
 
     def __init__(self) -> None:
@@ -51,7 +51,7 @@ class PatientTime:
         return self._now_ns
 
     def acquisition(self, source: LiveSource) -> Acquisition:
-        """What hears a source, and is waited for from now on."""
+        """What receives a source, and is waited for from now on."""
         self._acquisition = _Followed([source], self.now_ns)
         return self._acquisition
 
@@ -69,25 +69,25 @@ class PatientTime:
 class _Followed(Acquisition):
     """An acquisition that knows how far its live estimator has come."""
 
-    _heard: "_Heard | None" = None
+    _received: "_Received | None" = None
 
     def behind_s(self) -> float:
-        return 0.0 if self._heard is None else self.now_s - self._heard.heard_s
+        return 0.0 if self._received is None else self.now_s - self._received.received_s
 
     def set_estimator(self, estimator: LiveEstimator | None) -> None:
-        self._heard = None if estimator is None else _Heard(estimator, self.now_s)
-        super().set_estimator(self._heard)
+        self._received = None if estimator is None else _Received(estimator, self.now_s)
+        super().set_estimator(self._received)
 
 
-class _Heard:
+class _Received:
     """A live estimator, and the last stamp that it has had."""
 
     def __init__(self, estimator: LiveEstimator, now_s: float) -> None:
-        self._estimator, self.heard_s = estimator, now_s
+        self._estimator, self.received_s = estimator, now_s
 
     def update(self, blocks: Mapping[str, ImuBlock]) -> None:
         self._estimator.update(blocks)
-        self.heard_s = max(float(block.time_s[-1]) for block in blocks.values())
+        self.received_s = max(float(block.time_s[-1]) for block in blocks.values())
 
 
 # fixtures: a room's conftest.py takes them over

@@ -1,4 +1,4 @@
-"""What can be done on a step, by what its bar says."""
+"""What can be done on a step, by what its bar states."""
 
 from app.wizard.step import Step
 

@@ -72,7 +72,7 @@ def writes(widget: QWidget, key: str) -> bool:
 
 
 def misses(wizard: Wizard, pressed: list[str]) -> list[str]:
-    """Press each key on each widget, and give where something else was done than the bar says."""
+    """Press each key on each widget, and give where something else was done than the bar states."""
     wrong: list[str] = []
     for widget in focusable(wizard):
         is_elsewhere = not wizard.shell.bar.isAncestorOf(widget)

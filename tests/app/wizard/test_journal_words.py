@@ -1,15 +1,15 @@
-"""What is said of a journal comes when its counters say so, and not when they do not."""
+"""What is stated about a journal comes when its counters say so, and not when they do not."""
 
 from dataclasses import replace
 
 import pytest
 
-from app.acquisition.heartbeat import Standstill
+from app.acquisition.heartbeat import ProcessStall
 from app.storage.journal.disk import Trouble
 from app.storage.journal.writer import JournalStatus, State
 from app.wizard.journal_words import (
     ENDS,
-    STANDSTILL_TOLD_S,
+    STANDSTILL_REPORTED_S,
     is_written,
     no_row_message,
     standstill_message,
@@ -33,21 +33,21 @@ FINE = JournalStatus(
 LATE, AGAIN = replace(FINE, stuck_s=3.0), FINE
 DROPPING = replace(LATE, dropped_records=7)
 CLOSED = replace(FINE, state=State.CLOSED)
-STOOD = Standstill(began_s=51.0, ended_s=71.0, lasted_s=20.0, asleep_s=0.0, lost_before={"a": 5, "b": 0})
+STOOD = ProcessStall(began_s=51.0, ended_s=71.0, lasted_s=20.0, asleep_s=0.0, lost_before={"a": 5, "b": 0})
 
 
 @pytest.mark.parametrize(
-    ("status", "lost", "is_said"), [(LATE, 0, True), (LATE, 1, False), (DROPPING, 0, False), (AGAIN, 0, False)]
+    ("status", "lost", "is_stated"), [(LATE, 0, True), (LATE, 1, False), (DROPPING, 0, False), (AGAIN, 0, False)]
 )
 def test_nothing_is_lost_yet_only_while_the_disk_is_late_and_every_counter_is_nought(
-    status: JournalStatus, lost: int, is_said: bool
+    status: JournalStatus, lost: int, is_stated: bool
 ) -> None:
-    said = " ".join(trouble_message(Trouble.DISK_SLOW, status, lost))
-    assert ("No data lost so far" in said) is is_said
-    assert ("responds slowly" in said) is (status is LATE)
+    stated = " ".join(trouble_message(Trouble.DISK_SLOW, status, lost))
+    assert ("No data lost so far" in stated) is is_stated
+    assert ("responds slowly" in stated) is (status is LATE)
 
 
-def test_a_late_disk_that_answers_again_says_what_it_cost() -> None:
+def test_a_late_disk_that_answers_again_states_what_it_cost() -> None:
     assert trouble_message(Trouble.DISK_SLOW, AGAIN) == (
         "The disk was slow and now responds again.",
         "No data were lost because of this.",
@@ -64,7 +64,7 @@ def test_what_was_dropped_is_counted(trouble: Trouble) -> None:
 
 
 @pytest.mark.parametrize("trouble", sorted(ENDS))
-def test_a_disk_that_ended_the_recording_says_up_to_where_it_is_kept(trouble: Trouble) -> None:
+def test_a_disk_that_ended_the_recording_states_up_to_where_it_is_kept(trouble: Trouble) -> None:
     _, then = trouble_message(trouble, CLOSED)
     assert ("The first 1:02 are written." in then) is (trouble is not Trouble.DISK_GONE)
     assert ("The first 1:01 are confirmed on the disk." in then) is (trouble is Trouble.DISK_GONE)
@@ -74,14 +74,14 @@ def test_a_disk_that_ended_the_recording_says_up_to_where_it_is_kept(trouble: Tr
 
 @pytest.mark.parametrize("is_tried_again", [True, False])
 def test_only_a_journal_that_is_closed_whole_is_called_safe(is_tried_again: bool) -> None:
-    def said(status: JournalStatus) -> str:
+    def stated(status: JournalStatus) -> str:
         return unread_message(status, is_tried_again=is_tried_again)
 
-    assert "safe on the disk" in said(CLOSED)
-    assert "still being written" in said(FINE)
+    assert "safe on the disk" in stated(CLOSED)
+    assert "still being written" in stated(FINE)
     for status in (replace(CLOSED, dropped_records=1), replace(CLOSED, state=State.BROKEN)):
-        assert "safe" not in said(status)
-        assert said(status).startswith("The first 1:01 of the recording are on the disk")
+        assert "safe" not in stated(status)
+        assert stated(status).startswith("The first 1:01 of the recording are on the disk")
 
 
 def test_a_recording_without_a_row_is_called_written_only_while_all_of_it_is() -> None:
@@ -95,11 +95,13 @@ def test_what_comes_in_is_called_saved_only_while_the_journal_takes_all_of_it() 
         assert not is_written(status)
 
 
-def standstill(lost: dict[str, int], now_s: float = 75.0, *, are_heard: bool = True, are_counted: bool = True) -> str:
-    return " ".join(standstill_message(STOOD, 10.0, now_s, lost, are_heard, are_counted)).strip()
+def standstill(
+    lost: dict[str, int], now_s: float = 75.0, *, are_received: bool = True, are_counted: bool = True
+) -> str:
+    return " ".join(standstill_message(STOOD, 10.0, now_s, lost, are_received, are_counted)).strip()
 
 
-def test_a_standstill_that_cost_samples_says_so() -> None:
+def test_a_standstill_that_cost_samples_states_so() -> None:
     assert standstill({"a": 4005, "b": 2000}) == (
         "Gaitwright stalled for 20 s, 0:41 into the recording. "
         "Samples were lost and stay gaps. They are counted when the recording is loaded."
@@ -108,19 +110,19 @@ def test_a_standstill_that_cost_samples_says_so() -> None:
     assert "were lost" not in standstill({"a": 5, "b": 0})
 
 
-def test_no_sample_is_missing_only_where_all_sensors_are_heard_counted_and_whole() -> None:
+def test_no_sample_is_missing_only_where_all_sensors_are_received_counted_and_whole() -> None:
     none = "No sample is missing"
     whole = {"a": 5, "b": 0}
     assert none in standstill(whole)
     assert none not in standstill({"a": 6, "b": 0})
-    assert none not in standstill(whole, are_heard=False)
+    assert none not in standstill(whole, are_received=False)
     assert none not in standstill(whole, are_counted=False)
     assert none not in standstill(whole, now_s=71.5)  # what waited is still being read
-    assert standstill(whole, are_heard=False).endswith("Missing samples are being counted.")
+    assert standstill(whole, are_received=False).endswith("Missing samples are being counted.")
 
 
-def test_a_standstill_of_before_or_long_ago_is_not_told_and_sleep_is_called_so() -> None:
+def test_a_standstill_of_before_or_long_ago_is_not_reported_and_sleep_is_called_so() -> None:
     assert standstill_message(STOOD, 72.0, 75.0, {}, True, True) == NOTHING
-    assert standstill_message(STOOD, 10.0, 72.0 + STANDSTILL_TOLD_S, {}, True, True) == NOTHING
+    assert standstill_message(STOOD, 10.0, 72.0 + STANDSTILL_REPORTED_S, {}, True, True) == NOTHING
     asleep = replace(STOOD, asleep_s=19.0)
     assert standstill_message(asleep, 10.0, 75.0, {}, True, True)[0].startswith("The computer was asleep for 20 s")

@@ -94,7 +94,7 @@ MEANINGS = [
 
 
 @pytest.mark.parametrize(("key", "held", "intent"), MEANINGS)
-def test_a_key_means_what_the_manual_says(
+def test_a_key_means_what_the_manual_states(
     window: Window, key: Qt.Key, held: Qt.KeyboardModifier, intent: Intent
 ) -> None:
     assert window.press(key, held) == [intent]
@@ -162,12 +162,12 @@ def test_other_keys_with_ctrl_mean_the_same_in_a_text_field(window: Window) -> N
     assert window.press(Key.Key_F6) == [Intent(KeyAction.NEXT_REGION)]
 
 
-def test_enter_in_a_field_of_one_line_is_the_primary_verb_after_the_field_has_heard_it(window: Window) -> None:
-    heard: list[int] = []
+def test_enter_in_a_field_of_one_line_is_the_primary_verb_after_the_field_has_received_it(window: Window) -> None:
+    received: list[int] = []
     window.field.setFocus()
-    window.field.returnPressed.connect(lambda: heard.append(len(window.intents)))
+    window.field.returnPressed.connect(lambda: received.append(len(window.intents)))
     assert window.press(Key.Key_Return) == [Intent(KeyAction.PRIMARY)]
-    assert heard == [0]
+    assert received == [0]
 
 
 def test_enter_in_a_field_of_many_lines_is_a_new_line(window: Window) -> None:
@@ -208,7 +208,7 @@ def test_a_dialog_has_its_keys_for_itself(window: Window, qtbot: QtBot) -> None:
     assert window.intents == []
 
 
-def test_a_window_without_a_focus_hears_keys_too(window: Window) -> None:
+def test_a_window_without_a_focus_receives_keys_too(window: Window) -> None:
     window.plain.clearFocus()
     assert window.press(Key.Key_Space) == [Intent(KeyAction.RUN)]
     assert window.press(Key.Key_Return) == [Intent(KeyAction.PRIMARY)]

@@ -1,4 +1,5 @@
-"""Killed at any point, started again, gone on with: what was recorded and said is there, and what is open is asked."""
+"""Killed at any point, started again, gone on with: what was recorded and stated is there, and what is open is
+asked."""
 
 import json
 import os
@@ -43,7 +44,7 @@ pytestmark = [
 
 
 def killed_at(point: Point, folder: Path, untouched: Path, *more: str) -> dict[str, Any]:
-    """Lead the application to a point, and kill it there; returns what it said of what it had."""
+    """Lead the application to a point, and kill it there; returns what it stated of what it had."""
     library = shutil.copytree(untouched, folder / "library")
     command = [sys.executable, "-m", "tests.safety.wizard_kills", str(library), PASSPHRASE, str(point), *more]
     with subprocess.Popen(command, cwd=Path(__file__).parents[3], stdout=subprocess.PIPE, text=True) as child:
@@ -53,8 +54,8 @@ def killed_at(point: Point, folder: Path, untouched: Path, *more: str) -> dict[s
         finally:
             child.send_signal(signal.SIGKILL)
     assert line, "it ended before it came to its point"
-    told: dict[str, Any] = json.loads(line)
-    return told
+    reported: dict[str, Any] = json.loads(line)
+    return reported
 
 
 @pytest.fixture
@@ -123,8 +124,8 @@ Start = Callable[[str], tuple[Home, Wizard]]
 
 def test_amid_a_walk(qtbot: QtBot, start_again: Start, untouched_library: Path, tmp_path: Path) -> None:
     """All of it is there but the last moment, and it is asked whether it is kept."""
-    told = killed_at(Point.WALKING, tmp_path, untouched_library)
-    home, wizard = start_again(told["session"])
+    reported = killed_at(Point.WALKING, tmp_path, untouched_library)
+    home, wizard = start_again(reported["session"])
     assert "of A Shoes was recovered" in home.banner.text
     visit = visit_of(wizard)
     (walk,) = visit.recordings.walks
@@ -133,20 +134,20 @@ def test_amid_a_walk(qtbot: QtBot, start_again: Start, untouched_library: Path, 
     assert walk.read_back is not None
     assert set(walk.read_back.imu) == set(LEG_SITES)
     for block in walk.read_back.imu.values():
-        assert float(block.time_s[-1] - block.time_s[0]) > told["heard_s"] - LOST_S * SPEED
-    assert {name: count for name, count in samples_of(visit).items() if name != "walk 1"} == told["takes"]
+        assert float(block.time_s[-1] - block.time_s[0]) > reported["heard_s"] - LOST_S * SPEED
+    assert {name: count for name, count in samples_of(visit).items() if name != "walk 1"} == reported["takes"]
     assert "was recovered" in page_notice(qtbot, wizard)
 
 
 def test_amid_a_walk_with_a_sensor_on_the_pelvis(start_again: Start, untouched_library: Path, tmp_path: Path) -> None:
-    told = killed_at(Point.WALKING, tmp_path, untouched_library, "--pelvis")
-    _, wizard = start_again(told["session"])
+    reported = killed_at(Point.WALKING, tmp_path, untouched_library, "--pelvis")
+    _, wizard = start_again(reported["session"])
     (walk,) = visit_of(wizard).recordings.walks
     assert walk.stored.state is RecordingState.RECOVERED
     assert walk.read_back is not None
     assert set(walk.read_back.imu) == set(Site)
     for block in walk.read_back.imu.values():
-        assert float(block.time_s[-1] - block.time_s[0]) > told["heard_s"] - LOST_S * SPEED
+        assert float(block.time_s[-1] - block.time_s[0]) > reported["heard_s"] - LOST_S * SPEED
     assert set(visit_of(wizard).rests) == {worn.name for worn in placed(visit_of(wizard)).values()}
 
 
@@ -167,10 +168,10 @@ def test_before_a_walk_was_kept_or_discarded(
     qtbot: QtBot, start_again: Start, untouched_library: Path, tmp_path: Path
 ) -> None:
     """It is whole, and the question is still there; answered, it is asked no more."""
-    told = killed_at(Point.ASKED, tmp_path, untouched_library)
-    _, wizard = start_again(told["session"])
+    reported = killed_at(Point.ASKED, tmp_path, untouched_library)
+    _, wizard = start_again(reported["session"])
     visit = visit_of(wizard)
-    assert samples_of(visit) == told["takes"]
+    assert samples_of(visit) == reported["takes"]
     assert visit.recordings.walks[0].stored.state is RecordingState.CLOSED
     assert place_of(wizard) == StepId.WALKING
     step = wizard.current
@@ -178,15 +179,15 @@ def test_before_a_walk_was_kept_or_discarded(
     assert (step.state, step.note) == (StepState.ATTENTION, "include or exclude?")
     step.page.keep_pressed.emit(str(visit.recordings.walks[0].id))
     qtbot.waitUntil(lambda: visit.recordings.walks[0].stored.is_decided, timeout=WAIT_MS)
-    wizard.show_session(UUID(told["session"]))
+    wizard.show_session(UUID(reported["session"]))
     qtbot.waitUntil(lambda: wizard.visit is not visit and wizard.shell.page is not None, timeout=WAIT_MS)
     assert place_of(wizard) == StepId.RESULTS
 
 
-def check_corrections(qtbot: QtBot, wizard: Wizard, told: dict[str, Any]) -> None:
+def check_corrections(qtbot: QtBot, wizard: Wizard, reported: dict[str, Any]) -> None:
     """All that was put right holds, in the library and in what is computed of it."""
     visit = visit_of(wizard)
-    assert samples_of(visit) == told["takes"]
+    assert samples_of(visit) == reported["takes"]
     first, second = visit.recordings.walks
     assert (first.details.condition, dict(first.details.left_out_s)) == (CONDITION, {Side.LEFT: (4.0,)})
     assert (first.details.is_kept, second.details.is_kept) == (True, False)
@@ -200,10 +201,10 @@ def check_corrections(qtbot: QtBot, wizard: Wizard, told: dict[str, Any]) -> Non
 
 def test_amid_the_results(qtbot: QtBot, start_again: Start, untouched_library: Path, tmp_path: Path) -> None:
     """Every correction is there: a stride left out, a condition, a sign, a walk that does not count."""
-    told = killed_at(Point.RESULTS, tmp_path, untouched_library)
-    _, wizard = start_again(told["session"])
+    reported = killed_at(Point.RESULTS, tmp_path, untouched_library)
+    _, wizard = start_again(reported["session"])
     assert place_of(wizard) == StepId.RESULTS
-    check_corrections(qtbot, wizard, told)
+    check_corrections(qtbot, wizard, reported)
     step = wizard.current
     assert isinstance(step, ResultsStep)
     qtbot.waitUntil(lambda: step.note == "1 included" and step.state is StepState.DONE, timeout=WAIT_MS)
@@ -214,12 +215,12 @@ def test_amid_the_report(
     qtbot: QtBot, start_again: Start, untouched_library: Path, tmp_path: Path, point: Point
 ) -> None:
     """What was typed is there; a report that was not written whole is not there, and can be written again."""
-    told = killed_at(point, tmp_path, untouched_library)
+    reported = killed_at(point, tmp_path, untouched_library)
     out = tmp_path / "out"
     assert not out.exists()
-    _, wizard = start_again(told["session"])
+    _, wizard = start_again(reported["session"])
     assert place_of(wizard) == StepId.RESULTS
-    check_corrections(qtbot, wizard, told)
+    check_corrections(qtbot, wizard, reported)
     wizard.go_to(StepId.REPORT)
     step = wizard.current
     assert isinstance(step, ReportStep)

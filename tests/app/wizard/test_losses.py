@@ -1,4 +1,4 @@
-"""Silent sensors: told after two seconds, with what they cost, and once more when they are back."""
+"""Silent sensors: reported after two seconds, with what they cost, and once more when they are back."""
 
 from app.wizard.losses import NOTHING, Losses
 from core.body import LEG_JOINTS, LEG_SITES, Joint, Site
@@ -22,7 +22,7 @@ def test_a_silent_sensor_is_news_once() -> None:
     )
 
 
-def test_between_walks_it_says_what_to_do() -> None:
+def test_between_walks_it_states_what_to_do() -> None:
     losses = Losses()
     losses.update({Site.LEFT_SHANK: 4.2}, 10.0)
     assert losses.message(False, ALL, 10.0) == (
@@ -31,7 +31,7 @@ def test_between_walks_it_says_what_to_do() -> None:
     )
 
 
-def test_its_return_is_told_with_how_long_it_was() -> None:
+def test_its_return_is_reported_with_how_long_it_was() -> None:
     losses = Losses()
     losses.update({Site.RIGHT_FOOT: 3.1}, 10.0)
     losses.update({Site.RIGHT_FOOT: 0.02}, 10.1)
@@ -49,7 +49,7 @@ def test_a_sensor_worn_no_more_is_forgotten() -> None:
     assert losses.message(True, ALL, 10.1) == NOTHING
 
 
-def test_two_are_told_together() -> None:
+def test_two_are_reported_together() -> None:
     losses = Losses()
     losses.update({Site.RIGHT_FOOT: 3.1, Site.LEFT_FOOT: 5.0, Site.LEFT_SHANK: 0.0}, 10.0)
     assert losses.message(True, [], 10.0) == (
@@ -59,7 +59,7 @@ def test_two_are_told_together() -> None:
     assert losses.message(False, [], 10.0)[1] == "Switch the sensors off and on, or continue without them."
 
 
-def test_where_none_is_heard_the_receiver_is_told_of_and_their_return_is_told_together() -> None:
+def test_where_none_is_received_the_receiver_is_reported_of_and_their_return_is_reported_together() -> None:
     losses = Losses()
     losses.update(dict.fromkeys(LEG_SITES, 3.0), 10.0)
     then = "Check that the receiver is plugged in and near the patient, and that the sensors are switched on."
@@ -76,7 +76,7 @@ def test_where_none_is_heard_the_receiver_is_told_of_and_their_return_is_told_to
 HIPS = [Joint.LEFT_HIP, Joint.RIGHT_HIP]
 
 
-def test_a_silent_pelvis_costs_the_hips_and_says_that_the_rest_goes_on() -> None:
+def test_a_silent_pelvis_costs_the_hips_and_states_that_the_rest_goes_on() -> None:
     losses = Losses()
     assert losses.update({Site.PELVIS: 3.1, Site.LEFT_FOOT: 0.0}, 10.0) == (Site.PELVIS,)
     assert losses.message(True, [*ALL, *HIPS], 11.0) == (

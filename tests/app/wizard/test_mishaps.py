@@ -9,7 +9,7 @@ from uuid import uuid4
 import pytest
 from pytestqt.qtbot import QtBot
 
-from app.acquisition.heartbeat import Standstill
+from app.acquisition.heartbeat import ProcessStall
 from app.acquisition.recorder import Recorder
 from app.editing.session_recording import Ongoing
 from app.storage.journal.disk import Trouble
@@ -94,14 +94,14 @@ def test_a_walk_that_the_library_is_too_busy_for_is_read_back_later(
 ) -> None:
     monkeypatch.setattr("app.wizard.reading_back.READ_AGAIN_MS", 20)
     monkeypatch.setattr(Recorder, "stop", failing_once_halted(2))
-    told: list[tuple[str, str]] = []
-    looked_at.recordings.refused.connect(lambda *words: told.append(words))
+    reported: list[tuple[str, str]] = []
+    looked_at.recordings.refused.connect(lambda *words: reported.append(words))
     walk = record(qtbot, looked_at, RecordingKind.WALKING, 2.0)
     assert walk.read_back is not None
     assert len(walk.read_back.imu) == len(LEG_SITES)
     assert not looked_at.recordings.is_recording
-    assert len(told) == 1
-    assert "safe on the disk" in told[0][1]
+    assert len(reported) == 1
+    assert "safe on the disk" in reported[0][1]
 
 
 def test_a_library_that_stays_busy_does_not_hold_the_visit_for_ever(
@@ -113,11 +113,11 @@ def test_a_library_that_stays_busy_does_not_hold_the_visit_for_ever(
     monkeypatch.setattr(Recorder, "stop", failing(10_000, BUSY, Recorder.stop))
     with qtbot.waitSignal(recordings.begun, timeout=WAIT_MS):
         recordings.begin(acquisition, RecordingKind.WALKING)
-    told: list[tuple[str, str]] = []
-    recordings.refused.connect(lambda *words: told.append(words))
+    reported: list[tuple[str, str]] = []
+    recordings.refused.connect(lambda *words: reported.append(words))
     recordings.stop()
     qtbot.waitUntil(lambda: recordings.is_idle, timeout=WAIT_MS)
-    assert "when Gaitwright next starts" in told[-1][1]
+    assert "when Gaitwright next starts" in reported[-1][1]
     with pytest.raises(RuntimeError):
         acquisition.stop_recording()  # it has been, at once
 
@@ -130,16 +130,16 @@ def test_a_full_disk_ends_the_recording_on_the_screen_too(
     assert acquisition is not None
     with qtbot.waitSignal(recordings.begun, timeout=WAIT_MS):
         recordings.begin(acquisition, RecordingKind.WALKING)
-    with qtbot.waitSignal(recordings.troubled, timeout=WAIT_MS) as told:
-        threading.Thread(target=recordings.meet, args=(trouble,)).start()  # as the journal's writer tells it
-    assert all(sentence.endswith(".") for sentence in told.args)
+    with qtbot.waitSignal(recordings.troubled, timeout=WAIT_MS) as reported:
+        threading.Thread(target=recordings.meet, args=(trouble,)).start()  # as the journal's writer reports it
+    assert all(sentence.endswith(".") for sentence in reported.args)
     assert recordings.is_stopping is ends
     if ends:
         qtbot.waitUntil(lambda: not recordings.is_recording, timeout=WAIT_MS)
         assert len(recordings.walks) == 1
 
 
-def test_what_is_said_of_a_late_disk_follows_its_counters(
+def test_what_is_stated_of_a_late_disk_follows_its_counters(
     qtbot: QtBot, looked_at: Visit, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     """Amid a walk: first nothing is lost, then something is, then the disk answers again."""
@@ -154,29 +154,29 @@ def test_what_is_said_of_a_late_disk_follows_its_counters(
     fine = recordings._latest.status
     now = [replace(fine, stuck_s=3.0)]
     monkeypatch.setattr(Recorder, "status", property(lambda _recorder: now[0]))
-    with qtbot.waitSignal(recordings.troubled, timeout=WAIT_MS) as told:
+    with qtbot.waitSignal(recordings.troubled, timeout=WAIT_MS) as reported:
         recordings.meet(Trouble.DISK_SLOW)
-    assert told.args == [
+    assert reported.args == [
         "The disk responds slowly.",
         "No data lost so far. Close programs that copy or download to this disk.",
     ]
 
-    def said() -> str:
+    def stated() -> str:
         for _ in range(WATCH_TICKS):
             step.tick()
         return step.page.notice.text
 
     recording = step.bar().recording
     assert recording is not None
-    assert "No data lost so far" in said()
+    assert "No data lost so far" in stated()
     assert "Saved" not in recording.note
     monkeypatch.setattr(acquisition, "lost", lambda: {"DEMO-left_foot": 400})
-    assert "No data lost so far" not in said()
+    assert "No data lost so far" not in stated()
     now[0] = replace(fine, stuck_s=3.0, dropped_records=5)
-    assert "5 data packets were lost so far" in said()
+    assert "5 data packets were lost so far" in stated()
     now[0] = fine
     monkeypatch.setattr(acquisition, "lost", dict)
-    assert said() == "The disk was slow and now responds again. No data were lost because of this."
+    assert stated() == "The disk was slow and now responds again. No data were lost because of this."
     recording = step.bar().recording
     assert recording is not None
     assert "Saved continuously." in recording.note
@@ -186,23 +186,23 @@ def test_what_is_said_of_a_late_disk_follows_its_counters(
     step.deleteLater()
 
 
-@pytest.mark.parametrize(("is_before", "is_said"), [(False, True), (True, False)])
-def test_a_standstill_amid_a_recording_is_said_on_every_step_that_records(
-    qtbot: QtBot, wizard: Wizard, is_before: bool, is_said: bool, monkeypatch: pytest.MonkeyPatch
+@pytest.mark.parametrize(("is_before", "is_stated"), [(False, True), (True, False)])
+def test_a_standstill_amid_a_recording_is_stated_on_every_step_that_records(
+    qtbot: QtBot, wizard: Wizard, is_before: bool, is_stated: bool, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     wizard.begin(None)
     visit = wizard.visit
     assert visit is not None
     ended_s = 99.0 if is_before else 121.0
-    standstill = Standstill(ended_s - 20.0, ended_s, 20.0, 0.0, {"a": 0})
+    standstill = ProcessStall(ended_s - 20.0, ended_s, 20.0, 0.0, {"a": 0})
     acquisition = SimpleNamespace(
         standstills=(standstill,), now_s=125.0, lost=lambda: {"a": 9}, status=dict, trouble=None, is_simulated=False
     )
-    told = Recording("free motion", RecordingKind.FREE_MOTION, "free_motion", {})
-    monkeypatch.setattr(visit.recordings, "ongoing", Ongoing(told, 100.0))
+    reported = Recording("free motion", RecordingKind.FREE_MOTION, "free_motion", {})
+    monkeypatch.setattr(visit.recordings, "ongoing", Ongoing(reported, 100.0))
     monkeypatch.setattr(visit.recordings, "_acquisition", acquisition)
     wizard._watch_recording()
-    assert ("Gaitwright stalled for 20 s, 0:01 into the recording." in wizard.shell.banner.text) is is_said
+    assert ("Gaitwright stalled for 20 s, 0:01 into the recording." in wizard.shell.banner.text) is is_stated
     monkeypatch.setattr(visit.recordings, "ongoing", None)
 
 
@@ -272,7 +272,7 @@ def test_a_new_calibration_that_is_broken_off_is_asked_for_again(qtbot: QtBot, l
     assert step.bar().others[0].is_enabled
 
 
-def test_strapping_anew_before_what_does_not_count_is_told_of_what_does(qtbot: QtBot, looked_at: Visit) -> None:
+def test_strapping_again_before_what_does_not_count_is_reported_of_what_does(qtbot: QtBot, looked_at: Visit) -> None:
     recordings = looked_at.recordings
     record(qtbot, looked_at, RecordingKind.STANDING, 0.5)
     recordings.say_restrapped()
@@ -287,14 +287,14 @@ def test_a_demonstration_that_was_left_gives_its_patient_to_no_other_session(
     qtbot: QtBot, controller: LibraryController, wizard: Wizard
 ) -> None:
     wizard.begin(None)
-    wizard.steps[StepId.PATIENT].demonstration_wanted.emit()
+    wizard.steps[StepId.PATIENT].demonstration_required.emit()
     wizard.begin(None)  # before the library has answered
     asked(qtbot, controller, lambda _opened: None)
     assert wizard.visit is not None
     assert wizard.visit.patient.details.code == ""
 
 
-def test_who_skips_the_free_motion_is_told_its_price(qtbot: QtBot, looked_at: Visit) -> None:
+def test_who_skips_the_free_motion_is_reported_its_price(qtbot: QtBot, looked_at: Visit) -> None:
     step = WalkingStep(ThemeNotifier(), looked_at)
     assert step.bar().note == "Without free motion, joint angles are uncertain or missing."
     record(qtbot, looked_at, RecordingKind.FREE_MOTION, 0.5)
@@ -327,7 +327,7 @@ def test_walks_are_judged_without_sensors(qtbot: QtBot, controller: LibraryContr
     again.finish()
 
 
-def test_sensors_of_another_day_were_strapped_anew(
+def test_sensors_of_another_day_were_strapped_again(
     qtbot: QtBot, controller: LibraryController, looked_at: Visit, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     for kind in (RecordingKind.STANDING, RecordingKind.FREE_MOTION, RecordingKind.WALKING):
@@ -339,9 +339,9 @@ def test_sensors_of_another_day_were_strapped_anew(
         again.resume(looked_at.session.id)
     assert again.recordings.has_moved
     looked_at.sensors.close()
-    with qtbot.waitSignal(again.refused, timeout=WAIT_MS) as told:
+    with qtbot.waitSignal(again.refused, timeout=WAIT_MS) as reported:
         again.sensors.search(again.choices[0])
-    assert "another day" in told.args[0]
+    assert "another day" in reported.args[0]
     assert again.recordings.must_move
     again.close()
     again.finish()
@@ -390,7 +390,7 @@ def test_a_code_is_written_otherwise_by_its_own_patient(qtbot: QtBot, visit: Vis
     assert visit.patient.stored.details.code == "DEMO-5"
 
 
-def test_a_session_that_is_gone_leads_back_and_says_so(
+def test_a_session_that_is_gone_leads_back_and_states_so(
     qtbot: QtBot, wizard: Wizard, controller: LibraryController
 ) -> None:
     with qtbot.waitSignals([wizard.left, controller.refused], timeout=WAIT_MS):
@@ -438,10 +438,10 @@ def test_a_report_still_being_set_when_the_session_is_left_is_waited_for_at_the_
 
 def test_a_key_that_was_meant_for_the_page_before_does_nothing(wizard: Wizard, monkeypatch: pytest.MonkeyPatch) -> None:
     """Space ends the free motion, and begins a walk once that page is there: it may have turned by itself meanwhile."""
-    heard: list[Intent] = []
+    received: list[Intent] = []
 
     def hear(_step: WalkingStep, intent: Intent) -> bool:
-        heard.append(intent)
+        received.append(intent)
         return True
 
     monkeypatch.setattr(WalkingStep, "on_intent", hear)
@@ -453,9 +453,9 @@ def test_a_key_that_was_meant_for_the_page_before_does_nothing(wizard: Wizard, m
     wizard.steps[StepId.FREE_MOTION].done.emit()
     assert wizard.step_id is StepId.WALKING
     wizard.act_on(Intent(KeyAction.RUN))
-    assert heard == []
+    assert received == []
     wizard.act_on(Intent(KeyAction.UNDO))
-    assert heard == [Intent(KeyAction.UNDO)]
+    assert received == [Intent(KeyAction.UNDO)]
     now_s += DEAF_S + 0.01
     wizard.act_on(Intent(KeyAction.RUN))
-    assert heard[1:] == [Intent(KeyAction.RUN)]
+    assert received[1:] == [Intent(KeyAction.RUN)]

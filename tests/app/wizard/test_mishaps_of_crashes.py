@@ -65,7 +65,7 @@ def test_a_session_is_taken_up_where_something_is_to_be_done(qtbot: QtBot, wizar
     record(qtbot, left, RecordingKind.STANDING, 0.5)
     assert landed(qtbot, wizard, left) == StepId.SENSORS
     walk = record(qtbot, left, RecordingKind.WALKING, 0.5)
-    assert landed(qtbot, wizard, left) == StepId.WALKING  # nobody has said yet whether it is kept
+    assert landed(qtbot, wizard, left) == StepId.WALKING  # nobody has stated yet whether it is kept
     left.recordings.keep(walk, is_kept=True)
     qtbot.waitUntil(lambda: left.recordings.walks[0].stored.is_decided, timeout=WAIT_MS)
     assert landed(qtbot, wizard, left) == StepId.RESULTS
@@ -81,16 +81,16 @@ def test_what_a_crash_cut_short_is_not_done(qtbot: QtBot, left: Visit) -> None:
     moved = record(qtbot, left, RecordingKind.FREE_MOTION, 0.5)
     assert standing.read_back is not None
     imu = standing.read_back.imu
-    stands, moves = StandStillStep(ThemeNotifier(), left), FreeMotionStep(ThemeNotifier(), left)
+    shown, moves = StandStillStep(ThemeNotifier(), left), FreeMotionStep(ThemeNotifier(), left)
 
     def rest(seconds: float) -> None:
         rests = {site: rest_of(block) for site, block in imu.items()}
         left.rests = {str(site): replace(found, duration_s=seconds) for site, found in rests.items() if found}
 
     rest(2.1)
-    assert (stands.state, stands.note) == (StepState.TODO, "")
+    assert (shown.state, shown.note) == (StepState.TODO, "")
     rest(3.0)
-    assert (stands.state, stands.note) == (StepState.DONE, "3.0 s, standing reference")
+    assert (shown.state, shown.note) == (StepState.DONE, "3.0 s, standing reference")
     assert moves.state is StepState.DONE
     recovered = replace(moved, stored=replace(moved.stored, state=RecordingState.RECOVERED))
     left.recordings.every = tuple(

@@ -1,4 +1,5 @@
-"""Sensors that are not where they are said to be: what is put right holds for what it was said of, and no more."""
+"""Sensors that are not where they are stated to be: what is put right holds for what it was stated about, and no
+more."""
 
 from collections.abc import Iterator
 
@@ -57,7 +58,7 @@ def test_sensors_that_were_strapped_on_otherwise_leave_what_was_recorded_before(
     swap_thighs(qtbot, visit, sensors_step)
     record(qtbot, visit, RecordingKind.STANDING, 0.5)
     assert left_thighs(visit) == ["DEMO-left_thigh", "DEMO-right_thigh"]
-    swap_thighs(qtbot, visit, sensors_step)  # it was said wrongly: put right since the strapping, not before
+    swap_thighs(qtbot, visit, sensors_step)  # it was stated wrongly: put right since the strapping, not before
     qtbot.waitUntil(lambda: left_thighs(visit) == ["DEMO-left_thigh"] * 2, timeout=10_000)
     record(qtbot, visit, RecordingKind.STANDING, 0.5)
     assert left_thighs(visit) == ["DEMO-left_thigh"] * 3

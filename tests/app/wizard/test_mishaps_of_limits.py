@@ -1,4 +1,4 @@
-"""What no sensor shows of the patient's body is said wherever results are, also when a session is opened again."""
+"""What no sensor shows of the patient's body is stated wherever results are, also when a session is opened again."""
 
 import pytest
 from pytestqt.qtbot import QtBot
@@ -11,33 +11,33 @@ from core.body import Side, Site
 from core.samples import RecordingKind
 from tests.app.wizard.begun_visit import begin, record
 
-SAID = "Right ankle: The foot has no ankle joint. Its angle is the foot relative to the shank."
+STATED = "Right ankle: The foot has no ankle joint. Its angle is the foot relative to the shank."
 
 
-def said(visit: Visit) -> list[str]:
+def stated(visit: Visit) -> list[str]:
     assert visit.evaluation.analysis is not None
     return [sentence(finding) for finding in visit.evaluation.analysis.findings]
 
 
-@pytest.mark.parametrize("is_told_late", [False, pytest.param(True, marks=pytest.mark.endurance)])
+@pytest.mark.parametrize("is_reported_late", [False, pytest.param(True, marks=pytest.mark.endurance)])
 def test_a_foot_without_ankle_is_called_foot_against_shank(
-    qtbot: QtBot, controller: LibraryController, visit: Visit, worn: dict[str, Site], is_told_late: bool
+    qtbot: QtBot, controller: LibraryController, visit: Visit, worn: dict[str, Site], is_reported_late: bool
 ) -> None:
     begin(qtbot, visit, worn)
     limits = Limits(without_ankle=frozenset({Side.RIGHT}))
-    if not is_told_late:
+    if not is_reported_late:
         visit.record.set_limits(limits)
     with qtbot.waitSignal(visit.evaluation.done, timeout=20_000):
         record(qtbot, visit, RecordingKind.WALKING, 4.0)
-    if is_told_late:
-        assert SAID not in said(visit)
+    if is_reported_late:
+        assert STATED not in stated(visit)
         with qtbot.waitSignal(visit.evaluation.done, timeout=20_000):
             visit.record.set_limits(limits)
-    assert SAID in said(visit)
+    assert STATED in stated(visit)
     assert visit.session is not None
     again = Visit(controller, [])
     with qtbot.waitSignals([again.resumed, again.evaluation.done], timeout=20_000):
         again.resume(visit.session.id)
-    assert SAID in said(again)
+    assert STATED in stated(again)
     again.close()
     again.finish()

@@ -46,7 +46,7 @@ def test_what_was_found_of_a_joint_holds_for_the_sensors_it_was_found_with(
     assert set(visit.calibration) == {Joint.LEFT_ANKLE, Joint.RIGHT_ANKLE}
 
 
-def test_it_holds_again_once_it_was_found_anew_under_the_new_places(visit: Visit, calibrated: SensorsStep) -> None:
+def test_it_holds_again_once_it_was_found_again_under_the_new_places(visit: Visit, calibrated: SensorsStep) -> None:
     sensors, evaluated = visit.sensors, visit.evaluation.session
     assert evaluated is not None
     sensors.assign(sensors.sensor_at[THIGH], SHANK)
@@ -57,16 +57,16 @@ def test_it_holds_again_once_it_was_found_anew_under_the_new_places(visit: Visit
     assert set(visit.calibration) == set(LEG_JOINTS)
 
 
-def test_new_places_of_the_same_sensors_are_said_and_a_sign_turned_by_hand_is_forgotten(
+def test_new_places_of_the_same_sensors_are_stated_and_a_sign_turned_by_hand_is_forgotten(
     qtbot: QtBot, visit: Visit, calibrated: SensorsStep
 ) -> None:
     for joint in (Joint.LEFT_KNEE, Joint.RIGHT_ANKLE):
         visit.record.set_turned(joint, -1)
     visit.sensors.assign(visit.sensors.sensor_at[THIGH], Site.RIGHT_THIGH)
-    told = QSignalSpy(calibrated.told)
+    reported = QSignalSpy(calibrated.reported)
     with qtbot.waitSignal(visit.worn.corrected, timeout=10_000):
         calibrated.leave()
-    assert told.at(0)[0] == "Sensor positions changed. Standing reference and calibration are derived again."
+    assert reported.at(0)[0] == "Sensor positions changed. Standing reference and calibration are derived again."
     assert not visit.recordings.is_restrapped
     assert visit.details.turned_sign == {Joint.RIGHT_ANKLE: -1}
 
@@ -76,9 +76,9 @@ def test_another_sensor_at_a_place_asks_for_another_standing_and_free_motion(
 ) -> None:
     visit.sensors.assign(visit.sensors.sensor_at[THIGH], None)
     visit.sensors.assign(visit.sensors.sensor_at[Site.LEFT_FOOT], THIGH)
-    told = QSignalSpy(calibrated.told)
+    reported = QSignalSpy(calibrated.reported)
     calibrated.leave()
-    assert told.at(0)[0] == "Another sensor is worn. Standing reference and calibration are no longer valid."
+    assert reported.at(0)[0] == "Another sensor is worn. Standing reference and calibration are no longer valid."
     assert visit.recordings.must_move
     assert Joint.LEFT_KNEE not in visit.calibration
     qtbot.waitUntil(lambda: not visit.record.is_busy)
@@ -88,18 +88,18 @@ def test_a_sensor_that_was_taken_off_leaves_what_was_found_of_the_others(
     qtbot: QtBot, visit: Visit, calibrated: SensorsStep
 ) -> None:
     visit.sensors.assign(visit.sensors.sensor_at[Site.LEFT_FOOT], None)
-    told = QSignalSpy(calibrated.told)
+    reported = QSignalSpy(calibrated.reported)
     with qtbot.waitSignal(visit.changed, timeout=10_000):
         calibrated.leave()
-    assert told.count() == 0
+    assert reported.count() == 0
     assert not visit.recordings.must_move
     assert Joint.LEFT_KNEE in visit.calibration
 
 
 def test_places_that_stay_say_nothing(visit: Visit, calibrated: SensorsStep) -> None:
-    told = QSignalSpy(calibrated.told)
+    reported = QSignalSpy(calibrated.reported)
     calibrated.leave()
-    assert told.count() == 0
+    assert reported.count() == 0
 
 
 def test_sides_that_are_swapped_are_swapped_for_what_is_recorded_next(

@@ -36,16 +36,16 @@ def hanging(until: Event) -> Callable[[OpenedLibrary], None]:
 def test_no_call_of_the_library_holds_up_a_recording(
     qtbot: QtBot, controller: LibraryController, visit: Visit, worn: dict[str, Site], monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    """While a call hangs a walk begins and ends, then another; both come when it is over, worn as was said before."""
+    """While a call hangs a walk begins and ends, then another; both come when it is over, worn as was stated before."""
     begin(qtbot, visit, worn)
     recordings, acquisition, over = visit.recordings, visit.sensors.acquisition, Event()
     monkeypatch.setattr("app.wizard.recordings.WAITED_MS", 200)
     assert acquisition is not None
     controller.run(hanging(over), None, None, controller)
     visit.place_sensors()  # behind it, and before the walk
-    told: list[tuple[str, str]] = []
-    recordings.troubled.connect(lambda *words: told.append(words))
-    recordings.refused.connect(lambda *words: told.append(words))
+    reported: list[tuple[str, str]] = []
+    recordings.troubled.connect(lambda *words: reported.append(words))
+    recordings.refused.connect(lambda *words: reported.append(words))
     ended: list[SessionRecording] = []
     recordings.ended.connect(ended.append)
     try:
@@ -58,9 +58,12 @@ def test_no_call_of_the_library_holds_up_a_recording(
             qtbot.waitUntil(lambda: not recordings.is_recording, timeout=WAIT_MS)
             assert acquisition._writer is None
         assert ended == []
-        assert [what for what, _ in told] == ["The library does not respond.", "The recording is not loaded yet."] * 2
-        assert ["The recording is still written to the disk" in then for _, then in told] == [True, False] * 2
-        assert ["safe on the disk" in then for _, then in told] == [False, True] * 2
+        assert [what for what, _ in reported] == [
+            "The library does not respond.",
+            "The recording is not loaded yet.",
+        ] * 2
+        assert ["The recording is still written to the disk" in then for _, then in reported] == [True, False] * 2
+        assert ["safe on the disk" in then for _, then in reported] == [False, True] * 2
     finally:
         over.set()
     qtbot.waitUntil(lambda: recordings.is_idle, timeout=WAIT_MS)
@@ -92,9 +95,9 @@ def test_a_database_that_fails_in_whatever_way_costs_no_recording(
     assert acquisition is not None
     with qtbot.waitSignals([recordings.begun, recordings.troubled], timeout=WAIT_MS):
         recordings.begin(acquisition, RecordingKind.WALKING)
-    with qtbot.waitSignal(recordings.refused, timeout=WAIT_MS) as told:
+    with qtbot.waitSignal(recordings.refused, timeout=WAIT_MS) as reported:
         recordings.stop()
-    assert told.args == [f"{FAULT.what}.", "The recording is safe on the disk. It is loaded as soon as possible."]
+    assert reported.args == [f"{FAULT.what}.", "The recording is safe on the disk. It is loaded as soon as possible."]
     assert not recordings.is_recording
     is_broken[0] = False
     with qtbot.waitSignal(recordings.ended, timeout=WAIT_MS) as ended:
@@ -130,12 +133,12 @@ def test_corrections_that_follow_each_other_quickly_all_hold(qtbot: QtBot, visit
     walk = record(qtbot, visit, RecordingKind.WALKING, 0.5)
     recordings = visit.recordings
     recordings.keep(walk, is_kept=True)
-    recordings.change(walk, lambda told: replace(told, condition="barefoot"))
-    recordings.change(walk, lambda told: replace(told, left_out_s={Side.LEFT: (4.0,)}))
+    recordings.change(walk, lambda reported: replace(reported, condition="barefoot"))
+    recordings.change(walk, lambda reported: replace(reported, left_out_s={Side.LEFT: (4.0,)}))
     recordings.keep(walk, is_kept=False)
     qtbot.waitUntil(lambda: not recordings.walks[0].details.is_kept, timeout=WAIT_MS)
-    told = recordings.walks[0].details
-    assert (told.condition, dict(told.left_out_s)) == ("barefoot", {Side.LEFT: (4.0,)})
+    reported = recordings.walks[0].details
+    assert (reported.condition, dict(reported.left_out_s)) == ("barefoot", {Side.LEFT: (4.0,)})
     for is_kept in (True, False):
         recordings.keep(recordings.walks[0], is_kept)
     assert visit.controller.state is not None
@@ -155,7 +158,7 @@ def test_what_was_broken_off_does_not_count(qtbot: QtBot, visit: Visit, worn: di
     recordings.begin(acquisition, RecordingKind.STANDING)
     recordings.stop(is_kept=False)  # before it has begun
     assert recordings.is_stopping
-    recordings.stop()  # who says so once more does not say that it counts
+    recordings.stop()  # who reports it once more does not say that it counts
     qtbot.waitUntil(lambda: bool(recordings.every) and not recordings.every[0].details.is_kept, timeout=WAIT_MS)
     assert recordings.standing is None
     record(qtbot, visit, RecordingKind.STANDING, 2.0)

@@ -1,4 +1,4 @@
-"""A viewer of Rerun's that closes at once is said, with its reason; one that stays, or that is closed, is not."""
+"""A viewer of Rerun's that closes at once is stated, with its reason; one that stays, or that is closed, is not."""
 
 import sys
 from collections.abc import Iterator
@@ -29,25 +29,25 @@ def review(qapp: QObject, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> It
     parent.deleteLater()
 
 
-def test_a_viewer_that_closes_at_once_is_said_with_its_reason(
+def test_a_viewer_that_closes_at_once_is_stated_with_its_reason(
     qtbot: QtBot, review: Reviewing, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.setattr(reviewing, "viewer_program", lambda: stand_in(tmp_path, ends=True)[0])
-    with qtbot.waitSignal(review.refused, timeout=WAIT_MS) as told:
+    with qtbot.waitSignal(review.refused, timeout=WAIT_MS) as reported:
         review.show(*EMPTY)
     reason = "no screen at \N{HORIZONTAL ELLIPSIS} Failed to open"
-    assert told.args[0] == f"Rerun closed with an error: {reason}."
+    assert reported.args[0] == f"Rerun closed with an error: {reason}."
 
 
-def test_of_a_viewer_that_stays_nothing_is_said(
+def test_of_a_viewer_that_stays_nothing_is_stated(
     qtbot: QtBot, review: Reviewing, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     program, seen = stand_in(tmp_path)
     monkeypatch.setattr(reviewing, "viewer_program", lambda: program)
-    told: list[str] = []
-    review.refused.connect(lambda what, _then: told.append(what))
+    reported: list[str] = []
+    review.refused.connect(lambda what, _then: reported.append(what))
     review.show(*EMPTY)
     wait_for(seen)
     qtbot.wait(100)
     review.finish()
-    assert told == []
+    assert reported == []

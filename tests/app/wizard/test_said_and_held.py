@@ -1,4 +1,4 @@
-"""Does `tests.safety.said_and_held` see when screen and library disagree, and is it silent when they agree?"""
+"""Does `tests.safety.stated_and_held` see when screen and library disagree, and is it silent when they agree?"""
 
 from collections.abc import Callable, Iterator
 from contextlib import closing
@@ -80,7 +80,7 @@ def home_in_sight(
     qapp.setStyleSheet("")
 
 
-def test_what_is_said_otherwise_of_a_session_is_seen(session_in_sight: Any, held: HeldLibrary, alter: Alter) -> None:
+def test_what_is_stated_otherwise_of_a_session_is_seen(session_in_sight: Any, held: HeldLibrary, alter: Alter) -> None:
     assert contradictions(session_in_sight, held) == []
     for statement, *words in (
         ("UPDATE recordings SET condition = 'else' WHERE name = 'walk 2'", "the list of walks says"),
@@ -94,13 +94,13 @@ def test_what_is_said_otherwise_of_a_session_is_seen(session_in_sight: Any, held
     ):
         assert not any(word in one for word in words for one in contradictions(session_in_sight, held))
         alter(statement)
-        said = contradictions(session_in_sight, held)
-        assert all(any(word in one for one in said) for word in words), said
+        stated = contradictions(session_in_sight, held)
+        assert all(any(word in one for one in stated) for word in words), stated
 
 
-def test_what_is_said_otherwise_on_home_is_seen(home_in_sight: Any, held: HeldLibrary, alter: Alter) -> None:
+def test_what_is_stated_otherwise_on_home_is_seen(home_in_sight: Any, held: HeldLibrary, alter: Alter) -> None:
     assert contradictions(home_in_sight, held) == []
-    home_in_sight.home.banner.tell("The program closed during recording. 00:14 of walk 1 was recovered.")
+    home_in_sight.home.banner.show_message("The program closed during recording. 00:14 of walk 1 was recovered.")
     for statement, words in (
         ("UPDATE sessions SET is_simulated = 0", "simulated, it is not held as such"),
         ("UPDATE recordings SET condition = 'else'", "home says conditions"),
@@ -109,12 +109,12 @@ def test_what_is_said_otherwise_on_home_is_seen(home_in_sight: Any, held: HeldLi
         ("UPDATE recordings SET name = 'walk 3' WHERE name = 'walk 1'", "no recovered 'walk 1'"),
     ):
         alter(statement)
-        said = contradictions(home_in_sight, held)
-        assert any(words in one for one in said), said
+        stated = contradictions(home_in_sight, held)
+        assert any(words in one for one in stated), stated
 
 
-def test_a_banner_that_is_hidden_says_nothing(home_in_sight: Any, held: HeldLibrary) -> None:
-    home_in_sight.home.banner.tell("The program closed during recording. 00:05 of standing 6 was recovered.")
+def test_a_banner_that_is_hidden_states_nothing(home_in_sight: Any, held: HeldLibrary) -> None:
+    home_in_sight.home.banner.show_message("The program closed during recording. 00:05 of standing 6 was recovered.")
     assert any("no recovered 'standing 6'" in one for one in contradictions(home_in_sight, held))
     home_in_sight.home.banner.hide()  # as where another library is opened
     assert contradictions(home_in_sight, held) == []

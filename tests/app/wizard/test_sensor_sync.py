@@ -1,4 +1,4 @@
-"""What is said while sensors are brought onto one clock, and of each way in which that may fail."""
+"""What is stated while sensors are brought onto one clock, and of each way in which that may fail."""
 
 import pytest
 
@@ -11,17 +11,17 @@ DONE, NOW, TO_DO = LineState.DONE, LineState.NOW, LineState.TO_DO
 
 
 @pytest.mark.parametrize(
-    ("stage", "sensor", "said"),
+    ("stage", "sensor", "stated"),
     [
         (SyncStage.PREPARING, "", "Connecting to the sensors."),
         (SyncStage.PREPARING, "DOT 0002", "DOT 0002 is being set up."),
-        (SyncStage.WAITING, "", "The sensors are comparing their clocks. Leave them where they are."),
+        (SyncStage.WAITING, "", "The sensors are comparing their clocks automatically. Leave them where they are."),
         (SyncStage.CONNECTING, "DOT 0001", "Checking the result of DOT 0001."),
         (SyncStage.LISTENING, "", "Comparing the sensor clocks."),
     ],
 )
-def test_each_stage_has_its_sentence(stage: SyncStage, sensor: str, said: str) -> None:
-    assert sentence_of(SyncView(stage, sensor)) == said
+def test_each_stage_has_its_sentence(stage: SyncStage, sensor: str, stated: str) -> None:
+    assert sentence_of(SyncView(stage, sensor)) == stated
 
 
 @pytest.mark.parametrize(
@@ -46,7 +46,7 @@ def test_every_failure_has_its_reason() -> None:
 
 
 class _Shown(SensorSync):
-    """One that shows what it is told to."""
+    """One that shows what it is given to."""
 
     def __init__(self, view: SyncView) -> None:
         super().__init__(None)  # type: ignore[arg-type]  # it belongs to nobody
@@ -61,7 +61,7 @@ class _Shown(SensorSync):
         (None, 1, "", "The sensors are being synchronised"),
     ],
 )
-def test_how_long_it_takes_is_told_unless_that_is_soon(
+def test_how_long_it_takes_is_reported_unless_that_is_soon(
     left_s: float | None, attempt: int, sentence: str, title: str
 ) -> None:
     shown = progress_of(_Shown(SyncView(SyncStage.WAITING, "", left_s, 0.5, attempt)), NAMES)

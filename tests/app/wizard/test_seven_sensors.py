@@ -250,7 +250,7 @@ def test_live_standing_does_not_wait_for_a_silent_pelvis(
 
 
 @pytest.mark.endurance
-def test_live_motion_tells_who_wears_the_pelvis(
+def test_live_motion_shows_who_wears_the_pelvis(
     qtbot: QtBot, visit: Visit, worn: dict[str, Site], source: ReplaySource, look: ThemeNotifier, looked: list[Looked]
 ) -> None:
     begin(qtbot, visit, worn)

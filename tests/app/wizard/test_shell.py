@@ -52,7 +52,7 @@ def fine() -> dict[Site, SensorTile]:
 
 def stop_early() -> BarState:
     note = tr("If you stop now, angles are unreliable for the left knee.")
-    stop = idle(tr("Stop early"), tr("Space"), Icon.STOP, is_wished=False)
+    stop = idle(tr("Stop early"), tr("Space"), Icon.STOP, is_requested=False)
     return BarState(stop, quiet=(idle(tr("Repeat one leg"), icon=Icon.REPEAT),), note=note)
 
 
@@ -64,8 +64,8 @@ def recording() -> BarState:
 
 
 def reconnect() -> BarState:
-    wished = idle(tr("Reconnect R foot"), tr("Enter"), Icon.REPEAT)
-    return BarState(wished, others=(idle(tr("Continue without right ankle")),))
+    requested = idle(tr("Reconnect R foot"), tr("Enter"), Icon.REPEAT)
+    return BarState(requested, others=(idle(tr("Continue without right ankle")),))
 
 
 def filled(look: ThemeNotifier) -> WizardShell:
@@ -142,18 +142,18 @@ def test_the_content_is_no_wider_than_can_be_read_and_in_the_middle(shell: Wizar
     assert left == (2400 - shell.rail.width() - 1600) // 2
 
 
-def test_a_page_is_told_its_room_in_px_of_the_design(shell: WizardShell, look: ThemeNotifier) -> None:
-    told: list[tuple[bool, float, float]] = []
-    shell.room_changed.connect(lambda *room: told.append(room))
+def test_a_page_is_reported_its_room_in_px_of_the_design(shell: WizardShell, look: ThemeNotifier) -> None:
+    reported: list[tuple[bool, float, float]] = []
+    shell.room_changed.connect(lambda *room: reported.append(room))
     look.set_scale(2.0)
     shell.resize(1920, 1200)
     settle()
     page = shell.page
     assert page is not None
-    assert told[-1] == (True, page.width() / 2, page.height() / 2)
-    told.clear()
+    assert reported[-1] == (True, page.width() / 2, page.height() / 2)
+    reported.clear()
     shell.show_page(StepId.SENSORS, Page())
-    assert told
+    assert reported
 
 
 def test_a_question_above_the_gauges_pushes_none_out_of_sight(shell: WizardShell, look: ThemeNotifier) -> None:
@@ -235,14 +235,14 @@ def test_the_folded_strip_opens_at_a_press(shell: WizardShell) -> None:
     shell.set_strip_mode(StripMode.FOLDED)
     assert not shell.strip.isVisible()
     assert shell.header.fold.text() == "6 sensors, all connected"
-    told = QAccessible.queryAccessibleInterface(shell.header.fold)
-    assert (told.role(), bool(told.state().checked)) == (QAccessible.Role.CheckBox, False)
+    reported = QAccessible.queryAccessibleInterface(shell.header.fold)
+    assert (reported.role(), bool(reported.state().checked)) == (QAccessible.Role.CheckBox, False)
     QTest.mouseClick(shell.header.fold, Qt.MouseButton.LeftButton)
     assert shell.strip.isVisible()
-    assert told.state().checked
+    assert reported.state().checked
     QTest.mouseClick(shell.header.fold, Qt.MouseButton.LeftButton)
     assert not shell.strip.isVisible()
-    assert not told.state().checked
+    assert not reported.state().checked
 
 
 def test_an_opened_strip_is_folded_again_with_the_next_session(shell: WizardShell) -> None:
@@ -267,7 +267,7 @@ def test_the_folded_strip_opens_by_itself_when_a_sensor_turns_bad_and_only_then(
     assert not shell.strip.isVisible()
 
 
-def test_a_low_window_has_no_room_for_tiles_and_says_it_in_the_header(shell: WizardShell) -> None:
+def test_a_low_window_has_no_room_for_tiles_and_states_it_in_the_header(shell: WizardShell) -> None:
     shell.set_strip_mode(StripMode.SHOWN)
     shell.resize(1280, 470)
     settle()
@@ -285,7 +285,7 @@ def test_a_banner_that_comes_while_recording_pushes_nothing(shell: WizardShell) 
     shell.bar.show_state(recording())
     settle()
     before = page.mapTo(shell, page.rect().topLeft())
-    shell.banner.tell("R foot: no signal for 2 s", "Recording continues.")
+    shell.banner.show_message("R foot: no signal for 2 s", "Recording continues.")
     settle()
     assert page.mapTo(shell, page.rect().topLeft()) == before
     shell.banner.hide()
@@ -294,7 +294,7 @@ def test_a_banner_that_comes_while_recording_pushes_nothing(shell: WizardShell) 
     assert page.mapTo(shell, page.rect().topLeft()).y() < before.y()
 
 
-def test_the_toast_stands_above_the_bar_at_its_left(shell: WizardShell) -> None:
+def test_the_toast_is_above_the_bar_at_its_left(shell: WizardShell) -> None:
     shell.toast.offer("Walk 2 excluded.")
     settle()
     assert shell.toast.geometry().bottom() < shell.bar.mapTo(shell, QPoint(0, 0)).y()

@@ -40,23 +40,23 @@ def step(qtbot: QtBot, visit: Visit) -> Iterator[SensorsStep]:
     step.deleteLater()
 
 
-def said(step: SensorsStep) -> str:
+def stated(step: SensorsStep) -> str:
     return step.page.nothing.notice.text
 
 
-def test_it_is_said_whom_it_asks_and_asked_when_it_is_chosen_once_more(
+def test_it_is_stated_whom_it_asks_and_asked_when_it_is_chosen_once_more(
     qtbot: QtBot, visit: Visit, step: SensorsStep, asked: list[str]
 ) -> None:
-    assert WARNING not in said(step)
+    assert WARNING not in stated(step)
     step.page.source_chosen.emit(NETWORK)
-    assert WARNING in said(step)
-    assert "Choose it again to ask." in said(step)
+    assert WARNING in stated(step)
+    assert "Choose it again to ask." in stated(step)
     assert (asked, visit.sensors.is_searching) == ([], False)
     with qtbot.waitSignal(visit.refused, timeout=5000) as refused:
         step.page.source_chosen.emit(NETWORK)
     assert asked == ["192.0.2.9"]
     assert refused.args[0] == "No motion stream found."
-    assert WARNING not in said(step)
+    assert WARNING not in stated(step)
 
 
 @pytest.mark.parametrize("other", [SEARCH, STREAMS + "127.0.0.1"])
@@ -66,16 +66,16 @@ def test_another_choice_takes_it_back(
     step.page.source_chosen.emit(NETWORK)
     with qtbot.waitSignal(visit.refused, timeout=5000):
         step.page.source_chosen.emit(other)
-    assert WARNING not in said(step)
+    assert WARNING not in stated(step)
     step.page.source_chosen.emit(NETWORK)
-    assert WARNING in said(step)
+    assert WARNING in stated(step)
     assert "192.0.2.9" not in asked
 
 
-def test_who_leaves_has_to_be_told_anew(step: SensorsStep, asked: list[str]) -> None:
+def test_who_leaves_has_to_be_reported_again(step: SensorsStep, asked: list[str]) -> None:
     step.page.source_chosen.emit(NETWORK)
     step.leave()
     step.enter()
-    assert WARNING not in said(step)
+    assert WARNING not in stated(step)
     step.page.source_chosen.emit(NETWORK)
-    assert (WARNING in said(step), asked) == (True, [])
+    assert (WARNING in stated(step), asked) == (True, [])

@@ -11,7 +11,7 @@ from app.wizard.walking.step import WalkingStep
 from app.wizard.wizard import Wizard
 
 
-def test_the_wizard_tells_its_keys_whether_a_step_takes_a_clicker(
+def test_the_wizard_shows_its_keys_whether_a_step_takes_a_clicker(
     qtbot: QtBot, wizard: Wizard, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     wizard.begin(None)

@@ -30,7 +30,7 @@ from tests.app.library_answers import asked
 from tests.app.wizard.conftest import PASSPHRASE
 
 WAIT_MS = 20_000
-TOLD = Patient("DEMO-9", 1966, height_m=1.68, aids="stick")
+REPORTED = Patient("DEMO-9", 1966, height_m=1.68, aids="stick")
 WALK = Recording("walk 1", RecordingKind.WALKING, "walk_1", {}, condition="shoes")
 WORN = {Site.LEFT_THIGH: PlacedSensor("A", SensorInfo()), Site.RIGHT_THIGH: PlacedSensor("B", SensorInfo())}
 
@@ -40,27 +40,27 @@ class OtherStation:
 
     def __init__(self, library: Library) -> None:
         self.library = library
-        self.patient = library.patients.create(TOLD)
+        self.patient = library.patients.create(REPORTED)
         visit = library.sessions.create(self.patient.id, Session(()))
         library.sessions.place(visit.id, WORN)
         self.session_id = visit.id
         self.walk_id = library.recordings.start(visit.id, WALK, is_simulated=True).id
 
-    def say_of_patient(self, **told: Value) -> None:
-        upon = patient_fields(self.library.patients.get(self.patient.id).details)
-        self.library.edits.patient(self.patient.id, upon, upon | told)
+    def say_of_patient(self, **reported: Value) -> None:
+        base = patient_fields(self.library.patients.get(self.patient.id).details)
+        self.library.edits.patient(self.patient.id, base, base | reported)
 
-    def say_of_session(self, told: dict[str, Value]) -> None:
+    def say_of_session(self, reported: dict[str, Value]) -> None:
         visit = self.library.sessions.get(self.session_id)
-        upon = session_fields(visit.details, visit.comment, visit.limits)
-        self.library.edits.session(self.session_id, upon, upon | told)
+        base = session_fields(visit.details, visit.comment, visit.limits)
+        self.library.edits.session(self.session_id, base, base | reported)
 
-    def say_of_walk(self, told: dict[str, Value]) -> None:
-        upon = recording_fields(self.walk)
-        self.library.edits.recording(self.walk_id, upon, upon | told)
+    def say_of_walk(self, reported: dict[str, Value]) -> None:
+        base = recording_fields(self.walk)
+        self.library.edits.recording(self.walk_id, base, base | reported)
 
     @property
-    def told(self) -> Patient:
+    def reported(self) -> Patient:
         return self.library.patients.get(self.patient.id).details
 
     @property
@@ -102,15 +102,15 @@ def ours(qtbot: QtBot, wizard: Wizard, other: OtherStation) -> Visit:
 
 
 class Ear:
-    """Hears what the wizard says in its banner."""
+    """Receives what the wizard states in its banner."""
 
     def __init__(self, visit: Visit) -> None:
-        self.heard: list[str] = []
+        self.received: list[str] = []
         visit.merged.connect(self.hear)
         visit.refused.connect(self.hear)
 
     def hear(self, what: str, then: str) -> None:
-        self.heard.append(f"{what} {then}")
+        self.received.append(f"{what} {then}")
 
 
 def dialog_of(qtbot: QtBot, wizard: Wizard) -> EditDialog:
@@ -133,14 +133,14 @@ def settle(qtbot: QtBot, visit: Visit, other: OtherStation, is_so: Callable[[], 
 def test_a_patient_who_is_deleted_at_another_station_is_missed_here_with_one_word(
     qtbot: QtBot, controller: LibraryController, ours: Visit, wizard: Wizard, other: OtherStation
 ) -> None:
-    heard: list[tuple[str, str]] = []
-    ours.deleted_elsewhere.connect(lambda what, then: heard.append((what, then)))
+    received: list[tuple[str, str]] = []
+    ours.deleted_elsewhere.connect(lambda what, then: received.append((what, then)))
     with qtbot.assertNotEmitted(ours.deleted_elsewhere, wait=100):
         wizard.look_for_changes()
     other.library.patients.delete(other.library.patients.get(other.patient.id))
     for _ in range(3):  # as the watch has it done
         wizard.look_for_changes()
-    qtbot.waitUntil(lambda: bool(heard), timeout=WAIT_MS)
+    qtbot.waitUntil(lambda: bool(received), timeout=WAIT_MS)
     assert wizard.shell.banner.text.startswith("hk deleted DEMO-9 at another workstation.")
     other.library.patients.restore(other.library.patients.get(other.patient.id))
     visit = other.library.sessions.get(other.session_id)
@@ -148,8 +148,8 @@ def test_a_patient_who_is_deleted_at_another_station_is_missed_here_with_one_wor
     asked(qtbot, controller, lambda library: library.folder)  # after the look
     other.library.sessions.delete(visit)
     wizard.look_for_changes()
-    qtbot.waitUntil(lambda: len(heard) > 1, timeout=WAIT_MS)
-    assert {what for what, _ in heard} == {"hk deleted DEMO-9 at another workstation."}
+    qtbot.waitUntil(lambda: len(received) > 1, timeout=WAIT_MS)
+    assert {what for what, _ in received} == {"hk deleted DEMO-9 at another workstation."}
     other.refuse_broken_audit()
 
 
@@ -165,10 +165,10 @@ def test_a_height_typed_at_both_stations_is_asked_about_and_what_is_chosen_holds
     ((mine, theirs),) = dialog.cells
     assert (mine.value, mine.whose, theirs.value) == ("182 cm", "Yours", "180 cm")
     assert theirs.whose.startswith("Theirs: H. Keller, today ")
-    assert (other.told.height_m, other.told.mass_kg) == (1.80, 70.0)
+    assert (other.reported.height_m, other.reported.mass_kg) == (1.80, 70.0)
     answer(dialog, Qt.Key.Key_Left if is_ours else Qt.Key.Key_Right, Qt.Key.Key_Return)
     chosen = 1.82 if is_ours else 1.80
-    settle(qtbot, ours, other, lambda: other.told.height_m == chosen == ours.patient.details.height_m)
+    settle(qtbot, ours, other, lambda: other.reported.height_m == chosen == ours.patient.details.height_m)
     expected: list[tuple[str, object, object, bool]] = [
         ("height_m", 1.68, 1.80, False),
         ("mass_kg", None, 70.0, False),
@@ -176,22 +176,24 @@ def test_a_height_typed_at_both_stations_is_asked_about_and_what_is_chosen_holds
         ("height_m", 1.82, 1.80, False),
     ]
     assert other.history() == expected + [("height_m", 1.80, 1.82, False)] * is_ours
-    assert ear.heard == []  # what is asked about is not told as saved as well
+    assert ear.received == []  # what is asked about is not reported as saved as well
 
 
-def test_other_fields_of_a_patient_are_merged_without_a_question_and_told(
+def test_other_fields_of_a_patient_are_merged_without_a_question_and_reported(
     qtbot: QtBot, wizard: Wizard, ours: Visit, other: OtherStation
 ) -> None:
     ear = Ear(ours)
     other.say_of_patient(height_m=1.80)
     ours.patient.edit(replace(ours.patient.details, aids="frame"))
     ours.patient.commit()
-    qtbot.waitUntil(lambda: bool(ear.heard), timeout=WAIT_MS)
-    (heard,) = ear.heard
-    assert heard.startswith("Saved. DEMO-9 was also changed at another workstation. Height: 180 cm (H. Keller, today ")
+    qtbot.waitUntil(lambda: bool(ear.received), timeout=WAIT_MS)
+    (received,) = ear.received
+    assert received.startswith(
+        "Saved. DEMO-9 was also changed at another workstation. Height: 180 cm (H. Keller, today "
+    )
     assert wizard.asked.dialog is None
-    assert (other.told.height_m, other.told.aids) == (1.80, "frame")
-    assert ours.patient.details == other.told
+    assert (other.reported.height_m, other.reported.aids) == (1.80, "frame")
+    assert ours.patient.details == other.reported
 
 
 def test_what_nobody_else_changed_is_saved_without_a_word(
@@ -207,7 +209,7 @@ def test_what_nobody_else_changed_is_saved_without_a_word(
     other_sessions, session_id = other.library.sessions, other.session_id
     settle(qtbot, ours, other, lambda: bool(other_sessions.get(session_id).details.zero_rad))
     qtbot.waitUntil(lambda: ours.patient.is_saved, timeout=WAIT_MS)
-    assert ear.heard == []
+    assert ear.received == []
     assert wizard.asked.dialog is None
 
 
@@ -223,7 +225,7 @@ def test_going_on_from_the_patient_waits_for_the_answer(qtbot: QtBot, wizard: Wi
     assert wizard.step_id is not StepId.SENSORS
     answer(dialog, Qt.Key.Key_Escape)
     qtbot.waitUntil(lambda: wizard.step_id is StepId.SENSORS, timeout=WAIT_MS)
-    assert other.told.height_m == 1.80
+    assert other.reported.height_m == 1.80
 
 
 def test_words_of_the_report_typed_at_both_stations_are_asked_about(
@@ -257,19 +259,21 @@ def test_a_sign_turned_here_and_confirmed_there_is_asked_about_and_other_joints_
     assert [cell.value for cell in dialog.cells[0]] == ["reversed by hand", "confirmed by hand"]
     answer(dialog, Qt.Key.Key_Left, Qt.Key.Key_Return)
     sessions, session_id = other.library.sessions, other.session_id
-    wanted = {Joint.LEFT_KNEE: -1, Joint.RIGHT_KNEE: -1}
-    settle(qtbot, ours, other, lambda: sessions.get(session_id).details.turned_sign == wanted)
+    required = {Joint.LEFT_KNEE: -1, Joint.RIGHT_KNEE: -1}
+    settle(qtbot, ours, other, lambda: sessions.get(session_id).details.turned_sign == required)
     assert sessions.get(session_id).details.zero_rad == {Joint.LEFT_ANKLE: np.deg2rad(5)}
-    qtbot.waitUntil(lambda: ours.details.turned_sign == wanted, timeout=WAIT_MS)
+    qtbot.waitUntil(lambda: ours.details.turned_sign == required, timeout=WAIT_MS)
 
 
-def test_a_limit_said_here_does_not_take_back_one_said_there(qtbot: QtBot, ours: Visit, other: OtherStation) -> None:
+def test_a_limit_stated_here_does_not_take_back_one_stated_there(
+    qtbot: QtBot, ours: Visit, other: OtherStation
+) -> None:
     other.say_of_session({"without_ankle.left": True})
     ours.record.set_limits(replace(ours.record.limits, cannot_stand=True))
-    wanted = Limits(frozenset({Side.LEFT}), cannot_stand=True)
+    required = Limits(frozenset({Side.LEFT}), cannot_stand=True)
     sessions, session_id = other.library.sessions, other.session_id
-    settle(qtbot, ours, other, lambda: sessions.get(session_id).limits == wanted == ours.record.limits)
-    assert (sessions.get(session_id).limits, ours.record.limits) == (wanted, wanted)
+    settle(qtbot, ours, other, lambda: sessions.get(session_id).limits == required == ours.record.limits)
+    assert (sessions.get(session_id).limits, ours.record.limits) == (required, required)
 
 
 def test_a_condition_typed_at_both_stations_is_asked_about_and_a_further_change_asks_again(
@@ -277,7 +281,7 @@ def test_a_condition_typed_at_both_stations_is_asked_about_and_a_further_change_
 ) -> None:
     other.say_of_walk({"condition": "AFO"})
     (walk,) = ours.recordings.walks
-    ours.recordings.change(walk, lambda told: replace(told, condition="barefoot"))
+    ours.recordings.change(walk, lambda reported: replace(reported, condition="barefoot"))
     dialog = dialog_of(qtbot, wizard)
     assert [cell.value for cell in dialog.cells[0]] == ["barefoot", "AFO"]
     other.say_of_walk({"condition": "stick"})
@@ -293,10 +297,10 @@ def test_strides_left_out_at_both_stations_are_all_left_out(qtbot: QtBot, ours: 
     ear = Ear(ours)
     other.say_of_walk({"left_out_s.left": (4.0,)})
     (walk,) = ours.recordings.walks
-    ours.recordings.change(walk, lambda told: replace(told, left_out_s={Side.LEFT: (7.0,)}))
+    ours.recordings.change(walk, lambda reported: replace(reported, left_out_s={Side.LEFT: (7.0,)}))
     settle(qtbot, ours, other, lambda: other.walk.left_out_s == {Side.LEFT: (4.0, 7.0)})
-    qtbot.waitUntil(lambda: bool(ear.heard), timeout=WAIT_MS)
-    assert "Strides excluded, left: 2 strides: 4.0 s, 7.0 s" in ear.heard[0]
+    qtbot.waitUntil(lambda: bool(ear.received), timeout=WAIT_MS)
+    assert "Strides excluded, left: 2 strides: 4.0 s, 7.0 s" in ear.received[0]
     choice = StrideChoice(ours.recordings, ours)
     choice.take_all_in("walk 1")
     settle(qtbot, ours, other, lambda: other.walk.left_out_s == {})
@@ -310,14 +314,14 @@ def test_taking_back_what_was_left_out_here_leaves_out_what_was_left_out_there(
     undos: list[Callable[[], None]] = []
     choice = StrideChoice(ours.recordings, ours)
     choice.offered.connect(lambda _words, undo: undos.append(undo))
-    ours.recordings.change(ours.recordings.walks[0], lambda told: replace(told, left_out_s={Side.LEFT: (7.0,)}))
+    ours.recordings.change(ours.recordings.walks[0], lambda reported: replace(reported, left_out_s={Side.LEFT: (7.0,)}))
     choice.take_all_in("walk 1")
     other.say_of_walk({"left_out_s.right": (4.0,)})
     undos[0]()
-    asked(qtbot, controller, lambda _opened: None)  # what was said before is there: it may look so amid it, too
-    wanted = {Side.LEFT: (7.0,), Side.RIGHT: (4.0,)}
-    settle(qtbot, ours, other, lambda: other.walk.left_out_s == wanted)
-    assert other.walk.left_out_s == wanted
+    asked(qtbot, controller, lambda _opened: None)  # what was stated before is there: it may look so amid it, too
+    required = {Side.LEFT: (7.0,), Side.RIGHT: (4.0,)}
+    settle(qtbot, ours, other, lambda: other.walk.left_out_s == required)
+    assert other.walk.left_out_s == required
 
 
 def test_sides_swapped_at_both_stations_are_swapped_once_and_taken_back_once(
@@ -348,7 +352,7 @@ def test_nothing_is_asked_while_the_window_is_locked_and_all_of_it_after(
     assert ours.is_asking
     wizard.asked.cover(is_covered=False)
     answer(dialog_of(qtbot, wizard), Qt.Key.Key_Left, Qt.Key.Key_Return)
-    settle(qtbot, ours, other, lambda: other.told.height_m == 1.82)
+    settle(qtbot, ours, other, lambda: other.reported.height_m == 1.82)
 
 
 def test_what_is_refused_by_another_station_after_the_visit_was_left_is_still_asked(
@@ -358,7 +362,7 @@ def test_what_is_refused_by_another_station_after_the_visit_was_left_is_still_as
     ours.patient.edit(replace(ours.patient.details, height_m=1.82))
     wizard.leave()  # which saves
     answer(dialog_of(qtbot, wizard), Qt.Key.Key_Left, Qt.Key.Key_Return)
-    qtbot.waitUntil(lambda: other.told.height_m == 1.82, timeout=WAIT_MS)
+    qtbot.waitUntil(lambda: other.reported.height_m == 1.82, timeout=WAIT_MS)
 
 
 def report_of(wizard: Wizard) -> ReportStep:
@@ -388,7 +392,7 @@ def test_words_of_the_report_saved_as_the_session_is_left_are_there_when_it_is_o
     visit.record.set_turned(Joint.LEFT_KNEE, -1)
     sessions, session_id = other.library.sessions, other.session_id
     settle(qtbot, visit, other, lambda: bool(sessions.get(session_id).details.turned_sign) and not visit.is_saving)
-    assert (ear.heard, wizard.asked.dialog) == ([], None)
+    assert (ear.received, wizard.asked.dialog) == ([], None)
 
 
 def test_words_typed_after_a_refusal_are_nobody_elses(

@@ -1,4 +1,5 @@
-"""The library's folder is renamed amid a visit: what is recorded is kept, said where, and in its session in the end."""
+"""The library's folder is renamed amid a visit: what is recorded is kept, stated where, and in its session in the
+end."""
 
 import shutil
 import time
@@ -72,15 +73,15 @@ def test_renamed_amid_a_walk_it_goes_on_and_is_read_back_whole(
     recordings, folder, elsewhere = looked_at.recordings, tmp_path / "library", tmp_path / "renamed"
     start_walk(qtbot, looked_at)
     qtbot.wait(200)
-    said: list[tuple[str, str]] = []
-    recordings.troubled.connect(lambda *words: said.append(words))
+    stated: list[tuple[str, str]] = []
+    recordings.troubled.connect(lambda *words: stated.append(words))
     with qtbot.waitSignals([recordings.troubled, controller.gone], timeout=WAIT_MS):
         folder.rename(elsewhere)
     assert recordings.is_recording
-    qtbot.waitUntil(lambda: len(said) == 2, timeout=WAIT_MS)  # by the journal, and by who looks for the folder
+    qtbot.waitUntil(lambda: len(stated) == 2, timeout=WAIT_MS)  # by the journal, and by who looks for the folder
     assert controller.state is not None
     assert controller.state.library.shelter is not None
-    assert all(str(controller.state.library.shelter.folder) in then for _, then in said)
+    assert all(str(controller.state.library.shelter.folder) in then for _, then in stated)
     qtbot.wait(200)
     refused: list[tuple[str, str]] = []
     recordings.refused.connect(lambda *words: refused.append(words))
@@ -107,10 +108,10 @@ def test_renamed_between_two_walks_the_next_begins_all_the_same(
     record(qtbot, looked_at, RecordingKind.WALKING, 2.0)
     with qtbot.waitSignal(controller.gone, timeout=WAIT_MS):
         folder.rename(elsewhere)
-    with qtbot.waitSignal(recordings.troubled, timeout=WAIT_MS) as said:
+    with qtbot.waitSignal(recordings.troubled, timeout=WAIT_MS) as stated:
         start_walk(qtbot, looked_at)
-    assert said.args is not None
-    assert said.args[0] == "The library folder is no longer available; recording continues."
+    assert stated.args is not None
+    assert stated.args[0] == "The library folder is no longer available; recording continues."
     qtbot.wait(200)
     recordings.stop()
     qtbot.waitUntil(
@@ -186,7 +187,7 @@ def test_a_whole_day_on_which_the_disk_comes_and_goes(
     window = open_window()
     log_in(qtbot, window)
     assert window.home is not None
-    window.home.session_wished.emit(None)
+    window.home.session_requested.emit(None)
     wizard = window.wizard
     assert wizard is not None
     visit = wizard.visit

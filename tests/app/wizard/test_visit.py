@@ -74,11 +74,11 @@ def test_discarded_walk_is_not_evaluated_and_comes_back(qtbot: QtBot, visit: Vis
     assert [recording.name for recording in visit.recordings.counted()] == ["walk 1"]
 
 
-def test_code_of_another_patient_is_told(qtbot: QtBot, visit: Visit) -> None:
+def test_code_of_another_patient_is_reported(qtbot: QtBot, visit: Visit) -> None:
     visit.patient.edit(Patient(code="DEMO-1"))
-    with qtbot.waitSignal(visit.patient.code_taken) as told:
+    with qtbot.waitSignal(visit.patient.code_taken) as reported:
         visit.patient.commit()
-    assert told.args == ["DEMO-1"]
+    assert reported.args == ["DEMO-1"]
 
 
 def test_patient_is_saved_as_typed(qtbot: QtBot, visit: Visit) -> None:
@@ -97,38 +97,38 @@ def test_zero_is_stored(qtbot: QtBot, visit: Visit, worn: dict[str, Site]) -> No
     visit.record.set_zero(Joint.LEFT_KNEE, 0.1)
     visit.record.set_zero(Joint.LEFT_KNEE, 0.2)
     visit.record.set_zero(Joint.RIGHT_KNEE, 0.3)
-    wanted = {Joint.LEFT_KNEE: 0.2, Joint.RIGHT_KNEE: 0.3}
-    assert visit.details.zero_rad == wanted
-    qtbot.waitUntil(lambda: visit.session is not None and visit.session.details.zero_rad == wanted)
+    required = {Joint.LEFT_KNEE: 0.2, Joint.RIGHT_KNEE: 0.3}
+    assert visit.details.zero_rad == required
+    qtbot.waitUntil(lambda: visit.session is not None and visit.session.details.zero_rad == required)
 
 
 def test_a_refused_reading_takes_back_nothing_that_is_being_saved(
     qtbot: QtBot, controller: LibraryController, visit: Visit, worn: dict[str, Site]
 ) -> None:
     begin(qtbot, visit, worn)
-    wanted = Limits(without_ankle=frozenset({Side.LEFT}))
+    required = Limits(without_ankle=frozenset({Side.LEFT}))
     with qtbot.waitSignal(visit.refused):
         visit.resume(uuid4())  # no session of the library
-        visit.record.set_limits(replace(wanted, cannot_stand=True))  # is being saved when the refusal comes
-        visit.record.set_limits(wanted)  # waits for it
-    assert visit.record.limits == wanted
-    qtbot.waitUntil(lambda: visit.session is not None and visit.session.limits == wanted)
+        visit.record.set_limits(replace(required, cannot_stand=True))  # is being saved when the refusal comes
+        visit.record.set_limits(required)  # waits for it
+    assert visit.record.limits == required
+    qtbot.waitUntil(lambda: visit.session is not None and visit.session.limits == required)
 
 
 def test_what_the_body_does_not_allow_is_stored_and_taken_up_again(
     qtbot: QtBot, controller: LibraryController, visit: Visit, worn: dict[str, Site]
 ) -> None:
-    """Told before there is a session, and after; it is on the rows, and shown by whoever resumes."""
+    """Reported before there is a session, and after; it is on the rows, and shown by whoever resumes."""
     visit.record.set_limits(Limits(without_ankle=frozenset({Side.LEFT})))
     begin(qtbot, visit, worn)
     session = visit.session
     assert session is not None
     assert session.limits == Limits(without_ankle=frozenset({Side.LEFT}))
     visit.patient.edit(replace(visit.patient.details, prosthetic_side="both"))
-    wanted = Limits(frozenset({Side.LEFT, Side.RIGHT}), cannot_stand=True)
-    visit.record.set_limits(replace(wanted, cannot_stand=False))
-    visit.record.set_limits(wanted)
-    qtbot.waitUntil(lambda: visit.session is not None and visit.session.limits == wanted)
+    required = Limits(frozenset({Side.LEFT, Side.RIGHT}), cannot_stand=True)
+    visit.record.set_limits(replace(required, cannot_stand=False))
+    visit.record.set_limits(required)
+    qtbot.waitUntil(lambda: visit.session is not None and visit.session.limits == required)
     qtbot.waitUntil(lambda: visit.patient.is_saved)
     again = Visit(controller, [])
     with qtbot.waitSignal(again.resumed, timeout=10_000):
@@ -244,7 +244,7 @@ def test_another_code_typed_over_a_patient_with_sessions_is_somebody_else(qtbot:
 
 
 def test_a_patient_chosen_while_another_is_saved_stays_the_one_of_the_visit(qtbot: QtBot, visit: Visit) -> None:
-    """The answer to the save comes after the choice; the session would else be begun for who stands there no more."""
+    """The answer to the save comes after the choice; the session would else be begun for who is there no more."""
     visit.patient.edit(Patient(code="DEMO-8"))
     with qtbot.waitSignal(visit.patient.changed):
         visit.patient.commit()

@@ -1,4 +1,4 @@
-"""What is said of a walk: what is not counted for want of a sensor, when its angles come, and what it lacks."""
+"""What is stated about a walk: what is not counted for want of a sensor, when its angles come, and what it lacks."""
 
 import pytest
 from pytestqt.qtbot import QtBot
@@ -25,7 +25,7 @@ ALL = frozenset(LEG_SITES)
 
 
 @pytest.mark.parametrize(
-    ("worn", "said"),
+    ("worn", "stated"),
     [
         (ALL, ""),
         (ALL - FEET, "No foot sensors: strides are counted after the walk."),
@@ -34,8 +34,8 @@ ALL = frozenset(LEG_SITES)
         ({Site.LEFT_THIGH, Site.LEFT_SHANK, Site.LEFT_FOOT}, ""),  # nobody asks for a leg that wears none
     ],
 )
-def test_strides_that_are_not_counted_live_are_told(worn: frozenset[Site], said: str) -> None:
-    assert no_foot_message(worn)[0] == said
+def test_strides_that_are_not_counted_live_are_reported(worn: frozenset[Site], stated: str) -> None:
+    assert no_foot_message(worn)[0] == stated
 
 
 def test_angles_are_promised_for_when_they_come() -> None:
@@ -44,7 +44,7 @@ def test_angles_are_promised_for_when_they_come() -> None:
 
 
 @pytest.mark.parametrize(
-    ("lacks", "said"),
+    ("lacks", "stated"),
     [
         ((), ""),
         ((Lack("DOT 0003", lost=12),), "Samples of A Shoes could not be fetched: DOT 0003 12."),
@@ -52,16 +52,16 @@ def test_angles_are_promised_for_when_they_come() -> None:
         ((Lack("DOT 0003", is_end_known=False),), "DOT 0003 did not report the end of A Shoes."),
     ],
 )
-def test_what_could_not_be_fetched_is_told_the_gravest_first(lacks: tuple[Lack, ...], said: str) -> None:
-    assert lacks_message("A Shoes", lacks)[0] == said
+def test_what_could_not_be_fetched_is_reported_the_gravest_first(lacks: tuple[Lack, ...], stated: str) -> None:
+    assert lacks_message("A Shoes", lacks)[0] == stated
 
 
-def test_sensors_without_one_clock_are_named_or_said_to_drift() -> None:
+def test_sensors_without_one_clock_are_named_or_stated_to_drift() -> None:
     assert loose_message(["DOT 0003"])[0] == "Not synchronised: DOT 0003."
     assert "half an hour ago" in loose_message([])[0]
 
 
-def test_only_what_is_short_of_a_spread_is_told() -> None:
+def test_only_what_is_short_of_a_spread_is_reported() -> None:
     assert few_strides_message({Side.LEFT: 12}) == NOTHING
     assert (
         few_strides_message({Side.LEFT: 12, Side.RIGHT: 4})[0] == "Only 4 right strides; a standard deviation needs 10."

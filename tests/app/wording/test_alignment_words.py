@@ -1,4 +1,4 @@
-"""A change of a prosthesis is said with its direction in words, and what undoes it as it is to be done."""
+"""A change of a prosthesis is stated with its direction in words, and what undoes it as it is to be done."""
 
 import pytest
 
@@ -24,7 +24,7 @@ B = AlignmentChange(
 )
 
 
-def test_a_list_says_each_thing_that_was_done() -> None:
+def test_a_list_states_each_thing_that_was_done() -> None:
     assert change_lines(B) == [
         ("Foot, anterior screw", "½ out, +2° plantar"),
         ("Foot, shift", "4 mm posterior"),
@@ -34,7 +34,7 @@ def test_a_list_says_each_thing_that_was_done() -> None:
     assert change_lines(None) == []
 
 
-def test_a_line_says_it_in_a_row_and_since_when() -> None:
+def test_a_line_states_it_in_a_row_and_since_when() -> None:
     line = "Foot, anterior screw ½ turn out, +2° plantar; foot 4 mm posterior; pylon +3 mm; pylon: new clamp"
     assert change_in_words(B) == line
     assert since_in_words(B) == f"Changed from Alignment A: {line}"
@@ -44,8 +44,8 @@ def test_a_line_says_it_in_a_row_and_since_when() -> None:
 def test_what_is_to_be_done_to_return_turns_every_direction_round() -> None:
     back = changed_between({"Alignment A": None, "Alignment B": B}, "Alignment B", "Alignment A")
     assert back is not None
-    said = "Foot, anterior screw ½ turn in; foot 4 mm anterior; pylon \N{MINUS SIGN}3 mm; pylon: undo: new clamp"
-    assert to_do_in_words(back) == said
+    stated = "Foot, anterior screw ½ turn in; foot 4 mm anterior; pylon \N{MINUS SIGN}3 mm; pylon: undo: new clamp"
+    assert to_do_in_words(back) == stated
 
 
 @pytest.mark.parametrize(
@@ -59,15 +59,15 @@ def test_what_is_to_be_done_to_return_turns_every_direction_round() -> None:
     ],
 )
 def test_each_part_has_directions_of_its_own(change: PartChange, words: str) -> None:
-    ((_, said),) = change_lines(AlignmentChange("", (change,)))
-    assert said == words
+    ((_, stated),) = change_lines(AlignmentChange("", (change,)))
+    assert stated == words
 
 
 def test_turns_are_eighths() -> None:
     assert [turns_words(turns) for turns in (0.125, -0.375, 1.25, -2.0)] == ["⅛ out", "⅜ in", "1¼ out", "2 in"]
 
 
-def test_two_versions_of_a_change_are_said_as_the_pages_say_it() -> None:
+def test_two_versions_of_a_change_are_stated_as_the_pages_say_it() -> None:
     """When two stations changed it, both stand side by side."""
     field = "alignment"
     value = recording_fields(Recording("walk 1", RecordingKind.WALKING, "", {}, alignment=B))[field]

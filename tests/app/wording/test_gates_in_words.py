@@ -1,4 +1,4 @@
-"""Is every reason for doubt said, with what was found, what was wanted and their unit, in words for a clinician?"""
+"""Is every reason for doubt stated, with what was found, what was required and their unit, in words for a clinician?"""
 
 from collections.abc import Iterator
 from dataclasses import replace
@@ -28,12 +28,12 @@ def reasons_of(found: Verdicts) -> Iterator[GateReason]:
     yield from found.between.reasons
 
 
-def said(recording: RecordingAnalysis, *, stiff: tuple[Side, ...] = (), **knee: Any) -> set[str]:
-    """Every sentence that is said of a walk, whose left knee may be calibrated otherwise."""
-    told = calibrations(Joint.LEFT_KNEE, **knee)
+def stated(recording: RecordingAnalysis, *, stiff: tuple[Side, ...] = (), **knee: Any) -> set[str]:
+    """Every sentence that is stated about a walk, whose left knee may be calibrated otherwise."""
+    reported = calibrations(Joint.LEFT_KNEE, **knee)
     return {
         gate_sentence(reason).replace("\N{NO-BREAK SPACE}", " ")
-        for reason in reasons_of(verdicts_of(recording, told, stiff))
+        for reason in reasons_of(verdicts_of(recording, reported, stiff))
     }
 
 
@@ -239,18 +239,18 @@ CASES: list[tuple[RecordingAnalysis, dict[str, Any], str]] = [
 
 
 @pytest.mark.parametrize(("recording", "knee", "expected"), CASES, ids=range(len(CASES)))
-def test_a_reason_is_said_with_its_figures_and_their_unit(
+def test_a_reason_is_stated_with_its_figures_and_their_unit(
     recording: RecordingAnalysis, knee: dict[str, Any], expected: str
 ) -> None:
-    assert any(expected in one for one in said(recording, **knee)), said(recording, **knee)
+    assert any(expected in one for one in stated(recording, **knee)), stated(recording, **knee)
 
 
-def test_of_a_sound_walk_nothing_is_said() -> None:
-    assert said(walk()) == set()
+def test_of_a_sound_walk_nothing_is_stated() -> None:
+    assert stated(walk()) == set()
 
 
-def test_what_a_device_stiffens_is_said_with_its_unit_too() -> None:
-    assert said(left(knee_range_deg=4.0), stiff=(Side.LEFT,)) == said(left(knee_range_deg=4.0))
+def test_what_a_device_stiffens_is_stated_with_its_unit_too() -> None:
+    assert stated(left(knee_range_deg=4.0), stiff=(Side.LEFT,)) == stated(left(knee_range_deg=4.0))
 
 
 OF_HIPS = {
@@ -260,7 +260,7 @@ OF_HIPS = {
 
 
 def test_every_gate_that_can_close_has_its_words_and_each_has_a_case() -> None:
-    """Those of hips and pelvis are said in `tests/app/reports/test_pelvis_tables.py`."""
+    """Those of hips and pelvis are stated in `tests/app/reports/test_pelvis_tables.py`."""
     closed = {
         reason.gate
         for recording, knee, _ in CASES
@@ -270,10 +270,10 @@ def test_every_gate_that_can_close_has_its_words_and_each_has_a_case() -> None:
     assert set(WITHOUT_FIGURES) <= set(WORDS)
 
 
-def test_a_gate_without_a_figure_says_that_it_is_unknown() -> None:
+def test_a_gate_without_a_figure_states_that_it_is_unknown() -> None:
     for gate, unit in (("axis", "deg"), ("lag", "ms"), ("step_share", "%"), ("clocks", "ms"), ("pairing", "")):
-        assert "unknown" not in gate_sentence(GateReason(gate, Verdict.WITHHELD, None, 9.0, unit))
-    assert gate_words(GateReason("speed", Verdict.WITHHELD, None, 2.5, "m/s")).why.startswith(
+        assert "unknown" not in gate_sentence(GateReason(gate, Verdict.NOT_REPORTED, None, 9.0, unit))
+    assert gate_words(GateReason("speed", Verdict.NOT_REPORTED, None, 2.5, "m/s")).why.startswith(
         "Walking speed is unknown"
     )
 
@@ -292,11 +292,11 @@ def test_a_verdict_alone_begins_as_a_title_does() -> None:
 
 
 def test_swapped_labels_are_named_where_they_are_known() -> None:
-    swapped = GateReason("labels", Verdict.WITHHELD, sites=(Site.LEFT_SHANK, Site.RIGHT_THIGH))
+    swapped = GateReason("labels", Verdict.NOT_REPORTED, sites=(Site.LEFT_SHANK, Site.RIGHT_THIGH))
     assert gate_words(swapped).why.startswith("L shank and R thigh look swapped")
-    assert gate_words(GateReason("labels", Verdict.WITHHELD)).why.startswith("Sensors look swapped")
+    assert gate_words(GateReason("labels", Verdict.NOT_REPORTED)).why.startswith("Sensors look swapped")
 
 
 def test_a_share_is_written_in_percent() -> None:
-    why = gate_words(GateReason("hip_disagreement", Verdict.WITHHELD, 0.31, 0.2)).why
+    why = gate_words(GateReason("hip_disagreement", Verdict.NOT_REPORTED, 0.31, 0.2)).why
     assert why.endswith("(by 31\N{NO-BREAK SPACE}%, limit 20\N{NO-BREAK SPACE}%).")

@@ -1,4 +1,4 @@
-"""A walk is called the same everywhere: by its condition and the letter that stands for this in every comparison."""
+"""A walk is called the same everywhere: by its condition and the letter that represents this in every comparison."""
 
 from dataclasses import replace
 
@@ -36,7 +36,7 @@ def test_from_the_second_on_walks_of_one_condition_are_numbered_behind_its_lette
     assert list(condition_letters(walks).values()) == ["A", "B", "A", "A"]
 
 
-def test_sensors_that_were_strapped_anew_begin_a_letter() -> None:
+def test_sensors_that_were_strapped_again_begin_a_letter() -> None:
     walks = walk(1, "Barefoot"), walk(2, "Barefoot", is_restrapped_before=True), walk(3, "Barefoot")
     assert called(*walks) == ["A Barefoot", "B Barefoot", "B2 Barefoot"]
 
@@ -70,7 +70,7 @@ def test_names_in_english_read_as_they_are(name: str) -> None:
     assert name_in_words(name) == name
 
 
-def test_a_finding_says_where_it_was_found_as_the_reader_knows_it() -> None:
+def test_a_finding_states_where_it_was_found_as_the_reader_knows_it() -> None:
     names = {"walk 2": ShownName("A2", "Barefoot")}
     finding = Finding("gaps", Severity.WARNING, "left_foot, walk 2")
     assert with_shown_names(finding, names).where == "left_foot, A2 Barefoot"

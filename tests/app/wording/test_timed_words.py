@@ -1,4 +1,4 @@
-"""What is said of a timed test: each sentence where it must come, and where it must not."""
+"""What is stated about a timed test: each sentence where it must come, and where it must not."""
 
 import math
 import re
@@ -43,7 +43,7 @@ def test_the_result_is_what_the_test_is_made_for() -> None:
     assert result_sentence(replace(TEN, end_s=math.nan)) == "10-metre walk: time not measured."
 
 
-def test_what_is_missing_is_said_with_its_reason_and_nothing_else_is() -> None:
+def test_what_is_missing_is_stated_with_its_reason_and_nothing_else_is() -> None:
     assert why_sentence(TEN) == ""
     silent = replace(
         TWO, distance_m=math.nan, missing=(NotMeasured.SILENT,), silences=(Silence(Site.LEFT_FOOT, 50.0, 55.0),)
@@ -58,7 +58,7 @@ def test_what_is_missing_is_said_with_its_reason_and_nothing_else_is() -> None:
 
 
 @pytest.mark.parametrize(("own_m", "is_allowed"), [(10.3, True), (9.71, True), (10.31, False), (9.6, False)])
-def test_the_tape_is_compared_where_a_key_told_where_it_is(own_m: float, is_allowed: bool) -> None:
+def test_the_tape_is_compared_where_a_key_reported_where_it_is(own_m: float, is_allowed: bool) -> None:
     keyed = replace(TEN, is_end_by_key=True, sensor_distance_m=own_m)
     assert f"{own_m:.2f} m, {own_m - 10.0:+.2f} m from the tape (10.00 m)" in tape_sentence(keyed)
     assert ("Check the position of the tape" in tape_sentence(keyed)) is not is_allowed
@@ -67,7 +67,7 @@ def test_the_tape_is_compared_where_a_key_told_where_it_is(own_m: float, is_allo
     assert tape_sentence(replace(TWO, is_end_by_key=True)) == ""  # no tape is its end
 
 
-def test_pauses_and_the_course_are_told_where_there_are_any() -> None:
+def test_pauses_and_the_course_are_reported_where_there_are_any() -> None:
     assert pauses_sentence(TWO) == ""
     assert pauses_sentence(replace(TWO, pauses_s=((10.0, 13.0),))) == "1 pause, 3.0 s."
     assert pauses_sentence(replace(TWO, pauses_s=((10.0, 13.0), (20.0, 21.5)))) == "2 pauses, 4.5 s in total."
@@ -78,11 +78,11 @@ def test_pauses_and_the_course_are_told_where_there_are_any() -> None:
     assert course_sentence(replace(TEN, thirds=TWO.thirds)) == ""
 
 
-def test_strides_on_stairs_are_told_apart_where_there_are_some() -> None:
+def test_strides_on_stairs_are_reported_apart_where_there_are_some() -> None:
     assert stairs_sentence(TEN) == ""
     strides = tuple(StairStride(Side.LEFT, 0.0, 1.5, climb_m) for climb_m in (0.3, 0.3, -0.3))
-    told = stairs_sentence(replace(TEN, protocol=TimedProtocol.STAIRS, stairs=strides))
-    assert told == (
+    reported = stairs_sentence(replace(TEN, protocol=TimedProtocol.STAIRS, stairs=strides))
+    assert reported == (
         "Stair strides, excluded from walking means: strides up: 2, mean 1.50 s; strides down: 1, mean 1.50 s."
     )
 
@@ -94,7 +94,7 @@ def test_an_error_that_was_not_verified_has_a_dagger() -> None:
     assert all(every)
 
 
-def test_a_planned_test_is_told_with_its_keys() -> None:
+def test_a_planned_test_is_reported_with_its_keys() -> None:
     assert planned_words(None) == "no test"
     assert planned_words(PlannedTest(TimedProtocol.TEN_METRES)) == "10-metre walk"
     keyed = PlannedTest(TimedProtocol.TEN_METRES, 3.0, 12.25)
@@ -102,7 +102,7 @@ def test_a_planned_test_is_told_with_its_keys() -> None:
     assert len({name_of_test(one) for one in TimedProtocol}) == len(TimedProtocol)
 
 
-def test_the_known_errors_are_told_in_german_with_a_comma() -> None:
+def test_the_known_errors_are_reported_in_german_with_a_comma() -> None:
     use_language("de")
     try:
         every = " ".join(error_words(one) for known in DEFINITIONS.values() for one in known.errors)

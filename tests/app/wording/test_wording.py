@@ -28,7 +28,7 @@ def sample(key: str, where: str = "walk 1, left_knee") -> Finding:
 
 
 @pytest.mark.parametrize("key", SENTENCES)
-def test_a_sentence_says_where_and_carries_its_numbers(key: str) -> None:
+def test_a_sentence_states_where_and_carries_its_numbers(key: str) -> None:
     finding = sample(key)
     text = sentence(finding)
     assert text.startswith("Left knee, walk 1: ")
@@ -60,7 +60,7 @@ def test_a_figure_in_a_sentence_is_followed_by_its_unit(key: str) -> None:
 
 
 def keys_used() -> Iterator[tuple[str, str]]:
-    """Find every text that stands before a severity, as findings and what becomes one are written."""
+    """Find every text that is before a severity, as findings and what becomes one are written."""
     for package in ("core", "devices", "app"):
         for file in (ROOT / package).rglob("*.py"):
             text = file.read_text(encoding="utf-8")
@@ -86,16 +86,16 @@ def test_what_concerns_the_whole_session_names_no_place() -> None:
 
 
 def test_a_joint_among_the_numbers_is_put_into_words() -> None:
-    told = sentence(Finding("missing_site", Severity.INFO, "left_foot", {"joint": "left_ankle"}))
-    assert told == "L foot: No sensor was worn here. There are no left ankle angles."
+    reported = sentence(Finding("missing_site", Severity.INFO, "left_foot", {"joint": "left_ankle"}))
+    assert reported == "L foot: No sensor was worn here. There are no left ankle angles."
 
 
-def test_a_finding_without_a_sentence_is_still_told_with_its_figures() -> None:
-    told = sentence(Finding("strap_slipped", Severity.GRAVE, "right_shank", {"at_s": 41.0}))
-    assert told == "R shank: strap slipped at_s 41.0."
+def test_a_finding_without_a_sentence_is_still_reported_with_its_figures() -> None:
+    reported = sentence(Finding("strap_slipped", Severity.GRAVE, "right_shank", {"at_s": 41.0}))
+    assert reported == "R shank: strap slipped at_s 41.0."
 
 
-def test_a_sentence_that_lacks_its_figure_is_told_by_its_key() -> None:
+def test_a_sentence_that_lacks_its_figure_is_reported_by_its_key() -> None:
     assert sentence(Finding("gaps", Severity.INFO, "", {"count": 2})) == "Gaps count 2."
     assert sentence(Finding("clipped", Severity.INFO, "", {"percent": "many"})) == "Clipped percent many."
     assert sentence(Finding("clipped", Severity.INFO, "", {"percent": math.nan})) == "Clipped."
@@ -130,7 +130,7 @@ def test_a_column_that_is_named_as_a_reason_keeps_its_name() -> None:
 
 
 @pytest.mark.parametrize(
-    ("key", "numbers", "said"),
+    ("key", "numbers", "stated"),
     [
         (
             "no_spread",
@@ -152,5 +152,5 @@ def test_a_column_that_is_named_as_a_reason_keeps_its_name() -> None:
         ),
     ],
 )
-def test_what_a_walk_lacks_is_said_in_words(key: str, numbers: dict[str, int | str], said: str) -> None:
-    assert sentence(Finding(key, Severity.INFO, "walk 1", numbers)) == said
+def test_what_a_walk_lacks_is_stated_in_words(key: str, numbers: dict[str, int | str], stated: str) -> None:
+    assert sentence(Finding(key, Severity.INFO, "walk 1", numbers)) == stated

@@ -36,16 +36,16 @@ class Asker(QObject):
 def test_who_asked_and_was_closed_meanwhile_ends_on_the_screens_thread(
     qtbot: QtBot, lane: JobThread, wrappers: Wrappers
 ) -> None:
-    asker, is_told, told_of = Asker(), Event(), list[object]()
+    asker, is_reported, reported_of = Asker(), Event(), list[object]()
     go_on, gone = asker.go_on, ref(asker)
-    lane.told.connect(lambda _job, outcome: told_of.append(outcome), Qt.ConnectionType.QueuedConnection)
+    lane.reported.connect(lambda _job, outcome: reported_of.append(outcome), Qt.ConnectionType.QueuedConnection)
     # the answer reaches the screen before the thread has let the job go
-    lane.told.connect(lambda _job, _outcome: is_told.wait(WAIT_S), Qt.ConnectionType.DirectConnection)
+    lane.reported.connect(lambda _job, _outcome: is_reported.wait(WAIT_S), Qt.ConnectionType.DirectConnection)
     lane.ask(asker.job())
     del asker
     go_on.set()
-    qtbot.waitUntil(lambda: told_of == [True], timeout=int(1000 * WAIT_S))
-    is_told.set()
+    qtbot.waitUntil(lambda: reported_of == [True], timeout=int(1000 * WAIT_S))
+    is_reported.set()
     qtbot.waitUntil(lambda: gone() is None, timeout=int(1000 * WAIT_S))
     assert wrappers.taken() == []
 

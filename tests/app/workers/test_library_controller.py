@@ -92,7 +92,7 @@ def is_held(text: str) -> bool:
 
 
 class Asker(QObject):
-    """Notes what it is told, and where."""
+    """Notes what it is reported, and where."""
 
     def __init__(self) -> None:
         super().__init__()
@@ -114,9 +114,9 @@ class Asker(QObject):
 
 
 def opened(qtbot: QtBot, controller: LibraryController, folder: Path, code: str = "hk") -> OpenedState:
-    with qtbot.waitSignal(controller.opened, timeout=WAIT_MS) as told:
+    with qtbot.waitSignal(controller.opened, timeout=WAIT_MS) as reported:
         controller.open(folder, PASSPHRASE, code)
-    (state,) = told.args or []
+    (state,) = reported.args or []
     assert isinstance(state, OpenedState)
     return state
 
@@ -173,7 +173,7 @@ def test_a_recording_waits_for_no_call_and_the_library_for_the_recording(
     assert asker.threads == {main_thread()}
 
 
-def test_a_refusal_is_told_in_two_sentences(qtbot: QtBot, controller: LibraryController, folder: Path) -> None:
+def test_a_refusal_is_reported_in_two_sentences(qtbot: QtBot, controller: LibraryController, folder: Path) -> None:
     opened(qtbot, controller, folder)
     asker = Asker()
     for _ in range(2):
@@ -196,14 +196,14 @@ def test_a_refusal_begins_with_what_happened_and_ends_with_where(tmp_path: Path)
 
 
 @pytest.mark.usefixtures("pseudo_language")
-def test_what_the_library_refuses_is_told_in_the_users_language(tmp_path: Path) -> None:
+def test_what_the_library_refuses_is_reported_in_the_users_language(tmp_path: Path) -> None:
     with pytest.raises(JournalRefusedError) as caught:
         Room(start_bytes=10**18).check(tmp_path, 0.0)
     for error in (caught.value, LibraryError("Another patient has this code", "Open that patient")):
         assert all(sentence.startswith("[") for sentence in refusal_of(error))
 
 
-def test_what_nobody_foresaw_is_logged_and_told_plainly(
+def test_what_nobody_foresaw_is_logged_and_reported_plainly(
     qtbot: QtBot, controller: LibraryController, folder: Path, caplog: pytest.LogCaptureFixture
 ) -> None:
     opened(qtbot, controller, folder)
@@ -211,24 +211,24 @@ def test_what_nobody_foresaw_is_logged_and_told_plainly(
     def call(_library: OpenedLibrary) -> None:
         raise ZeroDivisionError("P-0147")
 
-    with qtbot.waitSignal(controller.refused, timeout=WAIT_MS) as told:
+    with qtbot.waitSignal(controller.refused, timeout=WAIT_MS) as reported:
         controller.run(call, None, None, controller)
-    assert told.args is not None
-    assert "P-0147" not in " ".join(told.args)
+    assert reported.args is not None
+    assert "P-0147" not in " ".join(reported.args)
     assert "ZeroDivisionError" in caplog.text
 
 
 def test_nothing_arrives_for_an_owner_that_is_gone(qtbot: QtBot, controller: LibraryController, folder: Path) -> None:
     opened(qtbot, controller, folder)
     go_on, asker = Event(), Asker()
-    heard = asker.results
+    received = asker.results
     controller.run(lambda _library: go_on.wait(5), asker.on_done, asker.on_failed, asker)
     del asker
     go_on.set()
     last = Asker()
     controller.run(lambda _library: "after it", last.on_done, last.on_failed, last)
     qtbot.waitUntil(lambda: bool(last.results), timeout=WAIT_MS)
-    assert heard == []
+    assert received == []
 
 
 def test_calls_before_opening_and_after_closing_are_refused(
@@ -247,59 +247,59 @@ def test_calls_before_opening_and_after_closing_are_refused(
 
 
 @pytest.mark.parametrize("passphrase", [PASSPHRASE, "no words of theirs"])
-def test_of_an_opening_that_another_or_a_closing_followed_nothing_is_told(
+def test_of_an_opening_that_another_or_a_closing_followed_nothing_is_reported(
     qtbot: QtBot, controller: LibraryController, folder: Path, passphrase: str
 ) -> None:
-    told: list[object] = []
-    controller.opened.connect(told.append)
-    controller.not_opened.connect(lambda *words: told.append(words))
+    reported: list[object] = []
+    controller.opened.connect(reported.append)
+    controller.not_opened.connect(lambda *words: reported.append(words))
     with qtbot.waitSignal(controller.closed, timeout=WAIT_MS):
         controller.open(folder, passphrase, "hk")
         controller.close()
-    assert told == []
+    assert reported == []
     state = controller.state
     assert state is None
     with qtbot.waitSignal(controller.opened, timeout=WAIT_MS):
         controller.open(folder, passphrase, "hk")
         controller.open_demonstration()
-    assert [type(one) for one in told] == [OpenedState]
+    assert [type(one) for one in reported] == [OpenedState]
     state = controller.state
     assert state is not None
     assert state.is_demonstration
 
 
-def test_a_wrong_passphrase_is_told_apart_from_other_trouble(
+def test_a_wrong_passphrase_is_reported_apart_from_other_trouble(
     qtbot: QtBot, controller: LibraryController, folder: Path, tmp_path: Path
 ) -> None:
     for place, is_key in ((folder, True), (tmp_path / "nothing", False)):
-        with qtbot.waitSignal(controller.not_opened, timeout=WAIT_MS) as told:
+        with qtbot.waitSignal(controller.not_opened, timeout=WAIT_MS) as reported:
             controller.open(place, "not this one", "hk")
-        assert told.args is not None
-        assert told.args[2] is is_key
-        assert all(sentence.endswith(".") for sentence in told.args[:2])
+        assert reported.args is not None
+        assert reported.args[2] is is_key
+        assert all(sentence.endswith(".") for sentence in reported.args[:2])
 
 
 @pytest.mark.endurance
 def test_a_new_library_comes_with_its_recovery_key_which_lets_in_again(
     qtbot: QtBot, controller: LibraryController, tmp_path: Path
 ) -> None:
-    with qtbot.waitSignal(controller.opened, timeout=WAIT_MS) as told:
+    with qtbot.waitSignal(controller.opened, timeout=WAIT_MS) as reported:
         controller.create(tmp_path / "new", "hk", "H. Keller", PASSPHRASE)
-    (state,) = told.args or []
+    (state,) = reported.args or []
     assert state.operator.role is Role.ADMINISTRATOR
     assert state.recovery_key
     assert state.recovery_key not in repr(state)
     controller.close()
-    with qtbot.waitSignal(controller.opened, timeout=WAIT_MS) as told:
+    with qtbot.waitSignal(controller.opened, timeout=WAIT_MS) as reported:
         controller.open_recovered(tmp_path / "new", state.recovery_key, "hk", "another four words")
-    (state,) = told.args or []
+    (state,) = reported.args or []
     assert state.recovery_key == ""
     controller.close()
     with qtbot.waitSignal(controller.opened, timeout=WAIT_MS):
         controller.open(tmp_path / "new", "another four words")
 
 
-def test_the_folder_says_who_may_open_it(
+def test_the_folder_states_who_may_open_it(
     qtbot: QtBot, controller: LibraryController, folder: Path, tmp_path: Path
 ) -> None:
     asker = Asker()
@@ -316,19 +316,19 @@ def test_the_folder_says_who_may_open_it(
 def test_a_keyring_without_the_key_sends_back_to_the_passphrase(
     qtbot: QtBot, controller: LibraryController, folder: Path
 ) -> None:
-    with qtbot.waitSignal(controller.not_opened, timeout=WAIT_MS) as told:
+    with qtbot.waitSignal(controller.not_opened, timeout=WAIT_MS) as reported:
         controller.open_remembered(folder, "hk")
-    assert told.args is not None
-    assert told.args[1] == "Enter it."
+    assert reported.args is not None
+    assert reported.args[1] == "Enter it."
 
 
 def test_a_library_that_another_program_holds_is_not_opened(
     qtbot: QtBot, controller: LibraryController, folder: Path
 ) -> None:
-    with held_alone(folder), qtbot.waitSignal(controller.not_opened, timeout=WAIT_MS) as told:
+    with held_alone(folder), qtbot.waitSignal(controller.not_opened, timeout=WAIT_MS) as reported:
         controller.open(folder, PASSPHRASE, "hk")
-    assert told.args is not None
-    assert "This library is already open in Gaitwright" in told.args[0]
+    assert reported.args is not None
+    assert "This library is already open in Gaitwright" in reported.args[0]
     opened(qtbot, controller, folder)
 
 
@@ -358,9 +358,9 @@ def deleted(library: OpenedLibrary) -> int:
 def test_the_demonstration_holds_patients_who_have_no_visit_yet_and_leaves_nothing(
     qtbot: QtBot, controller: LibraryController
 ) -> None:
-    with qtbot.waitSignal(controller.opened, timeout=30_000) as told:
+    with qtbot.waitSignal(controller.opened, timeout=30_000) as reported:
         controller.open_demonstration()
-    (state,) = told.args or []
+    (state,) = reported.args or []
     assert state.is_demonstration
     folder = state.library.folder
     asker = Asker()
@@ -379,7 +379,7 @@ def test_the_demonstration_holds_patients_who_have_no_visit_yet_and_leaves_nothi
     assert not folder.exists()
 
 
-def test_long_work_tells_progress_and_is_stopped(qtbot: QtBot, controller: LibraryController, folder: Path) -> None:
+def test_long_work_shows_progress_and_is_stopped(qtbot: QtBot, controller: LibraryController, folder: Path) -> None:
     opened(qtbot, controller, folder)
     asker, ended = Asker(), Event()
 

@@ -77,35 +77,35 @@ def visit_of(opened: OpenedLibrary) -> UUID:
 
 def record_away(opened: OpenedLibrary, session_id: UUID, name: str = "walk 1") -> UUID:
     """A recording that was made while the library was gone."""
-    recording_id, told = uuid7(), Recording(name, RecordingKind.WALKING, name.replace(" ", "_"), {})
+    recording_id, reported = uuid7(), Recording(name, RecordingKind.WALKING, name.replace(" ", "_"), {})
     writer = JournalWriter.create(
         opened.recordings, recording_id, opened.data_key, room=ANY_ROOM, shelter=opened.shelter
     )
-    writer.mark(Belonging(session_id, told).text())
+    writer.mark(Belonging(session_id, reported).text())
     assert writer.stop().is_away
     return recording_id
 
 
 @pytest.mark.endurance
-def test_it_is_missed_within_a_second_and_said_where_recordings_go(
+def test_it_is_missed_within_a_second_and_stated_where_recordings_go(
     qtbot: QtBot, controller: LibraryController, folder: Path
 ) -> None:
     opened = opened_of(controller)
     elsewhere = folder.with_name("renamed")
     seen = [controller.is_gone]
     began_s = time.monotonic()
-    with qtbot.waitSignal(controller.gone, timeout=WAIT_MS) as said:
+    with qtbot.waitSignal(controller.gone, timeout=WAIT_MS) as stated:
         folder.rename(elsewhere)
     assert time.monotonic() - began_s < 1.5
-    what, then = said.args or ["", ""]
+    what, then = stated.args or ["", ""]
     assert what == f"The library is no longer in {folder}."
     assert opened.shelter is not None
     assert str(opened.shelter.folder) in then
     assert "connect its disk" in then
     seen.append(controller.is_gone)
-    with qtbot.waitSignal(controller.back, timeout=WAIT_MS) as said:
+    with qtbot.waitSignal(controller.back, timeout=WAIT_MS) as stated:
         elsewhere.rename(folder)
-    assert said.args == ["The library is available again.", "There was nothing to add."]
+    assert stated.args == ["The library is available again.", "There was nothing to add."]
     assert [*seen, controller.is_gone] == [False, True, False]
     assert not opened.shelter.folder.exists()
 
@@ -120,10 +120,10 @@ def test_what_was_recorded_meanwhile_is_home_once_it_is_back(
     with qtbot.waitSignal(controller.gone, timeout=WAIT_MS):
         folder.rename(elsewhere)
     recording_id = record_away(opened, session_id)
-    with qtbot.waitSignal(controller.back, timeout=WAIT_MS) as said:
+    with qtbot.waitSignal(controller.back, timeout=WAIT_MS) as stated:
         elsewhere.rename(folder)
-    assert said.args is not None
-    assert said.args[1] == "1 recording made meanwhile was added."
+    assert stated.args is not None
+    assert stated.args[1] == "1 recording made meanwhile was added."
     assert [path.name for path in opened.recordings.iterdir()] == [f"{recording_id}.1.journal"]
 
 
@@ -155,7 +155,7 @@ def test_a_library_that_stays_is_not_missed(qtbot: QtBot, controller: LibraryCon
 
 
 @pytest.mark.endurance
-def test_what_cannot_be_brought_home_is_said_once_and_kept(
+def test_what_cannot_be_brought_home_is_stated_once_and_kept(
     qtbot: QtBot, controller: LibraryController, folder: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     opened = opened_of(controller)
@@ -169,12 +169,12 @@ def test_what_cannot_be_brought_home_is_said_once_and_kept(
         raise OSError(28, "No space left on device")
 
     monkeypatch.setattr("app.storage.bringing_home._copy", full)
-    with qtbot.waitSignal(controller.refused, timeout=WAIT_MS) as said:
+    with qtbot.waitSignal(controller.refused, timeout=WAIT_MS) as stated:
         elsewhere.rename(folder)
-    assert said.args is not None
-    assert "could not be added yet (No space left on device)" in said.args[0]
+    assert stated.args is not None
+    assert "could not be added yet (No space left on device)" in stated.args[0]
     assert opened.shelter is not None
-    assert str(opened.shelter.folder) in said.args[1]
+    assert str(opened.shelter.folder) in stated.args[1]
     monkeypatch.undo()
     monkeypatch.setattr("app.storage.root.platformdirs.user_data_path", lambda *_, **__: folder.parent / "data")
     assert bring_home(opened) == {recording_id}
@@ -195,7 +195,7 @@ def test_keys_are_changed_of_the_library_that_is_open_only(
 
 
 class Asker(QObject):
-    """Notes what it is told."""
+    """Notes what it is reported."""
 
     def __init__(self) -> None:
         super().__init__()
@@ -212,7 +212,7 @@ class Asker(QObject):
         """Not what is asked here."""
 
     @property
-    def has_heard(self) -> bool:
+    def has_received(self) -> bool:
         return bool(self.results or self.refusals)
 
 
@@ -224,7 +224,7 @@ def test_after_a_change_of_the_key_the_library_is_watched_as_before(
     asker, before = Asker(), opened_of(controller)
     gone = QSignalSpy(controller.gone)
     controller.change_key("", asker.on_done, asker.on_failed, asker.on_progressed, asker)
-    qtbot.waitUntil(lambda: asker.has_heard, timeout=WAIT_MS)
+    qtbot.waitUntil(lambda: asker.has_received, timeout=WAIT_MS)
     assert asker.refusals == []
     assert opened_of(controller) is not before
     qtbot.wait(1200)
@@ -235,10 +235,10 @@ def test_after_a_change_of_the_key_the_library_is_watched_as_before(
     with qtbot.waitSignal(controller.gone, timeout=WAIT_MS):
         folder.rename(elsewhere)
     recording_id = record_away(opened_of(controller), visit_id := uuid7())
-    with qtbot.waitSignal(controller.back, timeout=WAIT_MS) as said:
+    with qtbot.waitSignal(controller.back, timeout=WAIT_MS) as stated:
         elsewhere.rename(folder)
-    assert said.args is not None
-    assert said.args[1] == "1 recording made meanwhile was added."
+    assert stated.args is not None
+    assert stated.args[1] == "1 recording made meanwhile was added."
     (found,) = find_interrupted(opened_of(controller))
     assert (found.recording_id, found.problem) == (recording_id, "")
     assert found.belonging is not None
@@ -276,7 +276,7 @@ def test_the_key_is_not_changed_while_what_was_recorded_waits_and_nobody_is_remo
     with qtbot.waitSignals([controller.refused, controller.back], timeout=WAIT_MS):
         elsewhere.rename(folder)
     controller.change_key("ab", asker.on_done, asker.on_failed, asker.on_progressed, asker)
-    qtbot.waitUntil(lambda: asker.has_heard, timeout=WAIT_MS)
+    qtbot.waitUntil(lambda: asker.has_received, timeout=WAIT_MS)
     ((what, remedy),) = asker.refusals
     assert what.startswith("Recordings made while the library was unavailable are not in it yet")
     assert str(opened.shelter.folder) in remedy
@@ -295,7 +295,7 @@ def test_a_library_that_is_closed_while_its_key_changes_stays_closed(
     assert controller.state is None
     assert controller._watch is None
     with held_alone(folder):
-        assert not asker.has_heard
+        assert not asker.has_received
 
 
 @pytest.mark.endurance
@@ -314,7 +314,7 @@ def test_under_the_lock_files_come_home_and_reading_them_waits_for_the_key(
     assert [path.name for path in opened.recordings.iterdir()] == [f"{recording_id}.1.journal"]
     controller.run_long(lambda library, _report: find_interrupted(library), asker.on_done, asker.on_failed, None, asker)
     qtbot.wait(300)
-    assert not asker.has_heard
+    assert not asker.has_received
     controller.unlock("hk", PASSPHRASE, None, asker.on_done, asker.on_failed, asker)
     qtbot.waitUntil(lambda: len(asker.results) == 2, timeout=WAIT_MS)
     (found,) = asker.results[1] if isinstance(asker.results[1], tuple) else ()
@@ -347,8 +347,8 @@ def test_a_demonstration_that_is_gone_promises_no_shelter(qtbot: QtBot, controll
     opened = opened_of(controller)
     assert opened.shelter is None
     elsewhere = opened.folder.with_name(f"{opened.folder.name}-renamed")
-    with qtbot.waitSignal(controller.gone, timeout=WAIT_MS) as said:
+    with qtbot.waitSignal(controller.gone, timeout=WAIT_MS) as stated:
         opened.folder.rename(elsewhere)
     elsewhere.rename(opened.folder)  # to be removed
-    assert said.args is not None
-    assert said.args[1] == "The demonstration ends here. Open it again."
+    assert stated.args is not None
+    assert stated.args[1] == "The demonstration ends here. Open it again."

@@ -15,7 +15,7 @@ def peers_python() -> Path:
     Raises
     ------
     RuntimeError
-        The peers could not be installed; with what the installer said.
+        The peers could not be installed; with what the installer stated.
     """
     python = PLACE / "bin" / "python"
     stamp = PLACE / "made-from"

@@ -43,7 +43,7 @@ class GaitmapFeet:
         self,
         feet: Mapping[Side, ImuBlock],
         alignments: Sequence[str],
-        told: Mapping[str, FloatArray] | None = None,
+        reported: Mapping[str, FloatArray] | None = None,
     ) -> GaitmapFound:
         """Everything it makes of both feet, which begin together at one rate.
 
@@ -52,13 +52,13 @@ class GaitmapFeet:
         feet
             Free of the gyroscope's bias. Turned into gaitmap's sensor frame for the alignment "gravity", in any
             mounting for "heading".
-        told
+        reported
             "left_borders", "right_borders" (k, 3): number, start and end of each stride, in samples; "left_stances",
             "right_stances" (k, 7): number, start, end, initial contact, toe-off, stance, initial contact before.
         """
         begin_s = feet[Side.LEFT].time_s[0]
         rate_hz = (len(feet[Side.LEFT]) - 1) / float(np.ptp(feet[Side.LEFT].time_s))
-        arrays: dict[str, Any] = {"rate_hz": rate_hz, **(told or {})}
+        arrays: dict[str, Any] = {"rate_hz": rate_hz, **(reported or {})}
         for side, foot in feet.items():
             arrays |= {f"{side}_acc_m_s2": foot.acc_m_s2, f"{side}_gyr_rad_s": foot.gyr_rad_s}
         folder = Path(self._folder.name)

@@ -2,7 +2,7 @@
 
 gaitmap and gaitmap_mad (Kuderle et al. 2024, doi 10.1109/OJEMB.2024.3356791) with default settings throughout. The
 question names an archive of both feet in gaitmap's sensor frame, or in any where the heading is to be aligned too, and
-a second archive to write; the answer tells the CPU seconds of every stage and the versions. Keys are joined by "|".
+a second archive to write; the answer reports the CPU seconds of every stage and the versions. Keys are joined by "|".
 """
 
 import json
@@ -52,12 +52,12 @@ class Run:
         self.found: dict[str, Any] = {}
         self.cpu_s: dict[str, float] = {}
         with np.load(archive) as arrays:
-            self._told = dict(arrays)
-        self._rate_hz = float(self._told["rate_hz"])
+            self._reported = dict(arrays)
+        self._rate_hz = float(self._reported["rate_hz"])
 
     def alone(self, alignments: list[str]) -> None:
         """Everything, with every alignment that is asked for."""
-        columns = {s: [self._told[f"{s}_acc_m_s2"], np.rad2deg(self._told[f"{s}_gyr_rad_s"])] for s in SIDES}
+        columns = {s: [self._reported[f"{s}_acc_m_s2"], np.rad2deg(self._reported[f"{s}_gyr_rad_s"])] for s in SIDES}
         mounted = {f"{s}_sensor": pd.DataFrame(np.hstack(columns[s]), columns=AXES) for s in SIDES}
         gravity = self._timed("gravity", align_dataset_to_gravity, mounted, self._rate_hz)
         if "gravity" in alignments:
@@ -75,7 +75,7 @@ class Run:
         for name, method in SEGMENTATIONS.items():
             cut = self._timed(f"{alignment}|{name}", method.clone().segment, body, self._rate_hz)
             borders[name] = cut.stride_list_
-        if "left_borders" in self._told:
+        if "left_borders" in self._reported:
             borders["by hand"] = self._listed("borders", ["s_id", "start", "end"])
         for name, cuts in borders.items():
             for detector, method in DETECTORS.items():
@@ -86,7 +86,7 @@ class Run:
                     self.found[f"events|{key}|{side}"] = events[["ic", "tc"]].to_numpy(dtype=float)
                 if detector == "Rampp":
                     self._reconstruct(f"{alignment}|{name}", feet, done.min_vel_event_list_)
-        if "left_stances" in self._told:
+        if "left_stances" in self._reported:
             stances = self._listed("stances", ["s_id", "start", "end", "ic", "tc", "min_vel", "pre_ic"])
             self._reconstruct(f"{alignment}|optical stances", feet, stances)
 
@@ -95,14 +95,16 @@ class Run:
         for name, method in TRAJECTORIES.items():
             key = f"{origin}|{name}"
             done = self._timed(key, self._trajectory, method.clone(), feet, strides)
-            told = self._timed(f"{key}|parameters", self._parameters, strides, done)
+            reported = self._timed(f"{key}|parameters", self._parameters, strides, done)
             for side in SIDES:
                 foot = f"{side}_sensor"
                 rows, turned = strides[foot].set_index("s_id"), done.orientation_[foot]
                 each = turned.groupby(level="s_id", sort=False)
                 here = list(each.indices)
                 self.found[f"strides|{key}|{side}|contact"] = rows.loc[here, "ic"].to_numpy(dtype=float)
-                self.found[f"strides|{key}|{side}|length_m"] = told.loc[foot].loc[here, "stride_length"].to_numpy(float)
+                self.found[f"strides|{key}|{side}|length_m"] = (
+                    reported.loc[foot].loc[here, "stride_length"].to_numpy(float)
+                )
                 self.found[f"strides|{key}|{side}|start"] = rows.loc[here, "start"].to_numpy(dtype=float)
                 self.found[f"strides|{key}|{side}|count"] = each.size().loc[here].to_numpy()
                 self.found[f"strides|{key}|{side}|q_xyzw"] = turned[["q_x", "q_y", "q_z", "q_w"]].to_numpy()
@@ -117,11 +119,11 @@ class Run:
 
     def _parameters(self, strides: Feet, done: Any) -> pd.DataFrame:
         TemporalParameterCalculation().calculate(strides, sampling_rate_hz=self._rate_hz)
-        told = SpatialParameterCalculation().calculate(strides, done.position_, done.orientation_, self._rate_hz)
-        return pd.concat(told.parameters_)
+        reported = SpatialParameterCalculation().calculate(strides, done.position_, done.orientation_, self._rate_hz)
+        return pd.concat(reported.parameters_)
 
     def _listed(self, name: str, columns: list[str]) -> Feet:
-        rows = {f"{s}_sensor": pd.DataFrame(self._told[f"{s}_{name}"], columns=columns) for s in SIDES}
+        rows = {f"{s}_sensor": pd.DataFrame(self._reported[f"{s}_{name}"], columns=columns) for s in SIDES}
         return {foot: row.astype({"s_id": int, "start": int, "end": int}) for foot, row in rows.items()}
 
     def _timed(self, name: str, work: Callable[..., Any], *arguments: Any, **options: Any) -> Any:

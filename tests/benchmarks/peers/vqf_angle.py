@@ -1,8 +1,8 @@
 """What does the orientation filter VQF make of a joint whose axes are known?
 
-VQF (Laidig & Seel 2023, doi 10.1016/j.inffus.2022.10.014) as its documentation says: the rate over the interval before
-each sample, default parameters, no magnetometer. The heading between the two sensors is the least-squares fit that
-lays one axis on the other, in closed form over neighbouring windows; the angle is the twist about the axis.
+VQF (Laidig & Seel 2023, doi 10.1016/j.inffus.2022.10.014) as its documentation states: the rate over the interval
+before each sample, default parameters, no magnetometer. The heading between the two sensors is the least-squares fit
+that lays one axis on the other, in closed form over adjacent windows; the angle is the twist about the axis.
 """
 
 from collections.abc import Callable

@@ -26,7 +26,7 @@ class PeerWorker:
         Raises
         ------
         RuntimeError
-            The worker ended; what it said stands above.
+            The worker ended; what it stated is above.
         """
         assert self._process.stdin is not None
         assert self._process.stdout is not None

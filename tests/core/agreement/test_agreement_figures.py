@@ -74,7 +74,7 @@ def test_without_strides_the_range_is_that_of_the_recording() -> None:
     assert np.isnan(found.range_error_sd_rad)
 
 
-def test_errors_are_told_by_phase_with_the_mean_of_the_walk_taken_out() -> None:
+def test_errors_are_reported_by_phase_with_the_mean_of_the_walk_taken_out() -> None:
     n = 400
     other = np.sin(np.arange(n) / 9.0)
     phase = np.repeat([PHASES.index(p) for p in (Phase.UNKNOWN, Phase.LOADING, Phase.FOOT_FLAT, Phase.SWING)], 100)
@@ -100,12 +100,16 @@ def test_an_honest_sd_holds_68_and_95_percent_and_a_boastful_one_does_not() -> N
     assert np.isnan(found_of(one, other).within_1_sd)
 
 
-def test_without_a_zero_height_says_nothing_and_shape_all() -> None:
+def test_without_a_zero_height_states_nothing_and_shape_all() -> None:
     one, other = curves()
-    found, withheld = found_of(one, other), found_of(one, other, has_zero=False)
+    found, not_reported = found_of(one, other), found_of(one, other, has_zero=False)
     for name in ("z_rad", "bias_rad", "low_rad", "high_rad"):
-        assert np.isnan(getattr(withheld, name))
-    assert (withheld.m_rad, withheld.sd_rad, withheld.correlation) == (found.m_rad, found.sd_rad, found.correlation)
+        assert np.isnan(getattr(not_reported, name))
+    assert (not_reported.m_rad, not_reported.sd_rad, not_reported.correlation) == (
+        found.m_rad,
+        found.sd_rad,
+        found.correlation,
+    )
 
 
 def test_table_1_is_the_mean_and_the_sd_over_trials() -> None:

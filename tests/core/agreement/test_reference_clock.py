@@ -70,7 +70,7 @@ def test_a_clock_that_runs_fast_is_found_over_a_minute(ppm: float) -> None:
         assert shown_at(found, time_s) == pytest.approx(2.0 + time_s * (1 + 1e-6 * ppm), abs=0.001)
 
 
-def test_six_short_walks_share_one_clock_rate_which_each_alone_hardly_tells() -> None:
+def test_six_short_walks_share_one_clock_rate_which_each_alone_hardly_shows() -> None:
     walks = [trial(10.0 * k, 150.0, seconds=10.0, seed=k) for k in range(6)]
     together = aligned(*walks)
     assert len({one.clock.rate for one in together}) == 1

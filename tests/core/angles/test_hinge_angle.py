@@ -1,4 +1,4 @@
-"""The drift of a hinge: what is left of biases and scales is taken out, and what remains is said."""
+"""The drift of a hinge: what is left of biases and scales is taken out, and what remains is stated."""
 
 from collections.abc import Callable
 from typing import TYPE_CHECKING
@@ -34,7 +34,7 @@ def test_biases_that_no_rest_has_shown_leave_no_drift(seed: int, recordings: tup
     found = next(r for r in analyse(made.session).recordings if r.name == "measured")
     truth = made.truth.recordings["measured"].joints[KNEE]
     angle, true = found.joints[KNEE], np.interp(found.time_s, truth.time_s, truth.angle_rad)
-    # free motion alone does not tell the clinical sign
+    # free motion alone does not report the clinical sign
     error = min((sign * angle.angle_rad - true for sign in (1, -1)), key=lambda e: float(np.std(e)))
     error -= np.mean(error)
     assert np.rad2deg(np.std(error)) < 0.2

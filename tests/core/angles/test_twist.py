@@ -35,10 +35,10 @@ def test_about_clinical_axes_the_twist_rises_with_flexion(
     np.testing.assert_allclose(found - found[0], truth - truth[0], atol=1e-9)
 
 
-def test_the_twist_is_deaf_to_a_heading_that_it_is_told(person: "Person") -> None:
+def test_the_twist_is_deaf_to_a_heading_that_it_is_reported(person: "Person") -> None:
     straight, turned = person.exact_pair(KNEE), person.exact_pair(KNEE, heading_rad=1.3)
-    told = twist(turned, *axes_of(person), np.full(len(turned), 1.3))
-    np.testing.assert_allclose(told, twist(straight, *axes_of(person), np.zeros(len(straight))), atol=1e-9)
+    reported = twist(turned, *axes_of(person), np.full(len(turned), 1.3))
+    np.testing.assert_allclose(reported, twist(straight, *axes_of(person), np.zeros(len(straight))), atol=1e-9)
 
 
 @pytest.fixture(scope="module")

@@ -32,11 +32,11 @@ def test_axes_that_are_off_come_nearer_by_half_and_more(person: "Person") -> Non
 
 
 @pytest.mark.parametrize(("tissue", "is_bare"), [(Tissue.RIGID, True), (Tissue.REAL, False)])
-def test_it_is_told_which_way_an_ankle_s_axis_was_found(tissue: Tissue, is_bare: bool) -> None:
+def test_it_is_reported_which_way_an_ankle_s_axis_was_found(tissue: Tissue, is_bare: bool) -> None:
     recordings = (Standing(duration_s=2.0), FreeMotion(duration_s=6.0), Walk(strides=6))
     found = analyse(simulate(WalkerSettings(seed=2, tissue=tissue, recordings=recordings, sites=FOOT_ALONE)).session)
-    told = {(f.key, f.where) for f in found.findings}
-    assert (("ankle_axis_from_rates", "left_ankle") in told) is is_bare
+    reported = {(f.key, f.where) for f in found.findings}
+    assert (("ankle_axis_from_rates", "left_ankle") in reported) is is_bare
 
 
 def test_a_knee_is_never_found_so(person: "Person") -> None:

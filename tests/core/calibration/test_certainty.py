@@ -29,7 +29,7 @@ def line_fit(noise: FloatArray, per_block: int) -> float:
     return float(sandwich_covariance(slope, noise[:, None], weight, np.arange(len(noise)) // per_block)[0, 0])
 
 
-def test_the_sandwich_is_the_variance_of_the_mean_also_where_neighbours_hang_together() -> None:
+def test_the_sandwich_is_the_variance_of_the_mean_also_where_adjacent_hang_together() -> None:
     rng = np.random.default_rng(0)
     white = rng.normal(size=20000)
     assert line_fit(white, 100) == pytest.approx(1 / 20000, rel=0.25)
@@ -75,8 +75,8 @@ def test_on_a_hinge_only_the_range_counts() -> None:
 def test_a_hinge_that_is_not_declared_and_not_bare_may_be_a_person_s_joint(rate: float, ringing: float) -> None:
     angles = np.deg2rad([0.0, 20.0])
     doubted, declared = (
-        angle_sd_rad(angles, rate, 0.1, is_knee=False, is_hinge=True, is_prosthetic=told, ringing_rad_s=ringing)
-        for told in (False, True)
+        angle_sd_rad(angles, rate, 0.1, is_knee=False, is_hinge=True, is_prosthetic=reported, ringing_rad_s=ringing)
+        for reported in (False, True)
     )
     assert np.rad2deg(doubted) == pytest.approx([0.9, np.hypot(0.3 + 4.0 * rate, 2.6)])
     assert np.rad2deg(declared) == pytest.approx([0.1, 0.1])

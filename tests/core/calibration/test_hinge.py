@@ -77,7 +77,7 @@ def test_from_a_few_degrees_away_it_comes_back(person_3: "Person", data: Dataset
     assert angle_between(found[1], truth[1]) < 1e-3
 
 
-def test_from_far_away_it_says_so_rather_than_lead_elsewhere(person_3: "Person", data: Datasets) -> None:
+def test_from_far_away_it_states_so_rather_than_lead_elsewhere(person_3: "Person", data: Datasets) -> None:
     j1 = moved(person_3.axis(Site.LEFT_THIGH, KNEE)[None], np.array([[0.4, 0.0]]))[0]
     assert hinge_axes(data, j1, person_3.axis(Site.LEFT_SHANK, KNEE), np.zeros(12)) is None
 

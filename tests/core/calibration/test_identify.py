@@ -49,7 +49,7 @@ def test_flexion_is_not_doubted_where_the_axis_lies_flat_in_the_end(person: "Per
 
 
 @pytest.mark.usefixtures("doubting")
-def test_flexion_is_doubted_where_the_axis_stands_up(person: "Person") -> None:
+def test_flexion_is_doubted_where_the_axis_is_up(person: "Person") -> None:
     axes = [person.axis(site, KNEE) for site in (KNEE.proximal, KNEE.distal)]
     found = identified(person, (axes[0], axes[1]))
     assert found.elevation_rad is not None
@@ -77,9 +77,9 @@ def test_a_lag_of_a_hinge_is_found_to_a_fraction_of_a_sample_without_walks(perso
 @pytest.mark.parametrize(("samples", "is_used"), [(50, True), (49, False)])
 def test_half_a_second_of_movement_is_a_stretch(person: "Person", samples: int, is_used: bool) -> None:
     pair = person.exact_pair(KNEE)
-    is_heard = np.zeros(len(pair), dtype=bool)
-    is_heard[200 : 200 + samples] = True
-    data = moving_data((pair, replace(pair, is_known=is_heard)))
+    is_received = np.zeros(len(pair), dtype=bool)
+    is_received[200 : 200 + samples] = True
+    data = moving_data((pair, replace(pair, is_known=is_received)))
     assert data is not None
     assert len(data.pairs) == 1 + is_used
     assert np.sum(data.stretch == 1) == (samples if is_used else 0)

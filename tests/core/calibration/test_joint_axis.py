@@ -84,7 +84,7 @@ def test_slopes_by_the_heading_are_central_differences(few: Datasets, seed: int,
 
 @settings(max_examples=10)
 @given(seed=st.integers(0, 2**31))
-def test_slopes_are_exact_where_the_frame_stands_still(few: Datasets, seed: int) -> None:
+def test_slopes_are_exact_where_the_frame_is_still(few: Datasets, seed: int) -> None:
     """Components along fixed x, y: the off-axis rate's own slopes, without the gauge."""
     j1, j2 = random_axes(seed, 1), random_axes(seed + 1, 1)
     heading = np.zeros((1, len(few)))

@@ -90,8 +90,8 @@ def test_the_first_step_uses_slopes_that_are_central_differences(data: Datasets,
     prior = np.diag([CENTRE_PRIOR_M**-2] * 6 + [BIAS_PRIOR_M_S2**-2] * 6)
     expected = slope.T @ (weight * error) + prior @ x
     np.testing.assert_allclose(gradient, expected, atol=1e-5 * np.abs(expected).max())
-    wanted = (slope * weight[:, None]).T @ slope + prior
-    np.testing.assert_allclose(information, wanted, atol=1e-5 * np.abs(wanted).max())
+    required = (slope * weight[:, None]).T @ slope + prior
+    np.testing.assert_allclose(information, required, atol=1e-5 * np.abs(required).max())
 
 
 def test_both_forms_find_a_hinge_s_centre_in_the_plane_normal_to_its_axis(person_3: "Person", data: Datasets) -> None:
@@ -160,11 +160,11 @@ def test_residuals_count_with_four_times_the_spread_they_show(person_3: "Person"
     shift = 0.0004 * np.sqrt(np.sum(noisy.dg1**2 + noisy.dg2**2, axis=1))  # m/s2, of 0.4 mm in step with the limb
     prior = np.diag([0.3**-2] * 6 + [0.05**-2] * 6)
     unseen = np.linalg.inv(information / (1 + np.sum(weight * shift**2)) + prior)
-    expected = unseen + (4.0 / 2.5) ** 2 * by_residuals  # a human joint's sd is told 2.5 times as large
+    expected = unseen + (4.0 / 2.5) ** 2 * by_residuals  # a human joint's sd is reported 2.5 times as large
     for site, part in ((KNEE.proximal, slice(0, 3)), (KNEE.distal, slice(3, 6))):
         across = np.stack(joint_frame(person_3.axis(site, KNEE)))
-        told, wanted, shown = (
+        reported, required, shown = (
             across @ covariance[part, part] @ across.T for covariance in (found.covariance, expected, by_residuals)
         )
-        np.testing.assert_allclose(told, wanted, rtol=0.01, atol=0.01 * np.trace(wanted))
-        assert np.trace(shown) > 0.2 * np.trace(wanted)
+        np.testing.assert_allclose(reported, required, rtol=0.01, atol=0.01 * np.trace(required))
+        assert np.trace(shown) > 0.2 * np.trace(required)

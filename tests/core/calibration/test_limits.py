@@ -1,4 +1,4 @@
-"""Do rest, sign and certainty change their mind where they are said to? All limits and figures are written out."""
+"""Do rest, sign and certainty change their mind where they are stated to? All limits and figures are written out."""
 
 import numpy as np
 import pytest
@@ -55,10 +55,10 @@ def test_a_knee_s_margin_is_its_bending_and_twice_its_swinging() -> None:
 
 
 @pytest.mark.parametrize(("high_deg", "is_certain"), [(9.5, False), (10.5, True)])
-def test_a_knee_that_bends_less_than_ten_degrees_tells_nothing(high_deg: float, is_certain: bool) -> None:
+def test_a_knee_that_bends_less_than_ten_degrees_shows_nothing(high_deg: float, is_certain: bool) -> None:
     found = knee_sign(bent(0.0, high_deg), swinging(-1.0, 3.0), is_walking=True, has_standing=True)
     assert found.is_certain == is_certain
-    assert found.margin == pytest.approx(2.0 if is_certain else 1.0, abs=5e-3)  # swinging tells the likelier sign
+    assert found.margin == pytest.approx(2.0 if is_certain else 1.0, abs=5e-3)  # swinging reports the likelier sign
 
 
 @pytest.mark.parametrize(("low_deg", "is_certain"), [(-13.5, True), (-14.5, False), (-20.0, False)])
@@ -179,7 +179,7 @@ def test_trembling_beyond_a_limit_is_no_rest(sd: float, is_rest: bool) -> None:
     assert (lying(300, None, acc) is not None) == is_rest
 
 
-def test_only_the_first_ten_minutes_tell_how_a_sensor_rests() -> None:
+def test_only_the_first_ten_minutes_show_how_a_sensor_rests() -> None:
     """At 5 Hz it lies still from 9 minutes on, for two."""
     samples = 11 * 60 * 5
     time_s = np.arange(samples) / 5

@@ -1,4 +1,4 @@
-"""Are instants and averages told apart where no sensor says which its rates are?"""
+"""Are instants and averages distinguished where no sensor states which its rates are?"""
 
 from dataclasses import replace
 
@@ -13,7 +13,7 @@ LEFT = (Site.LEFT_THIGH, Site.LEFT_SHANK, Site.LEFT_FOOT)
 RECORDINGS = (Standing(duration_s=2.0), FreeMotion(duration_s=6.0), Walk(strides=5))
 
 
-def untold(settings: WalkerSettings) -> Session:
+def not_reported(settings: WalkerSettings) -> Session:
     """A session whose sensors do not say what their rates stand for."""
     session = simulate(settings).session
     return replace(session, sensors=dict.fromkeys(session.sensors, SensorInfo()))
@@ -22,17 +22,17 @@ def untold(settings: WalkerSettings) -> Session:
 @pytest.mark.endurance
 @pytest.mark.parametrize("kind", list(RateKind))
 @pytest.mark.parametrize("tissue", [Tissue.RIGID, Tissue.SOFT])
-def test_all_joints_together_tell_instants_from_averages(tissue: Tissue, kind: RateKind) -> None:
+def test_all_joints_together_show_instants_from_averages(tissue: Tissue, kind: RateKind) -> None:
     rate_hz = 200.0 if tissue is Tissue.RIGID else 60.0
     settings = WalkerSettings(seed=1, recordings=RECORDINGS, sites=LEFT, rate_hz=rate_hz, tissue=tissue, rate_kind=kind)
-    session = untold(settings)
+    session = not_reported(settings)
     tracks, findings = tracks_of_kind(session, session.recordings, frozenset())
     assert tracks.rate_kind is kind
     assert [f.key for f in findings] == (["rate_kind_found"] if kind is RateKind.AVERAGED else [])
 
 
-def test_sensors_that_tell_their_kind_are_not_asked() -> None:
+def test_sensors_that_show_their_kind_are_not_asked() -> None:
     session = simulate(WalkerSettings(recordings=(Walk(strides=3),), sites=LEFT, rate_kind=RateKind.AVERAGED)).session
     tracks, findings = tracks_of_kind(session, session.recordings, frozenset())
-    assert tracks.rate_kind is RateKind.INSTANTANEOUS  # what holds for sensors that do not tell
+    assert tracks.rate_kind is RateKind.INSTANTANEOUS  # what holds for sensors that do not report
     assert not findings

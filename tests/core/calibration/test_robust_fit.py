@@ -84,7 +84,7 @@ class Earths:
 
 @pytest.fixture(scope="module")
 def standing(make_person: "Callable[..., Person]") -> Datasets:
-    """A leg that stands still, which shows nothing of its centres."""
+    """A leg that is still, which shows nothing of its centres."""
     pair = make_person(seed=5).exact_pair(KNEE, kind=RecordingKind.STANDING, duration_s=4.0)
     return gather((pair,), [np.arange(5, len(pair) - 5, 2)])
 

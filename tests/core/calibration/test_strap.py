@@ -84,7 +84,7 @@ def test_walking_with_a_turn_is_no_slip() -> None:
     assert found_in(simulated.session, simulated) == []
 
 
-def test_a_slip_of_three_degrees_is_not_told(soft: SimulatedSession) -> None:
+def test_a_slip_of_three_degrees_is_not_reported(soft: SimulatedSession) -> None:
     assert found_in(slipped(soft.session, Site.LEFT_SHANK, np.deg2rad(3.0)), soft) == []
 
 
@@ -163,7 +163,7 @@ def test_a_slip_in_one_walk_holds_for_the_next(soft: SimulatedSession) -> None:
 
 
 @pytest.mark.parametrize("seed", [1, 5])
-def test_walking_again_slower_is_no_slip_and_a_slip_between_the_walks_is_told(seed: int) -> None:
+def test_walking_again_slower_is_no_slip_and_a_slip_between_the_walks_is_reported(seed: int) -> None:
     recordings = (Standing(), FreeMotion(), Walk(WALK, strides=14), Walk("walk 2", strides=14, speed_m_s=0.8))
     session = simulate(WalkerSettings(seed=seed, recordings=recordings, tissue=Tissue.SOFT)).session
     assert "strap_slipped" not in {one.key for one in analyse(session).findings}
@@ -185,16 +185,16 @@ def test_rising_from_a_chair_is_no_slip_and_what_slips_meanwhile_shows_in_the_ne
     recordings = (Standing(), FreeMotion(), Walk(WALK, strides=12), rises, Walk("walk 2", strides=12))
     session = simulate(WalkerSettings(seed=5, recordings=recordings, tissue=Tissue.SOFT)).session
 
-    def told(test: PlannedTest | None, session: Session) -> list[str]:
+    def reported(test: PlannedTest | None, session: Session) -> list[str]:
         taken = tuple(replace(one, test=test) if one.name == "rises" else one for one in session.recordings)
         findings = analyse(replace(session, recordings=taken)).findings
         return [finding.where.split(",")[0] for finding in findings if finding.key == "strap_slipped"]
 
     rising = PlannedTest(TimedProtocol.SIT_TO_STAND)
-    assert "rises" in told(None, session)
-    assert told(rising, session) == []
+    assert "rises" in reported(None, session)
+    assert reported(rising, session) == []
     *before, last = session.recordings
     up = before[0].imu[Site.RIGHT_SHANK].acc_m_s2.mean(axis=0)
     turn = Rotation.from_rotvec(np.deg2rad(20.0) * up / np.linalg.norm(up)).as_matrix()
     imu = {**last.imu, Site.RIGHT_SHANK: turned(last.imu[Site.RIGHT_SHANK], turn, -np.inf)}
-    assert told(rising, replace(session, recordings=(*before, replace(last, imu=imu)))) == ["walk 2"]
+    assert reported(rising, replace(session, recordings=(*before, replace(last, imu=imu)))) == ["walk 2"]

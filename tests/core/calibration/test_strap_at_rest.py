@@ -54,7 +54,7 @@ def test_a_foot_that_slipped_over_its_instep_did(session: Session) -> None:
 
 
 @pytest.mark.parametrize(("site", "turn_deg"), [(SHANK, 10.0), (FOOT, 12.0), (FOOT, -20.0)])
-def test_gravity_says_nothing_of_a_shank_nor_of_a_large_turn(session: Session, site: Site, turn_deg: float) -> None:
+def test_gravity_states_nothing_of_a_shank_nor_of_a_large_turn(session: Session, site: Site, turn_deg: float) -> None:
     assert not refuted(session, site, turn_deg)
 
 

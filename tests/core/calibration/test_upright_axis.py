@@ -1,4 +1,4 @@
-"""Is the heading between both sensors found where the joint axis stands upright, as when lying on the side?"""
+"""Is the heading between both sensors found where the joint axis is upright, as when lying on the side?"""
 
 from dataclasses import replace
 from typing import TYPE_CHECKING
@@ -30,9 +30,9 @@ def lying(person: "Person", tilt_rad: float, heading_rad: float) -> Pair:
     tracks = []
     for site in (KNEE.proximal, KNEE.distal):
         gyr, acc = person.samples(RecordingKind.FREE_MOTION, site, t)
-        stands = person.pose(RecordingKind.FREE_MOTION, site, t)[0]
-        lies = tilt * stands
-        acc = acc - stands.inv().apply(GRAVITY_M_S2) + lies.inv().apply(GRAVITY_M_S2)
+        shown = person.pose(RecordingKind.FREE_MOTION, site, t)[0]
+        lies = tilt * shown
+        acc = acc - shown.inv().apply(GRAVITY_M_S2) + lies.inv().apply(GRAVITY_M_S2)
         turned = Rotation.from_rotvec([0.0, 0.0, -heading_rad]) * lies if site is KNEE.distal else lies
         track = Track(0.0, 0.01, gyr, acc, None, None, np.ones(len(t), dtype=bool))
         tracks.append(OrientedTrack(track, turned.as_quat(scalar_first=True)))

@@ -1,4 +1,4 @@
-"""Does each joint rest on the recordings that FORMATS section 1 says, sentence by sentence?"""
+"""Does each joint rest on the recordings that FORMATS section 1 states, sentence by sentence?"""
 
 from collections.abc import Callable
 from typing import TYPE_CHECKING
@@ -53,7 +53,7 @@ def test_each_walk_has_its_own_latest() -> None:
     assert basis(visit, "w1").standing == basis(visit, "w2").standing == "s1"
 
 
-def test_without_any_before_the_first_after_counts_and_that_is_told() -> None:
+def test_without_any_before_the_first_after_counts_and_that_is_reported() -> None:
     visit = session(*(recording(n, k) for n, k in [("w1", W), ("s1", S), ("s2", S), ("f1", F), ("f2", F)]))
     found = basis(visit, "w1")
     assert (found.standing, found.free_motion, found.is_from_after) == ("s1", "f1", True)
@@ -156,7 +156,7 @@ def visit_of(person: "Person", *plan: tuple[str, RecordingKind, bool, bool], sit
 
 
 @pytest.mark.endurance
-def test_every_joint_says_from_which_recordings(person: "Person") -> None:
+def test_every_joint_states_from_which_recordings(person: "Person") -> None:
     plan = [("s1", S), ("f1", F), ("s2", S), ("f2", F), ("w1", W), ("w2", W)]
     visit = visit_of(person, *((n, k, n != "f2", False) for n, k in plan), sites=LEG)
     (calibration,) = analyse(visit).calibrations
@@ -175,7 +175,7 @@ def test_two_free_motions_give_two_calibrations(person: "Person") -> None:
     assert second.joints[Joint.LEFT_KNEE].free_motion_from == "f2"
 
 
-def test_standing_after_the_walk_gives_the_zero_and_is_told(person: "Person") -> None:
+def test_standing_after_the_walk_gives_the_zero_and_is_reported(person: "Person") -> None:
     found = analyse(visit_of(person, ("w", W, True, False), ("s", S, True, False)))
     (knee,) = found.calibrations[0].joints.values()
     assert (knee.zero, knee.standing_from) == (ZeroKind.STANDING, "s")

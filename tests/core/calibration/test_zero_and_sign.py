@@ -30,7 +30,7 @@ FLEXION = np.deg2rad(30 - 30 * np.cos(6 * T))
 
 
 @pytest.mark.parametrize("sign", [1, -1])
-def test_a_knee_that_bends_one_way_from_standing_tells_its_sign(sign: int) -> None:
+def test_a_knee_that_bends_one_way_from_standing_shows_its_sign(sign: int) -> None:
     assert forward_swing(SWING) > 0
     found = knee_sign(sign * FLEXION, sign * SWING, is_walking=True, has_standing=True)
     assert (found.sign, found.is_certain) == (sign, True)
@@ -53,7 +53,7 @@ def test_opinions_that_disagree_are_uncertain() -> None:
     assert not knee_sign(FLEXION, -SWING, is_walking=True, has_standing=True).is_certain
 
 
-def test_without_walking_and_standing_nothing_tells() -> None:
+def test_without_walking_and_standing_nothing_shows() -> None:
     assert not knee_sign(FLEXION, SWING, is_walking=False, has_standing=False).is_certain
     assert knee_sign(FLEXION, SWING, is_walking=False, has_standing=True).is_certain
 
@@ -132,7 +132,7 @@ def test_an_ankle_takes_its_sign_from_the_way_of_its_foot() -> None:
     assert not ankle_sign_from_foot(0.95, swings=2).is_certain
 
 
-def test_a_foot_that_hardly_rolls_still_says_which_way_its_ankle_bends() -> None:
+def test_a_foot_that_hardly_rolls_still_states_which_way_its_ankle_bends() -> None:
     """The shank's swing alone leaves both ankles of this walk in doubt (0.25 and 0.23)."""
     made = simulate(
         WalkerSettings(seed=1, tissue=Tissue.SOFT, recordings=(Walk(strides=8, manner=Manner.FLAT, speed_m_s=0.5),))

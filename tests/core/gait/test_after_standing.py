@@ -23,6 +23,6 @@ def test_the_first_step_after_standing_is_as_long_as_it_was(standing_s: float, s
         site = Site(f"{side}_foot")
         motion = follow(tracks.oriented(recording, site, tracks.blocks(recording)[0])[0])
         found = np.linalg.norm(motion.travel_m, axis=1)
-        wanted = made.truth.recordings[recording.name].feet[side].stride_lengths_m
-        assert found[0] == pytest.approx(wanted[0], abs=0.04)
-        assert len(found) == len(wanted)
+        required = made.truth.recordings[recording.name].feet[side].stride_lengths_m
+        assert found[0] == pytest.approx(required[0], abs=0.04)
+        assert len(found) == len(required)

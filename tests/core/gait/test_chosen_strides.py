@@ -1,4 +1,4 @@
-"""Strides that a person leaves out leave every figure and every count, are told, and come back as they were."""
+"""Strides that a person leaves out leave every figure and every count, are reported, and come back as they were."""
 
 from collections import Counter
 from dataclasses import replace
@@ -53,7 +53,7 @@ def middle_of(analysis: Analysis, which: int) -> float:
     return float(strides.start_s[used] + strides.end_s[used]) / 2
 
 
-def test_a_stride_that_is_left_out_is_in_no_mean_and_is_told(session: Session, whole: Analysis) -> None:
+def test_a_stride_that_is_left_out_is_in_no_mean_and_is_reported(session: Session, whole: Analysis) -> None:
     """By any time inside of it: its events may be found a little earlier or later by another version."""
     middle_s = middle_of(whole, 2)
     found = leave_out(whole, choose(session, middle_s, middle_of(whole, 3)).recordings)
@@ -61,8 +61,11 @@ def test_a_stride_that_is_left_out_is_in_no_mean_and_is_told(session: Session, w
     assert left(found).strides.is_used.sum() == left(whole).strides.is_used.sum() - 2
     gone = np.flatnonzero(left(whole).strides.is_used)[2]
     assert left(found).strides.reason[gone] is Reason.BY_HAND
-    (told,) = [finding for finding in found.findings if finding.key == "strides_left_out_by_hand"]
-    assert (told.where, told.numbers) == ("walk 1", {"side": "left", "count": 2, "of": len(left(whole).strides)})
+    (reported,) = [finding for finding in found.findings if finding.key == "strides_left_out_by_hand"]
+    assert (reported.where, reported.numbers) == (
+        "walk 1",
+        {"side": "left", "count": 2, "of": len(left(whole).strides)},
+    )
     for later_s in (-0.3, 0.3):
         shifted = leave_out(whole, choose(session, middle_s + later_s, middle_of(whole, 3)).recordings)
         assert left(shifted).strides.reason == left(found).strides.reason
@@ -72,11 +75,11 @@ def test_a_stride_that_is_left_out_is_in_no_mean_and_is_told(session: Session, w
 def test_a_whole_analysis_and_one_from_what_is_known_leave_out_the_same(session: Session, whole: Analysis) -> None:
     """What is chosen changes nothing that was identified or measured."""
     chosen = choose(session, *(middle_of(whole, k) for k in range(7)))
-    anew, known = analyse(chosen), leave_out(whole, chosen.recordings)
-    assert left(anew).strides.reason == left(known).strides.reason
-    assert sorted(map(str, anew.findings)) == sorted(map(str, known.findings))
+    again, known = analyse(chosen), leave_out(whole, chosen.recordings)
+    assert left(again).strides.reason == left(known).strides.reason
+    assert sorted(map(str, again.findings)) == sorted(map(str, known.findings))
     np.testing.assert_array_equal(
-        walk_of(anew).joints[Joint.LEFT_KNEE].angle_rad, walk_of(known).joints[Joint.LEFT_KNEE].angle_rad
+        walk_of(again).joints[Joint.LEFT_KNEE].angle_rad, walk_of(known).joints[Joint.LEFT_KNEE].angle_rad
     )
 
 
@@ -90,7 +93,7 @@ def test_nothing_chosen_is_nothing_changed_and_what_comes_back_is_as_it_was(sess
 
 
 def test_a_stride_that_was_left_out_already_keeps_its_reason(session: Session, whole: Analysis) -> None:
-    """Who leaves out everything is told so, and what was found to be wrong with a stride goes on being told."""
+    """Who leaves out everything is reported so, and what was found to be wrong with a stride goes on being reported."""
     strides = left(whole).strides
     every = [float(a + b) / 2 for a, b in zip(strides.start_s, strides.end_s, strict=True)]
     found = leave_out(whole, choose(session, *every).recordings)
@@ -103,7 +106,7 @@ def test_a_stride_that_was_left_out_already_keeps_its_reason(session: Session, w
     assert not {"no_mean", "no_spread_of_side"} & keys
 
 
-def test_too_few_strides_after_a_choice_are_told_as_too_few(session: Session, whole: Analysis) -> None:
+def test_too_few_strides_after_a_choice_are_reported_as_too_few(session: Session, whole: Analysis) -> None:
     """The counts in the findings are those of the strides that are left."""
     used = int(left(whole).strides.is_used.sum())
     found = leave_out(whole, choose(session, *(middle_of(whole, k) for k in range(used - 2))).recordings)

@@ -1,4 +1,4 @@
-"""Is it known whether both legs' sensors tell one time, and withheld where it is not?"""
+"""Is it known whether both legs' sensors report one time, and not reported where it is not?"""
 
 from collections.abc import Mapping
 from dataclasses import replace
@@ -36,7 +36,7 @@ def clocks_of(
 ) -> LegClocks:
     """Of the walk, its sensors named `clocks`, the right foot's steps moved by `late_s`."""
     session, walk = walked
-    told = {site: SensorInfo(clock=clock) for site, clock in zip(FEET, clocks, strict=True)}
+    reported = {site: SensorInfo(clock=clock) for site, clock in zip(FEET, clocks, strict=True)}
     later_s = {Side.LEFT: -late_s, Side.RIGHT: late_s}
     steps = {
         side: LegSteps(
@@ -46,7 +46,7 @@ def clocks_of(
         )
         for side in Side
     }
-    return leg_clocks(replace(session, sensors=told), session.recordings[1], steps, lags_s or {})
+    return leg_clocks(replace(session, sensors=reported), session.recordings[1], steps, lags_s or {})
 
 
 def test_sensors_of_one_clock_are_read(walked: Walked) -> None:
@@ -58,25 +58,25 @@ def test_sensors_of_one_clock_are_read(walked: Walked) -> None:
 
 
 @pytest.mark.parametrize("clocks", [("", ""), ("receiver 1", ""), ("receiver 1", "receiver 2")])
-def test_clocks_that_nothing_ties_are_withheld(walked: Walked, clocks: tuple[str, str]) -> None:
+def test_clocks_that_nothing_ties_are_not_reported(walked: Walked, clocks: tuple[str, str]) -> None:
     found = clocks_of(walked, clocks)
-    assert (found.tie, found.gate, clocks_verdict(found)) == (ClockTie.UNKNOWN, ClockGate.UNKNOWN, Verdict.WITHHELD)
+    assert (found.tie, found.gate, clocks_verdict(found)) == (ClockTie.UNKNOWN, ClockGate.UNKNOWN, Verdict.NOT_REPORTED)
     assert np.isnan(found.value)
 
 
 @pytest.mark.parametrize(
-    ("lag_s", "verdict"), [(0.0049, Verdict.READ), (0.005, Verdict.WITHHELD), (-0.012, Verdict.WITHHELD)]
+    ("lag_s", "verdict"), [(0.0049, Verdict.READ), (0.005, Verdict.NOT_REPORTED), (-0.012, Verdict.NOT_REPORTED)]
 )
 def test_a_lag_inside_a_leg_speaks_against_any_clock(walked: Walked, lag_s: float, verdict: Verdict) -> None:
     found = clocks_of(walked, ("a", "a"), {Joint.LEFT_KNEE: 0.001, Joint.RIGHT_ANKLE: lag_s})
     assert clocks_verdict(found) is verdict
-    if verdict is Verdict.WITHHELD:
+    if verdict is Verdict.NOT_REPORTED:
         assert (found.gate, found.value, found.limit) == (ClockGate.LAG, abs(lag_s), 0.005)
 
 
 def test_uneven_steps_of_even_stances_are_two_clocks(walked: Walked) -> None:
     found = clocks_of(walked, ("a", "a"), late_s=-0.06)
-    assert (found.gate, clocks_verdict(found), found.limit) == (ClockGate.STEP_SHARE, Verdict.WITHHELD, 5.0)
+    assert (found.gate, clocks_verdict(found), found.limit) == (ClockGate.STEP_SHARE, Verdict.NOT_REPORTED, 5.0)
     assert found.value == found.step_share_percent > 55.0
     assert clocks_verdict(clocks_of(walked, ("a", "a"), late_s=-0.03)) is Verdict.READ
     limping = LegClocks(ClockTie.ONE_CLOCK, 0.0, 0.0, 60.0, -4.0)
@@ -85,7 +85,7 @@ def test_uneven_steps_of_even_stances_are_two_clocks(walked: Walked) -> None:
 
 @pytest.mark.parametrize(
     ("residual_s", "verdict", "limit_s"),
-    [(0.004, Verdict.READ, 0.005), (0.006, Verdict.CARE, 0.005), (0.021, Verdict.WITHHELD, 0.020)],
+    [(0.004, Verdict.READ, 0.005), (0.006, Verdict.CARE, 0.005), (0.021, Verdict.NOT_REPORTED, 0.020)],
 )
 def test_the_residual_decides(residual_s: float, verdict: Verdict, limit_s: float) -> None:
     found = LegClocks(ClockTie.HOST_CLOCK, residual_s, 0.0, float("nan"), float("nan"))

@@ -52,9 +52,9 @@ def test_a_stride_beyond_the_recording_is_not_known() -> None:
 
 
 def test_mean_and_sd_of_strides() -> None:
-    told = mean_cycle(np.stack([np.full(101, 1.0), np.full(101, 3.0)]))
-    np.testing.assert_allclose(told.mean, 2.0)
-    np.testing.assert_allclose(told.sd, np.sqrt(2.0))
+    reported = mean_cycle(np.stack([np.full(101, 1.0), np.full(101, 3.0)]))
+    np.testing.assert_allclose(reported.mean, 2.0)
+    np.testing.assert_allclose(reported.sd, np.sqrt(2.0))
     assert mean_cycle(np.empty((0, 101))).n == 0
 
 

@@ -107,7 +107,7 @@ def test_shuffling_and_walking_on_toes_gain_and_lose_no_event(manner: Manner, sp
     assert len(found) == len(truth.events.toe_off_s)
     late = (found.initial_contact_s - truth.events.initial_contact_s)[1:-1]
     assert np.abs(late).max() < 0.05
-    # a sensor that trembles on its foot tells a single stride's length less well than their mean
+    # a sensor that trembles on its foot reports a single stride's length less well than their mean
     single, mean = (0.2, 0.05) if tissue is Tissue.REAL else (0.05, 0.05)
     np.testing.assert_allclose(found.length_m[1:-1], truth.stride_lengths_m[1:-1], rtol=single)
     assert np.mean(found.length_m[1:-1]) == pytest.approx(np.mean(truth.stride_lengths_m[1:-1]), rel=mean)
@@ -146,7 +146,7 @@ def test_a_prosthetic_foots_toe_off_is_timed_by_its_sole(speed_m_s: float) -> No
     track = track_of(made.session.recordings[1].imu[FOOT], rest.gyr_rad_s)
     truth = made.truth.recordings["walk 1"].feet[Side.LEFT]
     assert np.abs(late_s(gait_of(track, is_rigid=True), truth, "toe_off_s")).max() < 0.020
-    assert late_s(gait_of(track), truth, "toe_off_s").min() > 0.025  # the pitch tells it late
+    assert late_s(gait_of(track), truth, "toe_off_s").min() > 0.025  # the pitch reports it late
 
 
 def test_a_forefoot_that_lands_first_is_turned_up_by_the_floor() -> None:

@@ -1,4 +1,4 @@
-"""Are the measures for fitting what they are said to be? Curves drawn by hand, and segments turned by hand."""
+"""Are the measures for fitting what they are stated to be? Curves drawn by hand, and segments turned by hand."""
 
 import numpy as np
 import pytest
@@ -15,7 +15,7 @@ TIME_S = np.linspace(0.0, 4.0, 401)
 
 
 def drawn(*knots: tuple[float, float]) -> FloatArray:
-    """One cycle (1, 101) of straight lines, degrees told, rad given."""
+    """One cycle (1, 101) of straight lines, degrees reported, rad given."""
     at, deg = np.array(knots).T
     return np.deg2rad(np.interp(PERCENT, at, deg))[None, :]
 

@@ -60,28 +60,28 @@ def walking_foot(rate_hz: float, downs: Sequence[Down], arrives_s: float = 0.62)
     return times_s, np.stack([zero, -rate, zero], axis=1), force
 
 
-def after_rise_s(told: Sequence[LiveEvent], event: FootEvent) -> FloatArray:
+def after_rise_s(reported: Sequence[LiveEvent], event: FootEvent) -> FloatArray:
     """When each event of one kind was, in s after the heel rise that was drawn."""
-    at_s = np.array([one.time_s for one in told if one.event is event])
+    at_s = np.array([one.time_s for one in reported if one.event is event])
     return (at_s - STANDING_S + 0.2) % STRIDE_S - 0.2
 
 
 @pytest.mark.parametrize("rate_hz", [60.0, 100.0, 200.0])
 def test_every_event_is_where_it_was_drawn(rate_hz: float) -> None:
     """A rate that grows with the power 1.75 of time begins where it was zero; the others lie on straight lines."""
-    told = LiveEvents().update(*walking_foot(rate_hz, [LOADING] * 4))
-    assert [one.event for one in told] == 4 * [
+    reported = LiveEvents().update(*walking_foot(rate_hz, [LOADING] * 4))
+    assert [one.event for one in reported] == 4 * [
         FootEvent.HEEL_RISE,
         FootEvent.TOE_OFF,
         FootEvent.INITIAL_CONTACT,
         FootEvent.FULL_CONTACT,
     ]
     step_s = 1.0 / rate_hz
-    np.testing.assert_allclose(after_rise_s(told, FootEvent.HEEL_RISE), 0.0, atol=0.003)
+    np.testing.assert_allclose(after_rise_s(reported, FootEvent.HEEL_RISE), 0.0, atol=0.003)
     # at 88 % of the peak as it was sampled, which is up to a sample beside the one that was drawn
-    np.testing.assert_allclose(after_rise_s(told, FootEvent.TOE_OFF), 0.2 + 0.12 * 0.08, atol=0.2 * step_s + 0.002)
-    np.testing.assert_allclose(after_rise_s(told, FootEvent.INITIAL_CONTACT), 0.60 + 0.69 * 0.02, atol=0.6 * step_s)
-    np.testing.assert_allclose(after_rise_s(told, FootEvent.FULL_CONTACT), 0.72, atol=0.004)
+    np.testing.assert_allclose(after_rise_s(reported, FootEvent.TOE_OFF), 0.2 + 0.12 * 0.08, atol=0.2 * step_s + 0.002)
+    np.testing.assert_allclose(after_rise_s(reported, FootEvent.INITIAL_CONTACT), 0.60 + 0.69 * 0.02, atol=0.6 * step_s)
+    np.testing.assert_allclose(after_rise_s(reported, FootEvent.FULL_CONTACT), 0.72, atol=0.004)
 
 
 def test_cadence_of_strides_of_1100_ms() -> None:
@@ -90,16 +90,16 @@ def test_cadence_of_strides_of_1100_ms() -> None:
     assert live.cadence_steps_min == pytest.approx(2 * 60.0 / STRIDE_S, abs=0.2)
 
 
-def test_a_touch_that_was_not_enough_for_a_landing_is_told_once_the_foot_lies_flat() -> None:
+def test_a_touch_that_was_not_enough_for_a_landing_is_reported_once_the_foot_lies_flat() -> None:
     """Half as hard as usual, and the foot still slides on at half its greatest speed; what follows is rest."""
     touch: Down = (0.56, 0.58, 0.61, 1.9, 0.1)
-    told = LiveEvents().update(*walking_foot(100.0, [LOADING, LOADING, LOADING, touch], arrives_s=0.72))
-    contacts_s = after_rise_s(told, FootEvent.INITIAL_CONTACT)
+    reported = LiveEvents().update(*walking_foot(100.0, [LOADING, LOADING, LOADING, touch], arrives_s=0.72))
+    contacts_s = after_rise_s(reported, FootEvent.INITIAL_CONTACT)
     assert len(contacts_s) == 4
     assert contacts_s[3] == pytest.approx(0.56 + 0.69 * 0.02, abs=0.006)
-    last = next(one for one in reversed(told) if one.event is FootEvent.INITIAL_CONTACT)
-    assert last.told_s - last.time_s > 0.1
-    assert after_rise_s(told, FootEvent.FULL_CONTACT)[3] == pytest.approx(0.61, abs=0.02)
+    last = next(one for one in reversed(reported) if one.event is FootEvent.INITIAL_CONTACT)
+    assert last.reported_s - last.time_s > 0.1
+    assert after_rise_s(reported, FootEvent.FULL_CONTACT)[3] == pytest.approx(0.61, abs=0.02)
 
 
 def test_way_and_speed_of_a_foot_whose_velocity_crept() -> None:

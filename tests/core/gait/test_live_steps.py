@@ -1,4 +1,4 @@
-"""Are the steps of the simulated patient told live, in time, and nothing else? A glance; `test_live` looks long."""
+"""Are the steps of the simulated patient reported live, in time, and nothing else? A glance; `test_live` looks long."""
 
 from collections.abc import Sequence
 
@@ -28,20 +28,20 @@ def usual() -> tuple[ImuBlock, TrueFootEvents]:
     return walked(1.19)
 
 
-def told_of(block: ImuBlock, axis: FloatArray | None = None) -> list[LiveEvent]:
+def reported_of(block: ImuBlock, axis: FloatArray | None = None) -> list[LiveEvent]:
     return LiveEvents(axis).update(block.time_s, block.gyr_rad_s, block.acc_m_s2)
 
 
-def times_s(told: Sequence[LiveEvent], event: str) -> FloatArray:
-    return np.array([one.time_s for one in told if one.event == event])
+def times_s(reported: Sequence[LiveEvent], event: str) -> FloatArray:
+    return np.array([one.time_s for one in reported if one.event == event])
 
 
 @pytest.mark.parametrize(("speed_m_s", "rate_hz"), [(0.5, 60.0), (1.19, 100.0), (1.8, 200.0)])
-def test_every_step_is_told_once_near_its_true_time(speed_m_s: float, rate_hz: float) -> None:
+def test_every_step_is_reported_once_near_its_true_time(speed_m_s: float, rate_hz: float) -> None:
     block, truth = walked(speed_m_s, rate_hz)
-    told = told_of(block)
+    reported = reported_of(block)
     for event in EVENTS:
-        true_s, found_s = getattr(truth, f"{event}_s"), times_s(told, event)
+        true_s, found_s = getattr(truth, f"{event}_s"), times_s(reported, event)
         assert len(true_s) - 1 <= len(found_s) <= len(true_s), event
         off_s = found_s[: len(true_s) - 1] - true_s[:-1]
         assert np.max(np.abs(off_s)) < 0.08, event
@@ -63,32 +63,32 @@ def test_a_body_that_turns_over_its_feet_loses_and_invents_no_contact(walk: Walk
     made = simulate(WalkerSettings(seed=0, recordings=(walk,), sites=sites))
     for site in sites[:2]:
         true_s = made.truth.recordings[walk.name].feet[site.leg_side].events.initial_contact_s
-        found_s = times_s(told_of(made.session.recordings[0].imu[site]), "initial_contact")
+        found_s = times_s(reported_of(made.session.recordings[0].imu[site]), "initial_contact")
         assert len(found_s) == len(true_s)
         assert np.max(np.abs(found_s - true_s)) < 0.1
 
 
-def test_events_are_told_within_a_tenth_of_a_second_but_for_the_first_step(
+def test_events_are_reported_within_a_tenth_of_a_second_but_for_the_first_step(
     usual: tuple[ImuBlock, TrueFootEvents],
 ) -> None:
     block, truth = usual
-    told = told_of(block)
-    assert all(one.told_s >= one.time_s - 1e-9 for one in told)
-    late = [one for one in told if one.told_s - one.time_s > 0.095]
-    assert late == [one for one in told if one.is_late]
+    reported = reported_of(block)
+    assert all(one.reported_s >= one.time_s - 1e-9 for one in reported)
+    late = [one for one in reported if one.reported_s - one.time_s > 0.095]
+    assert late == [one for one in reported if one.is_late]
     inner = [one for one in late if truth.initial_contact_s[0] < one.time_s < truth.toe_off_s[-1]]
     assert inner == []
-    assert [one.told_s for one in told] == sorted(one.told_s for one in told)
+    assert [one.reported_s for one in reported] == sorted(one.reported_s for one in reported)
 
 
 def test_events_follow_each_other_and_each_begins_its_phase(usual: tuple[ImuBlock, TrueFootEvents]) -> None:
     block, truth = usual
-    live, told, shown = LiveEvents(), [], []
+    live, reported, shown = LiveEvents(), [], []
     for k in range(len(block)):
-        told += live.update(block.time_s[k : k + 1], block.gyr_rad_s[k : k + 1], block.acc_m_s2[k : k + 1])
+        reported += live.update(block.time_s[k : k + 1], block.gyr_rad_s[k : k + 1], block.acc_m_s2[k : k + 1])
         shown.append(live.phase)
-    assert told == told_of(block)
-    inner = [str(one.event) for one in told if truth.initial_contact_s[0] < one.time_s < truth.toe_off_s[-1] - 0.3]
+    assert reported == reported_of(block)
+    inner = [str(one.event) for one in reported if truth.initial_contact_s[0] < one.time_s < truth.toe_off_s[-1] - 0.3]
     begin = inner.index("heel_rise")
     assert inner[begin : begin + 16] == list(EVENTS) * 4
     for k in range(1, 6):
@@ -122,7 +122,7 @@ def test_however_the_sensor_is_mounted_the_events_are_the_same(
     block, _ = usual
     turn = Rotation.from_rotvec(rotvec)
     turned = ImuBlock(block.sensor, block.time_s, turn.apply(block.gyr_rad_s), turn.apply(block.acc_m_s2))
-    one, other = told_of(block), told_of(turned)
+    one, other = reported_of(block), reported_of(turned)
     assert [e.event for e in one] == [e.event for e in other]
     np.testing.assert_allclose([e.time_s for e in one], [e.time_s for e in other], atol=1e-6)
 
@@ -133,7 +133,7 @@ def test_an_axis_that_is_given_helps_whichever_way_it_points(
 ) -> None:
     block, truth = usual
     axis = np.linalg.eigh(block.gyr_rad_s.T @ block.gyr_rad_s)[1][:, -1]
-    found_s = times_s(told_of(block, sign * axis), "toe_off")
+    found_s = times_s(reported_of(block, sign * axis), "toe_off")
     np.testing.assert_allclose(found_s[: len(truth.toe_off_s) - 1], truth.toe_off_s[:-1], atol=0.05)
 
 
@@ -147,8 +147,8 @@ def test_a_gap_costs_the_step_it_lies_in_and_no_other(
     is_lost = (block.time_s > from_s) & (block.time_s < from_s + lost_s)
     gyr = np.where(is_lost[:, None], np.nan, block.gyr_rad_s)
     kept = ~is_lost if how == "excluded" else np.ones(len(block), dtype=bool)
-    told = LiveEvents().update(block.time_s[kept], gyr[kept], block.acc_m_s2[kept])
-    contacts_s = times_s(told, "initial_contact")
+    reported = LiveEvents().update(block.time_s[kept], gyr[kept], block.acc_m_s2[kept])
+    contacts_s = times_s(reported, "initial_contact")
     apart_s = np.array([np.min(np.abs(contacts_s - at_s)) for at_s in truth.initial_contact_s[:-1]])
     assert (apart_s > 0.06).tolist() == [is_missed and k == 3 for k in range(len(apart_s))]
     assert len(contacts_s) <= len(truth.initial_contact_s)
@@ -157,8 +157,8 @@ def test_a_gap_costs_the_step_it_lies_in_and_no_other(
 def test_a_stamp_that_does_not_advance_is_passed_over(usual: tuple[ImuBlock, TrueFootEvents]) -> None:
     block, _ = usual
     twice = np.repeat(np.arange(len(block)), 2)
-    told = LiveEvents().update(block.time_s[twice], block.gyr_rad_s[twice], block.acc_m_s2[twice])
-    assert told == told_of(block)
+    reported = LiveEvents().update(block.time_s[twice], block.gyr_rad_s[twice], block.acc_m_s2[twice])
+    assert reported == reported_of(block)
 
 
 def test_standing_and_a_foot_in_the_air_are_not_walking() -> None:
@@ -166,8 +166,8 @@ def test_standing_and_a_foot_in_the_air_are_not_walking() -> None:
         seed=1, recordings=(Standing(duration_s=10.0), FreeMotion(duration_s=10.0)), sites=(SITE,)
     )
     standing, free = simulate(settings).session.recordings
-    assert told_of(standing.imu[SITE]) == []
-    assert len(times_s(told_of(free.imu[SITE]), "initial_contact")) <= 1
+    assert reported_of(standing.imu[SITE]) == []
+    assert len(times_s(reported_of(free.imu[SITE]), "initial_contact")) <= 1
 
 
 def test_a_heel_that_is_lifted_on_the_spot_has_not_stepped() -> None:
@@ -186,7 +186,7 @@ def test_a_heel_that_is_lifted_on_the_spot_has_not_stepped() -> None:
     assert np.isnan(live.cadence_steps_min)
 
 
-def test_a_foot_that_slides_flat_steps_late_but_is_told() -> None:
+def test_a_foot_that_slides_flat_steps_late_but_is_reported() -> None:
     """Steps of 0.3 m within 0.48 s, the foot level all the time."""
     t = np.arange(900) / 100.0
     since_s = np.clip(t - 1.5, 0.0, 6.0 - 1e-9)
@@ -194,8 +194,8 @@ def test_a_foot_that_slides_flat_steps_late_but_is_told() -> None:
     forward = 0.3 * 60.0 * u * (1.0 - u) * (1.0 - 2.0 * u) / 0.48**2
     acc = np.stack([forward, np.zeros_like(t), np.full_like(t, 9.81)], axis=1)
     rng = np.random.default_rng(5)
-    told = LiveEvents().update(t, 0.002 * rng.normal(size=acc.shape), acc + 0.03 * rng.normal(size=acc.shape))
+    reported = LiveEvents().update(t, 0.002 * rng.normal(size=acc.shape), acc + 0.03 * rng.normal(size=acc.shape))
     off_s = 1.5 + 1.2 * np.arange(5) + 0.72
-    np.testing.assert_allclose(times_s(told, FootEvent.TOE_OFF), off_s, atol=0.1)
-    np.testing.assert_allclose(times_s(told, FootEvent.INITIAL_CONTACT), off_s + 0.48, atol=0.1)
-    assert any(one.is_late for one in told)
+    np.testing.assert_allclose(times_s(reported, FootEvent.TOE_OFF), off_s, atol=0.1)
+    np.testing.assert_allclose(times_s(reported, FootEvent.INITIAL_CONTACT), off_s + 0.48, atol=0.1)
+    assert any(one.is_late for one in reported)

@@ -1,4 +1,4 @@
-"""Are landings and leavings found from the shank alone, and is it said that they are?"""
+"""Are landings and leavings found from the shank alone, and is it stated that they are?"""
 
 from dataclasses import replace
 
@@ -47,7 +47,7 @@ def test_contact_and_toe_off_are_found_from_the_shank(speed_m_s: float, rate_hz:
     assert found.is_from_shank
 
 
-def test_what_a_shank_cannot_tell_stays_unknown() -> None:
+def test_what_a_shank_cannot_show_stays_unknown() -> None:
     found, _ = events_of(WalkerSettings(recordings=(Standing(), Walk())))
     strides = strides_of([found])
     assert strides.is_used.any()

@@ -34,8 +34,8 @@ def foot(climb_m: list[float], late_s: float = 0.0, error_m: float = 0.0, scatte
     """A foot whose strides climb so, besides what its sensor adds to each and what scatters."""
     true_m = np.array(climb_m)
     length_m = np.select([np.abs(true_m) > 0.3, np.abs(true_m) > 0.1], [TREADS_M, 0.9], LEVEL_M)
-    told_m = true_m + error_m + RNG.normal(0.0, scatter_m, len(true_m))
-    return FootClimbs(2.0 + late_s + 1.2 * np.arange(len(true_m)), length_m, told_m)
+    reported_m = true_m + error_m + RNG.normal(0.0, scatter_m, len(true_m))
+    return FootClimbs(2.0 + late_s + 1.2 * np.arange(len(true_m)), length_m, reported_m)
 
 
 def ways(*feet: FootClimbs) -> list[list[int]]:

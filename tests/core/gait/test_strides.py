@@ -110,8 +110,8 @@ def test_an_unknown_heel_rise_costs_its_phases_and_no_stride() -> None:
     events = feet_events()
     rise, full = events.heel_rise_s.copy(), events.full_contact_s.copy()
     rise[4] = full[6] = np.nan
-    told = replace(events, heel_rise_s=rise, full_contact_s=full)
-    strides = strides_of([told])
+    reported = replace(events, heel_rise_s=rise, full_contact_s=full)
+    strides = strides_of([reported])
     assert strides.is_used.all()
     assert np.flatnonzero(np.isnan(strides.heel_rise_s)).tolist() == [3]
     assert np.flatnonzero(np.isnan(strides.full_contact_s)).tolist() == [6]
@@ -120,7 +120,7 @@ def test_an_unknown_heel_rise_costs_its_phases_and_no_stride() -> None:
     # in the stride without heel rise: loading, then unknown until swing; in that without full contact: unknown first
     at_s = events.initial_contact_s[[3, 3, 3, 6, 6, 6]] + [0.05, 0.3, 0.8, 0.05, 0.5, 0.8]
     expected = [Phase.LOADING, Phase.UNKNOWN, Phase.SWING, Phase.UNKNOWN, Phase.PRE_SWING, Phase.SWING]
-    assert [PHASES[k] for k in phases_at(at_s, [told])] == expected
+    assert [PHASES[k] for k in phases_at(at_s, [reported])] == expected
 
 
 def test_strides_do_not_reach_over_a_gap_between_stretches() -> None:
@@ -151,9 +151,9 @@ def test_a_step_needs_the_other_foot() -> None:
 
 
 def test_mean_and_sd_leave_out_what_is_not_known() -> None:
-    told = mean_and_sd(np.array([1.0, np.nan, 3.0]))
-    assert (told.mean, told.n) == (2.0, 2)
-    assert told.sd == pytest.approx(np.sqrt(2.0))
+    reported = mean_and_sd(np.array([1.0, np.nan, 3.0]))
+    assert (reported.mean, reported.n) == (2.0, 2)
+    assert reported.sd == pytest.approx(np.sqrt(2.0))
     assert np.isnan(mean_and_sd(np.array([1.0])).sd)
 
 

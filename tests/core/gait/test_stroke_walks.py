@@ -53,7 +53,7 @@ def test_what_a_reader_counts_is_found_and_used(test_data: Callable[[str], Path]
     found, of_shank = events_of(test_data("stroke_treadmill") / name, side)
     assert len(found) == COUNTED[name][side]
     assert np.all(np.diff(found.initial_contact_s) > 0.6)
-    # the shank, by other equations, tells each of them as well, but for one at either end
+    # the shank, by other equations, reports each of them as well, but for one at either end
     inner = found.initial_contact_s[1:-1]
     apart_s = np.abs(of_shank.initial_contact_s[:, None] - inner).min(axis=0)
     assert np.mean(apart_s < 0.3) > 0.95

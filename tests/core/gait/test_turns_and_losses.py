@@ -24,18 +24,18 @@ REACH_S = 1.2  # a contact needs the swing before it and the stance after it
 
 @dataclass
 class Count:
-    """Contacts that can be known, those of them found, all that were told, and those of them that were none."""
+    """Contacts that can be known, those of them found, all that were reported, and those of them that were none."""
 
     known: int = 0
     found: int = 0
-    told: int = 0
+    reported: int = 0
     invented: int = 0
 
-    def add(self, told_s: FloatArray, true_s: FloatArray, is_known: FloatArray, same_s: float = SAME_S) -> None:
-        apart_s = np.abs(told_s[:, None] - true_s)
+    def add(self, reported_s: FloatArray, true_s: FloatArray, is_known: FloatArray, same_s: float = SAME_S) -> None:
+        apart_s = np.abs(reported_s[:, None] - true_s)
         self.known += int(np.sum(is_known))
         self.found += int(np.sum(apart_s.min(axis=0, initial=np.inf)[is_known] < same_s))
-        self.told += len(told_s)
+        self.reported += len(reported_s)
         self.invented += int(np.sum(apart_s.min(axis=1, initial=np.inf) > 2.0 * same_s))
 
 
@@ -47,7 +47,7 @@ def contacts_s(stretches: list[FootEvents]) -> FloatArray:
     return np.concatenate([np.empty(0), *(events.initial_contact_s for events in stretches)])
 
 
-def is_heard(time_s: FloatArray, at_s: FloatArray) -> FloatArray:
+def is_received(time_s: FloatArray, at_s: FloatArray) -> FloatArray:
     """Around which instants no gap is too long to be bridged."""
     gaps = np.flatnonzero(np.diff(time_s) > MAX_BRIDGED_GAP_S)
     away = (time_s[gaps + 1][:, None] < at_s - REACH_S) | (time_s[gaps][:, None] > at_s + REACH_S)
@@ -92,7 +92,7 @@ def test_contacts_on_the_straight_are_found_and_turns_left_out(loss: float, spee
             true_s = made.truth.recordings[walked.name].feet[side].events.initial_contact_s
             middle_s = 0.5 * (true_s[0] + true_s[-1])
             is_straight = np.abs(true_s - middle_s) > 2.5
-            count.add(contacts_s(stretches), true_s, is_straight & is_heard(walked.imu[site].time_s, true_s))
+            count.add(contacts_s(stretches), true_s, is_straight & is_received(walked.imu[site].time_s, true_s))
             strides = strides_of(stretches)
             in_turn = np.abs(0.5 * (strides.start_s + strides.end_s) - middle_s) < 0.8
             assert not any(strides.is_used[in_turn])
@@ -100,7 +100,7 @@ def test_contacts_on_the_straight_are_found_and_turns_left_out(loss: float, spee
                 assert strides.reason.count(Reason.TURN) >= 2
     assert count.known > 20
     assert count.found >= count.known - max(1.0, 0.01 * count.known)
-    assert count.invented <= max(1.0, 0.01 * count.told)
+    assert count.invented <= max(1.0, 0.01 * count.reported)
 
 
 @pytest.mark.parametrize(
@@ -116,11 +116,11 @@ def test_lost_packets_move_no_contact_of_people(test_data: Callable[[str], Path]
         for share in (0.02, 0.1):
             lossy = without_packets(block, share, rng)
             found = events_of(lossy, np.zeros(3))
-            # a landing of which samples are missing is told less well, and says so
-            count.add(contacts_s(found), whole_s, is_heard(lossy.time_s, whole_s), same_s=0.12)
+            # a landing of which samples are missing is reported less well, and reports it
+            count.add(contacts_s(found), whole_s, is_received(lossy.time_s, whole_s), same_s=0.12)
             sd_s = np.concatenate([events.sd_s[:, 2] for events in found])
             is_measured = np.concatenate([events.is_measured for events in found])
             assert sd_s[~is_measured].min(initial=np.inf) > 0.05
     assert count.known > 80
     assert count.found >= 0.99 * count.known
-    assert count.invented <= 0.01 * count.told
+    assert count.invented <= 0.01 * count.reported

@@ -15,7 +15,8 @@ from devices.simulation.walker import Standing, Walk, WalkerSettings, simulate
 
 @pytest.mark.endurance
 def test_the_seams_between_blocks_cost_no_stride_and_no_phase(monkeypatch: pytest.MonkeyPatch) -> None:
-    """Seams within a swing, and on landings, which the two blocks tell on either side of it or both on the far one."""
+    """Seams within a swing, and on landings, which the two blocks report on either side of it or both on the far
+    one."""
     recordings = (Standing(), Walk(strides=30))
     session = simulate(WalkerSettings(seed=4, recordings=recordings, sites=(Site.LEFT_FOOT, Site.RIGHT_SHANK))).session
     whole = analyse(session).recordings[0].gait

@@ -48,13 +48,13 @@ def walk_of(analysis: Analysis) -> RecordingAnalysis:
 
 
 def rewalked(analysis: Analysis, change: Callable[[RecordingAnalysis], RecordingAnalysis]) -> Analysis:
-    """With every walk changed, and judged anew."""
+    """With every walk changed, and judged again."""
     walks = tuple(change(one) if one.kind is RecordingKind.WALKING else one for one in analysis.recordings)
     return judged(replace(analysis, recordings=walks))
 
 
 def with_hip(analysis: Analysis, *joints: Joint, **change: Any) -> Analysis:
-    """With what was identified of some hips changed, and judged anew."""
+    """With what was identified of some hips changed, and judged again."""
 
     def changed(walk: RecordingAnalysis) -> RecordingAnalysis:
         hips = {

@@ -1,4 +1,4 @@
-"""What may be said of hips and pelvis: every gate closes where it must and nothing where it need not."""
+"""What may be stated about hips and pelvis: every gate closes where it must and nothing where it need not."""
 
 from dataclasses import replace
 
@@ -41,8 +41,10 @@ def test_where_nothing_is_wrong_hips_and_pelvis_are_read(analysis: Analysis) -> 
     walk = walk_of(analysis)
     for side in Side:
         for name in OF_HIPS:
-            wanted = Verdict.WITHHELD if name == "pelvis_tilt_range_deg" else Verdict.READ  # the walker's is 4 deg
-            assert assessment_of(walk.verdicts, side, name).verdict is wanted
+            required = (
+                Verdict.NOT_REPORTED if name == "pelvis_tilt_range_deg" else Verdict.READ
+            )  # the walker's is 4 deg
+            assert assessment_of(walk.verdicts, side, name).verdict is required
 
 
 @pytest.mark.parametrize(
@@ -55,13 +57,13 @@ def test_where_nothing_is_wrong_hips_and_pelvis_are_read(analysis: Analysis) -> 
         ({"centres_apart_m": -0.17}, "hips_apart"),
     ],
 )
-def test_a_hip_that_is_none_is_withheld_with_its_reason_and_the_other_is_read(
+def test_a_hip_that_is_none_is_not_reported_with_its_reason_and_the_other_is_read(
     analysis: Analysis, change: dict[str, object], gate: str
 ) -> None:
     verdicts = walk_of(with_hip(analysis, Joint.LEFT_HIP, **change)).verdicts
     assert gates(verdicts.joint(Joint.LEFT_HIP).shape) == [gate]
-    assert verdicts.joint(Joint.LEFT_HIP).height.verdict is Verdict.WITHHELD
-    assert assessment_of(verdicts, Side.LEFT, "hip_abduction_peak_deg").verdict is Verdict.WITHHELD
+    assert verdicts.joint(Joint.LEFT_HIP).height.verdict is Verdict.NOT_REPORTED
+    assert assessment_of(verdicts, Side.LEFT, "hip_abduction_peak_deg").verdict is Verdict.NOT_REPORTED
     assert verdicts.joint(Joint.RIGHT_HIP).shape.verdict is Verdict.READ
     assert verdicts.joint(Joint.LEFT_KNEE).shape.verdict is Verdict.READ
     assert verdicts.pelvis.verdict is Verdict.READ  # the other hip gives its frame
@@ -106,7 +108,7 @@ def test_a_hip_that_leans_on_a_knee_of_unknown_sign_has_no_height(analysis: Anal
     assert np.isfinite(np.array(hip_peaks_percent(walk, Side.LEFT))[:, used]).all()
 
 
-def test_a_tilt_is_told_over_five_degrees_alone(analysis: Analysis) -> None:
+def test_a_tilt_is_reported_over_five_degrees_alone(analysis: Analysis) -> None:
     found = walk_of(analysis).verdicts.pelvis_tilt
     assert gates(found) == ["pelvis_tilt"]
     assert found.reasons[0].limit == LIMITS.pelvis_tilt_deg
@@ -115,8 +117,8 @@ def test_a_tilt_is_told_over_five_degrees_alone(analysis: Analysis) -> None:
     assert side_mean(large, Side.LEFT, "pelvis_tilt_range_deg").found.mean > LIMITS.pelvis_tilt_deg
 
 
-@pytest.mark.parametrize(("deepest_deg", "wanted"), [(79.0, Verdict.READ), (81.0, Verdict.CARE)])
-def test_of_a_deep_hip_the_pelvis_is_read_with_care(analysis: Analysis, deepest_deg: float, wanted: Verdict) -> None:
+@pytest.mark.parametrize(("deepest_deg", "required"), [(79.0, Verdict.READ), (81.0, Verdict.CARE)])
+def test_of_a_deep_hip_the_pelvis_is_read_with_care(analysis: Analysis, deepest_deg: float, required: Verdict) -> None:
     def bent(walk: RecordingAnalysis) -> RecordingAnalysis:
         hip = walk.hips[Joint.LEFT_HIP]
         angle = hip.angle_rad.copy()
@@ -124,11 +126,11 @@ def test_of_a_deep_hip_the_pelvis_is_read_with_care(analysis: Analysis, deepest_
         return replace(walk, hips={**walk.hips, Joint.LEFT_HIP: replace(hip, angle_rad=angle)})
 
     found = walk_of(rewalked(analysis, bent)).verdicts.pelvis
-    assert found.verdict is wanted
-    assert gates(found) == (["hip_deep"] if wanted is Verdict.CARE else [])
+    assert found.verdict is required
+    assert gates(found) == (["hip_deep"] if required is Verdict.CARE else [])
 
 
-def test_a_hip_that_was_worn_and_not_found_says_so_and_one_not_worn_says_nothing(analysis: Analysis) -> None:
+def test_a_hip_that_was_worn_and_not_found_states_so_and_one_not_worn_states_nothing(analysis: Analysis) -> None:
     walk = walk_of(rewalked(analysis, lambda one: replace(one, hips={})))
     assert walk.verdicts.joint(Joint.LEFT_HIP) == HIP_NOT_FOUND
     without = rewalked(
@@ -141,15 +143,15 @@ def test_a_hip_that_was_worn_and_not_found_says_so_and_one_not_worn_says_nothing
     assert walk_of(without).verdicts.pelvis == walk_of(without).verdicts.pelvis_tilt == NOT_MEASURED
 
 
-def test_clocks_the_hips_do_not_tell_are_withheld_with_what_that_takes(analysis: Analysis) -> None:
+def test_clocks_the_hips_do_not_show_are_not_reported_with_what_that_takes(analysis: Analysis) -> None:
     def unknown(walk: RecordingAnalysis) -> RecordingAnalysis:
         assert walk.clocks is not None
-        untold = LegClock(float("nan"), float("nan"), ClockStatus.WITHHELD)
+        not_reported = LegClock(float("nan"), float("nan"), ClockStatus.NOT_REPORTED)
         clocks = replace(walk.clocks, tie=ClockTie.UNKNOWN, residual_s=float("nan"))
-        return replace(walk, clocks=clocks, leg_clock=untold)
+        return replace(walk, clocks=clocks, leg_clock=not_reported)
 
-    withheld = rewalked(analysis, unknown)
-    assert gates(walk_of(withheld).verdicts.between) == ["leg_clock"]
-    without = rewalked(withheld, lambda one: replace(one, leg_clock=None))
+    not_reported = rewalked(analysis, unknown)
+    assert gates(walk_of(not_reported).verdicts.between) == ["leg_clock"]
+    without = rewalked(not_reported, lambda one: replace(one, leg_clock=None))
     assert gates(walk_of(without).verdicts.between) == ["clocks"]
     assert walk_of(analysis).verdicts.between.verdict is Verdict.READ

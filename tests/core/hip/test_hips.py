@@ -49,7 +49,7 @@ def test_real_tissue_leaves_most_hips_within_three_degrees() -> None:
             sd_deg = np.rad2deg(hip.sd_rad[np.isfinite(hip.angle_rad)])
             errors_deg.append(np.std(error))
             held.append(np.mean(np.abs(error - error.mean()) < 2 * sd_deg))
-            assert walk.verdicts.joint(hip_of(side)).shape.is_told
+            assert walk.verdicts.joint(hip_of(side)).shape.is_reported
     assert np.median(errors_deg) < 3.0
     assert max(errors_deg) < 5.0
     assert np.mean(held) > 0.9
@@ -74,7 +74,7 @@ def test_one_clock_is_found_for_both_legs_and_used() -> None:
     assert np.rad2deg(np.nanstd(apart[200:-200])) < 0.5
 
 
-def test_clocks_that_are_told_to_be_one_are_not_moved() -> None:
+def test_clocks_that_are_reported_to_be_one_are_not_moved() -> None:
     _, analysis = analysed()
     clock = analysis.recordings[-1].leg_clock
     assert clock is not None
@@ -84,18 +84,18 @@ def test_clocks_that_are_told_to_be_one_are_not_moved() -> None:
 
 
 def test_a_short_walk_leaves_the_clocks_unknown() -> None:
-    wanted = replace(settings(late_s=0.04), recordings=(Standing(), Walk(strides=8)))
-    walk = analyse(simulate(wanted).session).recordings[-1]
+    required = replace(settings(late_s=0.04), recordings=(Standing(), Walk(strides=8)))
+    walk = analyse(simulate(required).session).recordings[-1]
     assert walk.leg_clock is not None
-    assert walk.leg_clock.status is ClockStatus.WITHHELD
+    assert walk.leg_clock.status is ClockStatus.NOT_REPORTED
     assert walk.leg_clock.applied_s == 0.0
-    assert walk.verdicts.between.verdict is Verdict.WITHHELD
+    assert walk.verdicts.between.verdict is Verdict.NOT_REPORTED
 
 
 def test_where_clocks_are_unknown_each_hip_stays_on_its_own_leg_s() -> None:
     """As its knee and its strides do: on the other leg's it would be 40 ms beside them."""
-    wanted = replace(settings(late_s=0.04), recordings=(Standing(), Walk(strides=8)))
-    made = simulate(wanted)
+    required = replace(settings(late_s=0.04), recordings=(Standing(), Walk(strides=8)))
+    made = simulate(required)
     walk = analyse(made.session).recordings[-1]
     assert walk.hips[Joint.RIGHT_HIP].identification.lag_s == pytest.approx(-0.04, abs=0.002)
     late = truth(made, Side.RIGHT, late_s=0.04)
@@ -104,7 +104,7 @@ def test_where_clocks_are_unknown_each_hip_stays_on_its_own_leg_s() -> None:
     assert np.std(flexion_error_deg(walk, truth(made, Side.LEFT), Side.LEFT)) < 0.4
 
 
-def test_the_pelvis_tells_its_obliquity_rotation_and_the_turn() -> None:
+def test_the_pelvis_shows_its_obliquity_rotation_and_the_turn() -> None:
     made, analysis = analysed()
     walk = analysis.recordings[-1]
     pelvis, moved = walk.pelvis, made.moved[-1]
@@ -126,8 +126,8 @@ def test_the_pelvis_tells_its_obliquity_rotation_and_the_turn() -> None:
 
 @pytest.mark.endurance
 def test_a_straight_walk_has_no_turn() -> None:
-    wanted = replace(settings(), recordings=(Standing(), Walk(strides=8)))
-    assert analyse(simulate(wanted).session).recordings[-1].turns == ()
+    required = replace(settings(), recordings=(Standing(), Walk(strides=8)))
+    assert analyse(simulate(required).session).recordings[-1].turns == ()
 
 
 def only(session: Session, *sites: Site) -> Session:
@@ -135,7 +135,7 @@ def only(session: Session, *sites: Site) -> Session:
     return replace(session, recordings=tuple(recordings))
 
 
-def test_without_a_pelvis_nothing_is_told_of_it() -> None:
+def test_without_a_pelvis_nothing_is_reported_of_it() -> None:
     made, _ = analysed()
     walk = analyse(only(made.session, *(s for s in made.session.sensors if s is not Site.PELVIS))).recordings[-1]
     assert (walk.hips, walk.pelvis, walk.turns, walk.leg_clock) == ({}, None, (), None)
@@ -157,7 +157,7 @@ def swapped(recording: Recording, one: Site, other: Site) -> Recording:
 
 
 @pytest.mark.endurance
-def test_legs_that_are_swapped_are_told_by_their_hips() -> None:
+def test_legs_that_are_swapped_are_reported_by_their_hips() -> None:
     made, _ = analysed()
     recordings = made.session.recordings
     for segment in ("thigh", "shank", "foot"):
@@ -165,18 +165,18 @@ def test_legs_that_are_swapped_are_told_by_their_hips() -> None:
     walk = analyse(replace(made.session, recordings=recordings)).recordings[-1]
     for side in Side:
         shape = walk.verdicts.joint(hip_of(side)).shape
-        assert shape.verdict is Verdict.WITHHELD
+        assert shape.verdict is Verdict.NOT_REPORTED
         assert "hips_apart" in {reason.gate for reason in shape.reasons}
 
 
 @pytest.mark.endurance
-def test_a_sensor_that_is_not_on_the_pelvis_is_told() -> None:
+def test_a_sensor_that_is_not_on_the_pelvis_is_reported() -> None:
     made, _ = analysed()
     recordings = tuple(swapped(one, Site.PELVIS, Site.LEFT_FOOT) for one in made.session.recordings)
     walk = analyse(replace(made.session, recordings=recordings)).recordings[-1]
     for side in Side:
         if (hip := walk.hips.get(hip_of(side))) is not None:
-            assert walk.verdicts.joint(hip_of(side)).shape.verdict is Verdict.WITHHELD
+            assert walk.verdicts.joint(hip_of(side)).shape.verdict is Verdict.NOT_REPORTED
             assert hip.identification.is_3d == np.isfinite(hip.abduction_rad).any()
     assert walk.leg_clock is None or walk.leg_clock.status is not ClockStatus.FOUND
 

@@ -36,7 +36,7 @@ def test_the_offset_is_how_much_later_the_right_leg_s_stamps_are() -> None:
 @pytest.mark.parametrize("side", Side)
 def test_a_doubt_about_either_leg_withholds_it(doubt: ThighClock, side: Side) -> None:
     found = leg_clock(doubt, GOOD, is_proven=False) if side is Side.LEFT else leg_clock(GOOD, doubt, is_proven=False)
-    assert found.status is ClockStatus.WITHHELD
+    assert found.status is ClockStatus.NOT_REPORTED
     assert np.isnan(found.sd_s)
     assert found.applied_s == 0.0
 
@@ -49,7 +49,7 @@ def test_what_tissue_may_be_and_what_is_proven_common_is_not_moved(offset_s: flo
     assert (leg_clock(GOOD, late, is_proven=False).applied_s == 0.0) == (offset_s < 0.01)
 
 
-def test_clocks_that_are_told_to_be_two_are_not_proven_by_their_stamps() -> None:
+def test_clocks_that_are_reported_to_be_two_are_not_proven_by_their_stamps() -> None:
     made, _ = analysed()
     sensors = {
         site: replace(info, clock="right" if site.side is Side.RIGHT else "left")

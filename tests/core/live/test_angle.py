@@ -215,21 +215,21 @@ def test_after_a_gap_the_angle_goes_on_within_a_second(
 ) -> None:
     site = joint.distal if is_distal else joint.proximal
     live = followed(rigid, joint, without(rigid.walk, site, 5.0, 5.6))
-    error, told = error_deg(rigid, joint, live), np.isfinite(live.angle_rad)
-    assert not np.any(told & (live.time_s > 5.05) & (live.time_s < 5.55))
+    error, reported = error_deg(rigid, joint, live), np.isfinite(live.angle_rad)
+    assert not np.any(reported & (live.time_s > 5.05) & (live.time_s < 5.55))
     after = live.time_s > 6.6
-    assert told[after].all()
+    assert reported[after].all()
     assert np.max(np.abs(error[after])) < limit_deg
-    assert np.all(np.abs(error[told]) < 3 * np.rad2deg(live.sd_rad[told]))
-    assert np.isfinite(live.sd_rad).tolist() == told.tolist()
+    assert np.all(np.abs(error[reported]) < 3 * np.rad2deg(live.sd_rad[reported]))
+    assert np.isfinite(live.sd_rad).tolist() == reported.tolist()
 
 
 @pytest.mark.parametrize("missing_from_s", [2.6, 3.4, 4.0])
 @pytest.mark.parametrize("which", ["rigid", "soft"])
-def test_after_a_jump_that_no_rate_told_the_angle_is_right_again_within_six_seconds(
+def test_after_a_jump_that_no_rate_reported_the_angle_is_right_again_within_six_seconds(
     request: pytest.FixtureRequest, which: str, missing_from_s: float
 ) -> None:
-    """A strap that was knocked, or rates that were cut off: a part of a stride is missing, and no stamp tells."""
+    """A strap that was knocked, or rates that were cut off: a part of a stride is missing, and no stamp reports."""
     one: LiveVisit = request.getfixturevalue(which)
     missing_s = 0.3
     stamps = next(iter(one.walk.imu.values())).time_s
@@ -253,10 +253,10 @@ def test_after_a_gap_without_a_known_centre_it_waits_for_the_vertical(rigid: Liv
     unknown = replace(rigid.calibrations[ANKLE], centre_proximal_m=None, centre_distal_m=None)
     one = replace(rigid, calibrations={**rigid.calibrations, ANKLE: unknown})
     live = followed(one, ANKLE, without(rigid.walk, ANKLE.distal, 5.0, 5.6))
-    error, told = error_deg(one, ANKLE, live), np.isfinite(live.angle_rad)
-    assert not told[(live.time_s > 5.6) & (live.time_s < 6.6)].any()
-    assert told[live.time_s > 7.5].all()
-    assert np.mean(np.abs(error[told]) < 2 * np.rad2deg(live.sd_rad[told])) > 0.95
+    error, reported = error_deg(one, ANKLE, live), np.isfinite(live.angle_rad)
+    assert not reported[(live.time_s > 5.6) & (live.time_s < 6.6)].any()
+    assert reported[live.time_s > 7.5].all()
+    assert np.mean(np.abs(error[reported]) < 2 * np.rad2deg(live.sd_rad[reported])) > 0.95
 
 
 def test_short_gaps_are_left_open_and_change_little(soft: LiveVisit) -> None:

@@ -1,4 +1,4 @@
-"""A gyroscope bias that the first rest contradicts is set anew, once and on no other ground."""
+"""A gyroscope bias that the first rest contradicts is set again, once and on no other ground."""
 
 import numpy as np
 import pytest
@@ -33,7 +33,7 @@ def swinging(duration_s: float = 4.0) -> FloatArray:
 
 @pytest.mark.parametrize("kind", list(RateKind))
 @pytest.mark.parametrize("size", [1, 7, 10_000])
-def test_the_first_rest_after_a_movement_corrects_a_bias_and_says_by_how_much(size: int, kind: RateKind) -> None:
+def test_the_first_rest_after_a_movement_corrects_a_bias_and_states_by_how_much(size: int, kind: RateKind) -> None:
     gyr = np.concatenate([swinging(), rest(0.0)]) + rest(5.0)[0]
     samples = block(gyr)
     live = LiveSensors({Site.LEFT_SHANK: LiveSensor(RATE_HZ, NO_BIAS, kind)})
@@ -48,7 +48,7 @@ def test_the_first_rest_after_a_movement_corrects_a_bias_and_says_by_how_much(si
     assert one.at_s == pytest.approx(5.1, abs=0.2)
     rates, ticks = (np.concatenate([getattr(part, name) for part in found]) for name in ("gyr_rad_s", "tick"))
     assert np.rad2deg(np.abs(rates[-100:].mean(axis=0)).max()) < 0.1
-    assert sorted(set(np.diff(ticks).tolist())) == [1, 2]  # angles begin anew
+    assert sorted(set(np.diff(ticks).tolist())) == [1, 2]  # angles begin again
 
 
 @pytest.mark.parametrize("off_deg_s", [0.0, 1.5])

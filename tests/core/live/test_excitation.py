@@ -1,4 +1,4 @@
-"""Does the gauge fall with what the motion tells, stay open without it, and name the motion that is missing?
+"""Does the gauge fall with what the motion reports, stay open without it, and name the motion that is missing?
 
 A leg below a fixed hip with exact sensors, whose truth is known: what a motion adds is tried by adding it.
 """
@@ -150,7 +150,7 @@ def test_the_floor_is_in_the_honest_figures_and_not_on_the_gauge() -> None:
 
 
 @pytest.mark.parametrize("joint", [KNEE, ANKLE])
-def test_who_holds_still_is_told_nothing_but_to_move(joint: Joint) -> None:
+def test_who_holds_still_is_reported_nothing_but_to_move(joint: Joint) -> None:
     state = excited(joint, moved((STILL, 15.0)))
     assert state.moved_s == 0.0
     assert not state.is_closed
@@ -177,7 +177,7 @@ LONG = pytest.mark.endurance
         pytest.param(ANKLE, BEND_KNEE, id="a lower leg swinging, the foot stiff", marks=LONG),
     ],
 )
-def test_the_motion_that_is_asked_for_is_the_one_that_tells_most(joint: Joint, before: Motion) -> None:
+def test_the_motion_that_is_asked_for_is_the_one_that_shows_most(joint: Joint, before: Motion) -> None:
     so_far: tuple[Part, ...] = ((STILL, 1.0), (before, 6.0))
     asked = excited(joint, moved(*so_far, rate_hz=60.0)).missing
     left = {
@@ -225,7 +225,7 @@ def test_what_turns_across_a_prosthetic_joint_is_its_floor() -> None:
     assert floors[1] > 3 * floors[0]
 
 
-def test_a_stiff_joint_says_nothing_of_its_axis() -> None:
+def test_a_stiff_joint_states_nothing_of_its_axis() -> None:
     state = excited(KNEE, moved((STILL, 1.0), (CIRCLE_THIGH, 10.0)))
     assert np.rad2deg(state.axis_sd_rad) > 45.0
     assert state.centre_sd_m > 0.1
@@ -265,7 +265,7 @@ def test_a_late_clock_is_among_the_unknowns(late_s: float) -> None:
     assert wanting(KNEE, late) < 1.5 * wanting(KNEE, on_time)
 
 
-def test_a_gap_after_which_the_heading_starts_anew_costs_little() -> None:
+def test_a_gap_after_which_the_heading_starts_again_costs_little() -> None:
     samples = moved((STILL, 1.0), (ALL_AT_ONCE, 12.0))
     shank = samples[Site.LEFT_SHANK]
     turned = shank.signals.copy()
@@ -287,14 +287,14 @@ def test_a_sensor_that_was_silent_for_long_goes_on_with_another_heading() -> Non
     after = Rotation.from_rotvec([0.0, 0.0, 2.0]) * Rotation.from_quat(turned[1200:, :4], scalar_first=True)
     turned[1200:, :4] = after.as_quat(scalar_first=True)
     broken = replace(shank, signals=turned)
-    told = Excitation(KNEE)
+    reported = Excitation(KNEE)
     for k in range(0, len(thigh), 6):
         is_there = not silent.start <= k < silent.stop
-        told.update(thigh.part(slice(k, k + 6)), broken.part(slice(k, k + 6 if is_there else k)))
-        assert len(told._collector._ends[0]._samples) < 620
-    assert told.state.is_closed
-    assert told.state.sign_margin > 10.0
-    assert 14.0 < told.state.moved_s < 16.0
+        reported.update(thigh.part(slice(k, k + 6)), broken.part(slice(k, k + 6 if is_there else k)))
+        assert len(reported._collector._ends[0]._samples) < 620
+    assert reported.state.is_closed
+    assert reported.state.sign_margin > 10.0
+    assert 14.0 < reported.state.moved_s < 16.0
 
 
 def test_a_bridged_gap_is_not_used() -> None:
@@ -322,12 +322,12 @@ def test_matrices_are_those_of_the_quaternions() -> None:
 
 @pytest.mark.endurance
 def test_nine_of_ten_calibrations_lie_within_twice_what_was_predicted() -> None:
-    told = [one for seed in range(36) for one in stopped_calibrations(seed)]
+    reported = [one for seed in range(36) for one in stopped_calibrations(seed)]
     for quantity in QUANTITIES:
-        mine = [one for one in told if one.quantity == quantity]
+        mine = [one for one in reported if one.quantity == quantity]
         assert len(mine) > 30
         assert np.mean([one.is_covered for one in mine]) >= 0.9
     # one of 36 does not: a knee's centre is 41 mm off where 39 were predicted
-    assert np.mean([one.is_covered for one in told if one.is_closed]) >= 0.95
-    # the findings hardly ever take back what the gauge has said: 2 of 120, ankles whose clocks lie apart
-    assert np.mean([one.is_told for one in told if one.is_closed]) >= 0.95
+    assert np.mean([one.is_covered for one in reported if one.is_closed]) >= 0.95
+    # the findings hardly ever take back what the gauge has stated: 2 of 120, ankles whose clocks lie apart
+    assert np.mean([one.is_reported for one in reported if one.is_closed]) >= 0.95

@@ -1,4 +1,4 @@
-"""A whole free motion, live: gauges close, the weakest joint is asked for, late clocks are told."""
+"""A whole free motion, live: gauges close, the weakest joint is asked for, late clocks are reported."""
 
 from collections.abc import Iterator, Mapping
 from dataclasses import replace
@@ -68,7 +68,7 @@ def test_gauges_close_while_the_leg_circles(states: list[FreeMotionState]) -> No
     assert all(state.moved_s > 10.0 for state in states[-1].joints.values())
 
 
-def test_no_lag_is_told_where_there_is_none(states: list[FreeMotionState]) -> None:
+def test_no_lag_is_reported_where_there_is_none(states: list[FreeMotionState]) -> None:
     assert states[-1].lags
     assert all(lag.verdict is LagVerdict.NONE for state in states for lag in state.lags.values())
     assert all(abs(lag.lag_s) < 0.005 for lag in states[-1].lags.values())
@@ -76,7 +76,7 @@ def test_no_lag_is_told_where_there_is_none(states: list[FreeMotionState]) -> No
 
 @pytest.mark.endurance
 @pytest.mark.parametrize(("late_s", "verdict"), [(0.03, LagVerdict.LAG), (0.12, LagVerdict.NOT_ONE_JOINT)])
-def test_a_late_clock_is_told_while_the_leg_moves(late_s: float, verdict: LagVerdict) -> None:
+def test_a_late_clock_is_reported_while_the_leg_moves(late_s: float, verdict: LagVerdict) -> None:
     lags = watched(made(late_s=late_s))[-1].lags
     assert {lag.verdict for lag in lags.values()} == {verdict}
     if verdict is LagVerdict.LAG:

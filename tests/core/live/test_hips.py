@@ -90,7 +90,7 @@ def between(block: ImuBlock, from_s: float, to_s: float) -> ImuBlock:
     return block.select(slice(*np.searchsorted(block.time_s, [from_s, to_s]).tolist()))
 
 
-def told(
+def reported(
     live: LiveWalk, blocks: Iterator[dict[Site, ImuBlock]] | Sequence[Mapping[Site, ImuBlock]]
 ) -> dict[Joint, FloatArray]:
     """Stamps, angles in degrees, their standard deviations, and whether they are provisional (4, n), of each hip."""
@@ -118,7 +118,7 @@ def true_deg(made: SimulatedSession, side: Side, time_s: FloatArray) -> FloatArr
 
 def test_a_live_hip_reads_what_its_bones_do_first_by_the_vertical_then_by_the_heading() -> None:
     made = walk()
-    for joint, (time_s, angle_deg, sd_deg, is_provisional) in told(
+    for joint, (time_s, angle_deg, sd_deg, is_provisional) in reported(
         live_walk(made), in_blocks(made.session.recordings[-1].imu, 0.15)
     ).items():
         error_deg = angle_deg - true_deg(made, joint.side, time_s)
@@ -135,10 +135,10 @@ def test_a_live_hip_reads_what_its_bones_do_first_by_the_vertical_then_by_the_he
 def test_blocks_of_any_size_and_order_say_the_same() -> None:
     made = walk()
     imu = {site: between(block, 0.0, 9.0) for site, block in made.session.recordings[-1].imu.items()}
-    at_once = told(live_walk(made), [imu])
+    at_once = reported(live_walk(made), [imu])
     one_by_one = [{site: part} for parts in in_blocks(imu, 0.13) for site, part in reversed(parts.items())]
     for blocks in (list(in_blocks(imu, 0.05)), one_by_one):
-        for joint, (time_s, angle_deg, sd_deg, _) in told(live_walk(made), blocks).items():
+        for joint, (time_s, angle_deg, sd_deg, _) in reported(live_walk(made), blocks).items():
             whole = at_once[joint][:, : len(time_s)]
             assert len(time_s) > 880
             assert np.allclose(whole[:3], [time_s, angle_deg, sd_deg], rtol=0, atol=1e-4)
@@ -148,9 +148,9 @@ def test_a_hip_that_is_found_amid_a_walk_is_shown_from_there_on() -> None:
     made = walk()
     live = live_walk(made, {})
     blocks = list(in_blocks(made.session.recordings[-1].imu, 0.1))
-    assert told(live, blocks[:80]) == {}
+    assert reported(live, blocks[:80]) == {}
     live.find_hips(true_hips(made))
-    time_s, angle_deg, _, is_provisional = told(live, blocks[80:120])[Joint.LEFT_HIP]
+    time_s, angle_deg, _, is_provisional = reported(live, blocks[80:120])[Joint.LEFT_HIP]
     assert time_s[0] >= 7.5
     assert not is_provisional[-1]  # the heading was followed before
     settled = time_s > time_s[0] + 2.0
@@ -160,13 +160,13 @@ def test_a_hip_that_is_found_amid_a_walk_is_shown_from_there_on() -> None:
 def test_other_frames_are_gone_over_to_without_a_jump() -> None:
     made = walk()
     live, blocks = live_walk(made), list(in_blocks(made.session.recordings[-1].imu, 0.1))
-    before = told(live, blocks[:60])[Joint.LEFT_HIP]
+    before = reported(live, blocks[:60])[Joint.LEFT_HIP]
     turned = {
         joint: replace(found, frame_distal=_pitched(0.2) @ found.frame_distal)
         for joint, found in true_hips(made).items()
     }
     live.find_hips(turned)
-    after = told(live, blocks[60:120])[Joint.LEFT_HIP]
+    after = reported(live, blocks[60:120])[Joint.LEFT_HIP]
     time_s, angle_deg = np.concatenate([before[:2], after[:2]], axis=1)
     error_deg = angle_deg - true_deg(made, Side.LEFT, time_s)
     assert np.max(np.abs(np.diff(error_deg))) < 0.5
@@ -183,15 +183,15 @@ def test_a_silent_pelvis_costs_its_hips_for_so_long_and_they_come_back() -> None
     imu = dict(made.session.recordings[-1].imu)
     pelvis = imu[Site.PELVIS]
     imu[Site.PELVIS] = pelvis.select((pelvis.time_s < 7.0) | (pelvis.time_s > 9.0))
-    time_s, angle_deg, _, is_provisional = told(live_walk(made), in_blocks(imu, 0.1))[Joint.LEFT_HIP]
+    time_s, angle_deg, _, is_provisional = reported(live_walk(made), in_blocks(imu, 0.1))[Joint.LEFT_HIP]
     known_s = time_s[np.isfinite(angle_deg)]
     assert not np.any((known_s > 7.05) & (known_s < 9.0))
-    assert is_provisional[(time_s > 9.5) & (time_s < 11.0)].all()  # its orientation has begun anew
+    assert is_provisional[(time_s > 9.5) & (time_s < 11.0)].all()  # its orientation has begun again
     late = time_s > 14.0
     assert np.std((angle_deg - true_deg(made, Side.LEFT, time_s))[late]) < 1.0
 
 
-def test_nothing_is_told_of_hips_without_a_sensor_on_the_pelvis_or_on_the_thigh() -> None:
+def test_nothing_is_reported_of_hips_without_a_sensor_on_the_pelvis_or_on_the_thigh() -> None:
     made = walk()
     imu = made.session.recordings[-1].imu
     for worn, expected in (
@@ -199,7 +199,7 @@ def test_nothing_is_told_of_hips_without_a_sensor_on_the_pelvis_or_on_the_thigh(
         ((Site.PELVIS, Site.LEFT_THIGH), {Joint.LEFT_HIP}),
     ):
         sensors = {site: sensor for site, sensor in sensors_of(made).items() if site in worn}
-        found = told(LiveWalk(sensors, {}, true_hips(made)), [{site: imu[site] for site in worn}])
+        found = reported(LiveWalk(sensors, {}, true_hips(made)), [{site: imu[site] for site in worn}])
         assert set(found) == expected
 
 

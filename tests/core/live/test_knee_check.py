@@ -32,7 +32,7 @@ def landings_s(strides: int) -> FloatArray:
 
 
 def doubts(angles: AngleSamples, contacts_s: Sequence[float] | FloatArray) -> list[bool]:
-    """After every tenth of a second, contacts told 0.1 s late."""
+    """After every tenth of a second, contacts reported 0.1 s late."""
     check, shown = KneeCheck(), []
     for k in range(0, len(angles), 10):
         now_s = angles.time_s[k : k + 10]
@@ -69,16 +69,16 @@ def test_doubt_ends_with_four_sound_strides_with_standing_and_with_a_gap_of_the_
     angles = knee(16)
     contacts_s = landings_s(16)[6:]
     assert not any(doubts(angles, contacts_s)[round(11.5 * STRIDE_S / 0.1) :])
-    stands = AngleSamples(angles.tick, angles.time_s, angles.angle_rad.copy(), angles.sd_rad)
-    stands.angle_rad[round(6 * STRIDE_S / 0.01) :] = np.deg2rad(5.0)
-    assert not doubts(stands, [])[-1]
+    is_there = AngleSamples(angles.tick, angles.time_s, angles.angle_rad.copy(), angles.sd_rad)
+    is_there.angle_rad[round(6 * STRIDE_S / 0.01) :] = np.deg2rad(5.0)
+    assert not doubts(is_there, [])[-1]
     angles.angle_rad[round(6 * STRIDE_S / 0.01)] = np.nan
     shown = doubts(angles, [])
     assert shown[round(5.9 * STRIDE_S / 0.1)]
     assert not shown[round(6.2 * STRIDE_S / 0.1)]
 
 
-def test_no_value_of_a_stride_is_told_of_a_doubtful_foot() -> None:
+def test_no_value_of_a_stride_is_reported_of_a_doubtful_foot() -> None:
     contacts = tuple(LiveEvent(FootEvent.INITIAL_CONTACT, at_s, at_s + 0.1) for at_s in (1.0, 2.1))
     for is_doubtful in (False, True):
         foot = LiveFoot(contacts, (), Phase.LOADING, 100.0, 1, is_doubtful=is_doubtful)

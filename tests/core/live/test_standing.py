@@ -1,4 +1,4 @@
-"""Standing still, told block by block: when it is done, who moved, who is silent."""
+"""Standing still, reported block by block: when it is done, who moved, who is silent."""
 
 from collections.abc import Iterator, Mapping
 from dataclasses import replace
@@ -9,7 +9,7 @@ import pytest
 
 from core.body import LEG_SITES, Site
 from core.calibration.rest import rest_of
-from core.live.standing import WANTED_S, LiveStanding, StandingState
+from core.live.standing import REQUIRED_S, LiveStanding, StandingState
 from core.samples import ImuBlock, Recording, RecordingKind
 from devices.simulation.walker import Standing as StandingRecording
 from devices.simulation.walker import WalkerSettings, simulate
@@ -52,7 +52,7 @@ def knocked(block: ImuBlock, at_s: float) -> ImuBlock:
 def test_three_still_seconds_are_enough_and_give_what_offline_finds(stood: Recording) -> None:
     states = watched(stood.imu)
     done = next(state for state in states if state.is_done)
-    assert done.still_s == pytest.approx(WANTED_S)
+    assert done.still_s == pytest.approx(REQUIRED_S)
     assert done.moved == ()
     assert done.silent == ()
     for site, rest in done.rest.items():
@@ -62,7 +62,7 @@ def test_three_still_seconds_are_enough_and_give_what_offline_finds(stood: Recor
         np.testing.assert_allclose(rest.acc_m_s2, whole.acc_m_s2, atol=0.05)
 
 
-def test_the_sensor_that_moved_is_named_and_the_count_begins_anew(stood: Recording) -> None:
+def test_the_sensor_that_moved_is_named_and_the_count_begins_again(stood: Recording) -> None:
     imu = {**stood.imu, Site.LEFT_SHANK: knocked(stood.imu[Site.LEFT_SHANK], 1.5)}
     states = watched(imu)
     moved = [state for state in states if state.moved]
@@ -92,7 +92,7 @@ def test_a_sensor_that_repeats_itself_is_not_still_but_silent(stood: Recording) 
     assert states[-1].silent == (Site.LEFT_THIGH,)
 
 
-def test_a_sensor_never_heard_is_silent(stood: Recording) -> None:
+def test_a_sensor_never_received_is_silent(stood: Recording) -> None:
     standing = LiveStanding([Site.LEFT_FOOT, Site.LEFT_SHANK])
     state = standing.update({Site.LEFT_SHANK: stood.imu[Site.LEFT_SHANK]})
     assert state.silent == (Site.LEFT_FOOT,)
@@ -114,7 +114,7 @@ def test_a_sensor_moves_just_when_its_movement_reaches_the_limit(stood: Recordin
     for state in watched(imu):
         assert state.moved == tuple(site for site in state.movement if state.movement[site] >= 1.0)
     assert set(state.movement) == set(LEG_SITES)
-    assert max(state.movement.values()) < 0.8  # the simulated patient stands well
+    assert max(state.movement.values()) < 0.8  # the simulated patient is well
 
 
 @pytest.mark.parametrize("block_s", [0.02, 6.0])

@@ -61,7 +61,7 @@ def hard_recording(seed: int) -> ImuBlock:
     return part(block, order)
 
 
-def test_samples_on_the_grid_are_told_at_once_and_as_they_are() -> None:
+def test_samples_on_the_grid_are_reported_at_once_and_as_they_are() -> None:
     block = block_of(3.7 + STEP_S * np.arange(200))
     even = taken(block)
     np.testing.assert_array_equal(even.tick, np.arange(200))
@@ -83,7 +83,7 @@ def test_what_comes_out_does_not_depend_on_the_blocks(seed: int, edges: list[int
 def test_lost_samples_are_bridged_as_offline() -> None:
     time_s = STEP_S * np.arange(1000)
     lost = np.random.default_rng(1).uniform(size=1000) < 0.05
-    lost[400:408] = True  # not told as measured
+    lost[400:408] = True  # not reported as measured
     lost[[0, 1, 2, -1, -2, -3]] = False
     block = block_of(time_s[~lost])
     even, (offline,) = taken(block), even_tracks(block)
@@ -125,7 +125,7 @@ def test_scattered_stamps_do_not_scatter_the_samples() -> None:
     assert np.std(np.diff(error[:, 0])) < 0.1 * np.std(np.diff(as_stamped[:, 0]))
 
 
-def test_a_sensor_slower_than_it_says_is_put_on_the_grid_it_says() -> None:
+def test_a_sensor_slower_than_it_states_is_put_on_the_grid_it_states() -> None:
     time_s = np.arange(2000) / 99.6
     even = taken(block_of(time_s))
     np.testing.assert_allclose(np.diff(even.time_s), STEP_S)

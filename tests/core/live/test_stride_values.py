@@ -46,14 +46,14 @@ def event(kind: FootEvent, time_s: float, delay_s: float = 0.05) -> LiveEvent:
     return LiveEvent(kind, time_s, time_s + delay_s)
 
 
-def told_by_knee(angle_deg: FloatArray, time_s: FloatArray, block: int = 3) -> list[StrideValue]:
+def reported_by_knee(angle_deg: FloatArray, time_s: FloatArray, block: int = 3) -> list[StrideValue]:
     """Of a left knee whose foot leaves at 0.05 s and lands at 0.5 s, in blocks of so many samples."""
     values, found = StrideValues(), list[StrideValue]()
     events = [event(OFF, 0.05), event(ON, 0.5)]
     for a in range(0, len(time_s), block):
         part = slice(a, a + block)
         until_s = float(time_s[part][-1])
-        due, events = [e for e in events if e.told_s <= until_s], [e for e in events if e.told_s > until_s]
+        due, events = [e for e in events if e.reported_s <= until_s], [e for e in events if e.reported_s > until_s]
         joint = LiveJoint(angles(time_s[part], angle_deg[part]), False)
         found += values.update(WalkingState({knee_of(Side.LEFT): joint}, {Side.LEFT: foot(*due)}))
     return [one for one in found if one.measure is TargetMeasure.KNEE_SWING_PEAK]
@@ -63,29 +63,29 @@ TIME_S = np.arange(0.0, 0.7, STEP_S)
 
 
 @pytest.mark.parametrize("block", [1, 3, 1000])
-def test_a_knees_peak_is_told_once_as_soon_as_it_has_passed(block: int) -> None:
-    (told,) = told_by_knee(swing_deg(TIME_S), TIME_S, block)
-    assert told.value == pytest.approx(60.0)
-    assert told.event_s == pytest.approx(0.2)
-    assert told.told_s == pytest.approx(0.23)  # 2 degrees of this curve are passed 22 ms after its peak
-    assert told.side is Side.LEFT
+def test_a_knees_peak_is_reported_once_as_soon_as_it_has_passed(block: int) -> None:
+    (reported,) = reported_by_knee(swing_deg(TIME_S), TIME_S, block)
+    assert reported.value == pytest.approx(60.0)
+    assert reported.event_s == pytest.approx(0.2)
+    assert reported.reported_s == pytest.approx(0.23)  # 2 degrees of this curve are passed 22 ms after its peak
+    assert reported.side is Side.LEFT
 
 
-def test_a_knee_that_hardly_falls_is_told_when_the_foot_lands() -> None:
-    (told,) = told_by_knee(np.full(len(TIME_S), 11.0), TIME_S)
-    assert told.value == pytest.approx(11.0)
-    assert told.told_s == pytest.approx(0.55)
+def test_a_knee_that_hardly_falls_is_reported_when_the_foot_lands() -> None:
+    (reported,) = reported_by_knee(np.full(len(TIME_S), 11.0), TIME_S)
+    assert reported.value == pytest.approx(11.0)
+    assert reported.reported_s == pytest.approx(0.55)
 
 
 def test_a_swing_whose_angle_is_not_known_throughout_has_no_value() -> None:
     angle_deg = swing_deg(TIME_S)
     angle_deg[15] = np.nan
-    assert told_by_knee(angle_deg, TIME_S) == []
+    assert reported_by_knee(angle_deg, TIME_S) == []
     silent = (TIME_S < 0.1) | (TIME_S > 0.17)
-    assert told_by_knee(swing_deg(TIME_S)[silent], TIME_S[silent]) == []
+    assert reported_by_knee(swing_deg(TIME_S)[silent], TIME_S[silent]) == []
     late = swing_deg(TIME_S)
     late[-5:] = np.nan  # after the foot has landed
-    assert len(told_by_knee(late, TIME_S)) == 1
+    assert len(reported_by_knee(late, TIME_S)) == 1
 
 
 def values_of(events: Sequence[tuple[Side, LiveEvent]], measure: TargetMeasure) -> list[StrideValue]:
@@ -96,11 +96,11 @@ def values_of(events: Sequence[tuple[Side, LiveEvent]], measure: TargetMeasure) 
     return [one for one in found if one.measure is measure]
 
 
-def test_stances_are_told_in_percent_of_the_other_legs_latest() -> None:
+def test_stances_are_reported_in_percent_of_the_other_legs_latest() -> None:
     left, right = Side.LEFT, Side.RIGHT
     walk = [(left, event(ON, 0.0)), (right, event(ON, 0.5)), (left, event(OFF, 0.6)), (right, event(OFF, 1.25))]
     walk += [(left, event(ON, 1.0)), (left, event(OFF, 1.66))]
-    walk.sort(key=lambda one: one[1].told_s)
+    walk.sort(key=lambda one: one[1].reported_s)
     one, two = values_of(walk, TargetMeasure.STANCE_RATIO)
     assert (one.side, two.side) == (right, left)
     assert one.value == pytest.approx(100 * 0.75 / 0.6)
@@ -167,7 +167,7 @@ def test_the_values_of_a_walk_are_those_of_the_bones(seed: int, tissue: Tissue, 
         assert rest is not None
         sensors[site] = LiveSensor(rate_hz, rest.gyr_rad_s)
     live, values = LiveWalk(sensors, analyse(made.session).calibrations[-1].joints), StrideValues()
-    told: list[StrideValue] = []
+    reported: list[StrideValue] = []
     end_s = max(float(block.time_s[-1]) for block in walk.imu.values())
     for a, b in pairwise(np.arange(0.0, end_s + 0.06, 0.03)):
         blocks = {}
@@ -176,20 +176,20 @@ def test_the_values_of_a_walk_are_those_of_the_bones(seed: int, tissue: Tissue, 
             blocks[site] = replace(
                 block, time_s=block.time_s[part], gyr_rad_s=block.gyr_rad_s[part], acc_m_s2=block.acc_m_s2[part]
             )
-        told += values.update(live.update(blocks))
+        reported += values.update(live.update(blocks))
     truth = made.truth.recordings["walk 1"]
     legs = made.moved[2].legs
     for side in Side:
         knee, events = truth.joints[knee_of(side)], truth.feet[side].events
         standing_deg = math.degrees(knee.standing_rad)
-        peaks = [one for one in told if one.side is side and one.measure is TargetMeasure.KNEE_SWING_PEAK]
-        strikes = [one for one in told if one.side is side and one.measure is TargetMeasure.FOOT_STRIKE]
+        peaks = [one for one in reported if one.side is side and one.measure is TargetMeasure.KNEE_SWING_PEAK]
+        strikes = [one for one in reported if one.side is side and one.measure is TargetMeasure.FOOT_STRIKE]
         assert len(peaks) >= len(events.initial_contact_s) - 1
         for off_s, on_s in zip(events.toe_off_s[1:-1], events.initial_contact_s[1:-1], strict=True):
             in_swing = (knee.time_s > off_s) & (knee.time_s < on_s)
             (peak,) = [one for one in peaks if off_s - 0.1 < one.event_s < on_s + 0.05]
             assert peak.value == pytest.approx(math.degrees(knee.angle_rad[in_swing].max()) - standing_deg, abs=3.0)
-            assert peak.told_s - peak.event_s < 0.08
+            assert peak.reported_s - peak.event_s < 0.08
             (strike,) = [one for one in strikes if abs(one.event_s - on_s) < 0.1]
             pitch = foot_pitch_deg(legs[side].rotations[2], legs[side].time_s, strike.event_s)
             assert strike.value == pytest.approx(pitch, abs=4.0)

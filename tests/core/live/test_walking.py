@@ -158,7 +158,7 @@ def test_one_late_sensor_delays_its_joints_and_changes_nothing(
             np.testing.assert_allclose(two, one, rtol=0, atol=1e-9, equal_nan=True)
 
 
-def test_a_strap_that_slips_is_told_during_the_walk(
+def test_a_strap_that_slips_is_reported_during_the_walk(
     made: SimulatedSession, sensors: dict[Site, LiveSensor], calibration: Mapping[Joint, JointCalibration]
 ) -> None:
     site, slip_s = Site.LEFT_SHANK, 11.0
@@ -170,15 +170,15 @@ def test_a_strap_that_slips_is_told_during_the_walk(
     imu = {one: walk_of(made).imu[one] for one in LEFT}
     imu[site] = replace(block, gyr_rad_s=gyr, acc_m_s2=acc)
     walking = LiveWalk({one: sensors[one] for one in LEFT}, calibration)
-    told = [(k * 0.033, walking.update(blocks).slips) for k, blocks in enumerate(in_blocks(imu, 0.033))]
-    first_s, (slip,) = next((now_s, slips) for now_s, slips in told if slips)
+    reported = [(k * 0.033, walking.update(blocks).slips) for k, blocks in enumerate(in_blocks(imu, 0.033))]
+    first_s, (slip,) = next((now_s, slips) for now_s, slips in reported if slips)
     assert slip.site is site
     assert slip.from_s == pytest.approx(slip_s, abs=5.0)
     assert first_s < slip_s + 16.0
-    assert told[-1][1] == (slip,)
+    assert reported[-1][1] == (slip,)
 
 
-def test_without_feet_or_calibration_it_tells_what_it_can(
+def test_without_feet_or_calibration_it_shows_what_it_can(
     made: SimulatedSession, sensors: dict[Site, LiveSensor], calibration: Mapping[Joint, JointCalibration]
 ) -> None:
     imu = walk_of(made).imu

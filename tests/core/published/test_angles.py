@@ -1,4 +1,4 @@
-"""Do eqs 10, 11, 14 and the twist share sign and zero on a hinge built from poses, and does eq 15 fuse as told?"""
+"""Do eqs 10, 11, 14 and the twist share sign and zero on a hinge built from poses, and does eq 15 fuse as reported?"""
 
 from collections.abc import Callable
 from dataclasses import replace
@@ -69,9 +69,9 @@ def test_eq_11_changes_as_the_angle_does(built: Built, bend: FloatArray) -> None
 def test_eq_14_is_the_angle_of_the_poses_without_drift(built: Built, bend: FloatArray) -> None:
     _, pair, j1, j2, o1, o2 = built
     found = angle_from_accelerations(pair, j1, j2, o1, o2)
-    told = np.isfinite(found)
-    assert np.count_nonzero(told) > 0.8 * len(pair)
-    np.testing.assert_allclose(wrap(found - bend)[told], 0.0, atol=2e-3)
+    reported = np.isfinite(found)
+    assert np.count_nonzero(reported) > 0.8 * len(pair)
+    np.testing.assert_allclose(wrap(found - bend)[reported], 0.0, atol=2e-3)
 
 
 def test_eq_14_is_silent_where_its_accelerations_point_along_the_axis(built: Built) -> None:
@@ -112,8 +112,8 @@ def test_turning_both_axes_turns_every_angle(built: Built) -> None:
 def test_eq_15_forgets_by_its_time_constant(step_s: float, tau_s: float) -> None:
     n = round((10 + 3 * tau_s) / step_s)
     jump_at = round(10 / step_s)
-    told = np.where(np.arange(n) >= jump_at, 0.3, 0.0)
-    found = fused_angle(np.zeros(n), told, step_s, tau_s)
+    reported = np.where(np.arange(n) >= jump_at, 0.3, 0.0)
+    found = fused_angle(np.zeros(n), reported, step_s, tau_s)
     after = found[jump_at + round(tau_s / step_s)]
     assert after == pytest.approx(0.3 * (1 - np.exp(-1)), rel=0.03)
     np.testing.assert_allclose(found[:jump_at], 0.0, atol=1e-12)
@@ -131,10 +131,10 @@ def test_a_bias_of_the_rates_leaves_the_documented_steady_offset(bias: float, st
 
 def test_eq_15_holds_its_correction_while_the_accelerations_are_silent() -> None:
     n = 2000
-    told = np.full(n, 0.4)
-    told[1000:1500] = np.nan
+    reported = np.full(n, 0.4)
+    reported[1000:1500] = np.nan
     rates = 0.1 * np.sin(np.arange(n) / 50)
-    found = fused_angle(rates, told + rates, 0.01, 2.0)
+    found = fused_angle(rates, reported + rates, 0.01, 2.0)
     np.testing.assert_allclose(found, 0.4 + rates, atol=1e-9)
 
 

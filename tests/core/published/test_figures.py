@@ -83,7 +83,7 @@ def test_curves_of_axes_that_pair_lie_on_each_other_and_those_of_reversed_ones_d
     np.testing.assert_allclose(np.abs(found.reversed_distal), np.abs(found.proximal), atol=1e-6)
 
 
-def test_without_movement_no_stretch_tells_the_pairing(hinge: Hinge) -> None:
+def test_without_movement_no_stretch_shows_the_pairing(hinge: Hinge) -> None:
     pair, j1, j2, _, _ = hinge
     still = replace(pair, g1=np.zeros_like(pair.g1), g2=np.zeros_like(pair.g2))
     assert projected_rates((still,), j1, j2) is None
@@ -114,7 +114,7 @@ def test_the_fused_angle_is_eq_15_and_stretches_are_kept_apart(hinge: Hinge) -> 
     assert found.from_rates_rad[0] == pytest.approx(found.fused_rad[0])
 
 
-def test_a_second_is_too_short_to_tell_a_drift(hinge: Hinge) -> None:
+def test_a_second_is_too_short_to_show_a_drift(hinge: Hinge) -> None:
     pair, j1, j2, o1, o2 = hinge
     short = int((MIN_DRIFT_S - 1.0) / pair.step_s)
     names = ("time_s", "g1", "g2", "a1", "a2", "dg1", "dg2", "earth_from_1", "earth_from_2", "is_measured", "is_known")

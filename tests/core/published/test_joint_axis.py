@@ -72,7 +72,7 @@ def test_the_axes_of_a_hinge_are_found_however_the_sensors_are_turned(
 
 
 @pytest.mark.parametrize("seed", range(3))
-def test_congruence_tells_whether_the_axes_point_the_same_way(make_person: "Callable[..., Person]", seed: int) -> None:
+def test_congruence_shows_whether_the_axes_point_the_same_way(make_person: "Callable[..., Person]", seed: int) -> None:
     person = make_person(seed=seed)
     pair = person.exact_pair(KNEE, duration_s=10.0)
     j1, j2 = (person.axis(site, KNEE) for site in (KNEE.proximal, KNEE.distal))
@@ -85,6 +85,6 @@ def test_congruence_tells_whether_the_axes_point_the_same_way(make_person: "Call
         assert clarity > 0.01
 
 
-def test_too_short_a_curve_tells_nothing() -> None:
+def test_too_short_a_curve_shows_nothing() -> None:
     z = np.array([0.0, 0.0, 1.0])
     assert signs_match(np.ones((10, 3)), np.ones((10, 3)), z, z, 0.01)[1] == 0.0

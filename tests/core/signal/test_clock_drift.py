@@ -1,4 +1,4 @@
-"""Is a clock that runs away from its neighbours' found in a walk, and none where all keep time?"""
+"""Is a clock that runs away from its adjacent ones' found in a walk, and none where all keep time?"""
 
 from dataclasses import replace
 

@@ -1,4 +1,4 @@
-"""Jumps of a clock are told from losses and from pauses by what the other sensors did meanwhile."""
+"""Jumps of a clock are distinguished from losses and from pauses by what the other sensors did meanwhile."""
 
 from collections.abc import Callable, Sequence
 from pathlib import Path
@@ -42,7 +42,7 @@ def test_a_clock_that_jumps_while_the_others_go_on_is_found(by_s: float) -> None
         (without(5.0, 15.0), [WALK_S]),  # out of reach
         (without(5.0, 15.0), [without(5.0, 15.0)]),  # a pause
         (jumped(10.0, 10_800.0), [jumped(10.0, 10_800.0)]),  # a pause for lunch
-        (jumped(10.0, 10_800.0), []),  # nothing tells
+        (jumped(10.0, 10_800.0), []),  # nothing reports
         (without(12.0, 17.0), [WALK_S[:1200]]),  # back for a while when the other was off
         (without(5.0, 5.9), [WALK_S[:500]]),
         (np.empty(0), [WALK_S]),

@@ -1,4 +1,4 @@
-"""Are two sensors brought to the same instants, and is eq 1 what it says?"""
+"""Are two sensors brought to the same instants, and is eq 1 what it states?"""
 
 from dataclasses import replace
 
@@ -52,8 +52,8 @@ def oriented_track(start_s: float, n: int, rate_hz: float, is_measured: BoolArra
     t = start_s + np.arange(n) / rate_hz
     half = 0.5 * t
     q = np.stack([np.cos(half), np.sin(half), 0 * t, 0 * t], axis=1)
-    heard = np.ones(n, dtype=bool) if is_measured is None else is_measured
-    return OrientedTrack(Track(start_s, 1 / rate_hz, signal(t), 9 + signal(t), None, None, heard), q)
+    received = np.ones(n, dtype=bool) if is_measured is None else is_measured
+    return OrientedTrack(Track(start_s, 1 / rate_hz, signal(t), 9 + signal(t), None, None, received), q)
 
 
 @pytest.mark.parametrize("lag_s", [0.0, 0.013, -0.04])
@@ -79,10 +79,10 @@ def test_sensors_that_hardly_overlap_are_no_pair() -> None:
     assert pair_up(one, oriented_track(1.5, 300, 100.0), 0.0) is not None
 
 
-def test_around_what_was_not_heard_the_angular_acceleration_is_unknown() -> None:
-    heard = np.ones(300, dtype=bool)
-    heard[100:106] = False
-    pair = pair_up(oriented_track(0.0, 300, 100.0), oriented_track(0.0, 300, 100.0, heard), 0.0)
+def test_around_what_was_not_received_the_angular_acceleration_is_unknown() -> None:
+    received = np.ones(300, dtype=bool)
+    received[100:106] = False
+    pair = pair_up(oriented_track(0.0, 300, 100.0), oriented_track(0.0, 300, 100.0, received), 0.0)
     assert pair is not None
     np.testing.assert_array_equal(np.flatnonzero(~pair.is_measured), np.arange(100, 106))
     np.testing.assert_array_equal(np.flatnonzero(~pair.is_known), [0, 1, *range(98, 108), 298, 299])

@@ -140,7 +140,7 @@ def test_hardly_any_samples_give_no_stretch(count: int) -> None:
     loss=st.floats(0.0, 0.6),
     holes=st.lists(st.tuples(st.floats(3.5, 8.0), st.floats(0.02, 1.0)), max_size=4),
 )
-def test_what_is_called_measured_was_heard_nearby(
+def test_what_is_called_measured_was_received_nearby(
     rate_hz: float, seed: int, loss: float, holes: list[tuple[float, float]]
 ) -> None:
     t = stamps(rate_hz)
@@ -151,12 +151,12 @@ def test_what_is_called_measured_was_heard_nearby(
     for track in tracks:
         assert np.isfinite(track.gyr_rad_s).all()
         assert np.isfinite(track.acc_m_s2).all()
-        told = track.time_s[track.is_measured]
-        after = np.clip(np.searchsorted(t, told - 0.501 * track.step_s), 0, len(t) - 1)
-        before = np.clip(np.searchsorted(t, told + 0.501 * track.step_s) - 1, 0, len(t) - 1)
+        reported = track.time_s[track.is_measured]
+        after = np.clip(np.searchsorted(t, reported - 0.501 * track.step_s), 0, len(t) - 1)
+        before = np.clip(np.searchsorted(t, reported + 0.501 * track.step_s) - 1, 0, len(t) - 1)
         assert np.all(t[after] - t[before] <= MAX_REPORTED_GAP_S + 1e-9)
-        heard = t[(t >= track.start_s - 1e-9) & (t <= track.end_s + 1e-9)]
-        nearest = np.round((heard - track.start_s) / track.step_s).astype(int)
+        received = t[(t >= track.start_s - 1e-9) & (t <= track.end_s + 1e-9)]
+        nearest = np.round((received - track.start_s) / track.step_s).astype(int)
         assert track.is_measured[nearest].all()
     for one, next_one in pairwise(tracks):
         assert one.end_s + MAX_BRIDGED_GAP_S < next_one.start_s + 1e-9
@@ -216,7 +216,7 @@ def test_quaternions_are_made_continuous_without_turning_anything() -> None:
     np.testing.assert_allclose(np.abs(np.sum(found * q, axis=1)), 1.0)
 
 
-def test_a_missing_orientation_holds_the_last_one_heard() -> None:
+def test_a_missing_orientation_holds_the_last_one_received() -> None:
     t = stamps(100.0)
     half = 0.3 * (t - t[0])
     q = np.stack([np.cos(half), 0 * half, np.sin(half), 0 * half], axis=1)

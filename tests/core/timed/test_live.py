@@ -1,4 +1,4 @@
-"""Is a timed test told live as its recording tells it, and what does a key mean?"""
+"""Is a timed test reported live as its recording reports it, and what does a key mean?"""
 
 import math
 from dataclasses import replace
@@ -21,8 +21,8 @@ BLOCK_S = 0.1
 TEN = TimedCourse(CourseKind.TEN_METRES, seed=2, speed_m_s=0.9, sites=FEET, tissue=Tissue.SOFT)
 
 
-class CourseHeard:
-    """Hears a course block by block, as a program does."""
+class CourseReceived:
+    """Receives a course block by block, as a program does."""
 
     def __init__(
         self, made: SimulatedCourse, protocol: TimedProtocol, sides: frozenset[Side] = frozenset(Side)
@@ -52,61 +52,61 @@ def ten_metres() -> SimulatedCourse:
 
 
 @pytest.mark.endurance
-def test_ten_metres_are_told_live_within_a_second_of_their_end(ten_metres: SimulatedCourse) -> None:
-    heard, truth = CourseHeard(ten_metres, TimedProtocol.TEN_METRES), ten_metres.truth
-    heard.hear_until(truth.passes_s(7.0))
-    now = heard.test.state
+def test_ten_metres_are_reported_live_within_a_second_of_their_end(ten_metres: SimulatedCourse) -> None:
+    received, truth = CourseReceived(ten_metres, TimedProtocol.TEN_METRES), ten_metres.truth
+    received.hear_until(truth.passes_s(7.0))
+    now = received.test.state
     assert now.start_s == pytest.approx(truth.passes_s(2.0), abs=0.15)
     assert not now.is_over
     assert now.distance_m == pytest.approx(5.0, abs=0.8)  # to the last step that has landed
     assert [side for side, _ in now.steps[1:]] == [side.other for side, _ in now.steps[:-1]]
-    heard.hear_until(truth.passes_s(12.0) + 1.0)
-    over = heard.test.state
+    received.hear_until(truth.passes_s(12.0) + 1.0)
+    over = received.test.state
     assert over.is_over
     assert over.elapsed_s(99.0) == pytest.approx(truth.passes_s(12.0) - truth.passes_s(2.0), abs=0.2)
     assert over.distance_m == pytest.approx(10.0, abs=0.01)
 
 
 def test_nothing_begins_where_nobody_walks(ten_metres: SimulatedCourse) -> None:
-    heard = CourseHeard(ten_metres, TimedProtocol.TWO_MINUTES)
-    heard.hear_until(float(ten_metres.truth.contacts_s[0]) - 0.7)
-    before = heard.test.state
+    received = CourseReceived(ten_metres, TimedProtocol.TWO_MINUTES)
+    received.hear_until(float(ten_metres.truth.contacts_s[0]) - 0.7)
+    before = received.test.state
     assert (before.has_begun, before.is_still) == (False, True)
-    heard.hear_until(float(ten_metres.truth.contacts_s[0]) + 1.0)
-    now = heard.test.state
+    received.hear_until(float(ten_metres.truth.contacts_s[0]) + 1.0)
+    now = received.test.state
     assert now.start_s == pytest.approx(float(ten_metres.truth.contacts_s[0]), abs=0.05)
     assert not now.is_still
 
 
 @pytest.mark.endurance
 def test_a_key_before_the_motion_starts_and_one_after_ends(ten_metres: SimulatedCourse) -> None:
-    heard, truth = CourseHeard(ten_metres, TimedProtocol.TEN_METRES), ten_metres.truth
-    heard.hear_until(truth.passes_s(1.5))
-    first_s, last_s = heard.now_s, truth.passes_s(11.0)
-    assert heard.test.press(first_s) is KeyMeaning.START
-    heard.hear_until(last_s)
-    assert heard.test.state.start_s == first_s
-    assert heard.test.press(last_s) is KeyMeaning.END
-    assert heard.test.planned == PlannedTest(TimedProtocol.TEN_METRES, first_s, last_s)
-    heard.hear_until(last_s + 1.0)
-    assert heard.test.state.elapsed_s(99.0) == pytest.approx(last_s - first_s)
-    assert heard.test.press(last_s + 1.0) is None  # nothing is left to say
+    received, truth = CourseReceived(ten_metres, TimedProtocol.TEN_METRES), ten_metres.truth
+    received.hear_until(truth.passes_s(1.5))
+    first_s, last_s = received.now_s, truth.passes_s(11.0)
+    assert received.test.press(first_s) is KeyMeaning.START
+    received.hear_until(last_s)
+    assert received.test.state.start_s == first_s
+    assert received.test.press(last_s) is KeyMeaning.END
+    assert received.test.planned == PlannedTest(TimedProtocol.TEN_METRES, first_s, last_s)
+    received.hear_until(last_s + 1.0)
+    assert received.test.state.elapsed_s(99.0) == pytest.approx(last_s - first_s)
+    assert received.test.press(last_s + 1.0) is None  # nothing is left to say
 
 
 @pytest.mark.endurance
 def test_a_key_just_after_the_motion_has_started_means_the_start_and_one_in_the_run_out_the_tape(
     ten_metres: SimulatedCourse,
 ) -> None:
-    heard, truth = CourseHeard(ten_metres, TimedProtocol.TEN_METRES), ten_metres.truth
-    heard.hear_until(truth.passes_s(2.0) + 0.9)
-    begun = heard.test.state
+    received, truth = CourseReceived(ten_metres, TimedProtocol.TEN_METRES), ten_metres.truth
+    received.hear_until(truth.passes_s(2.0) + 0.9)
+    begun = received.test.state
     assert begun.has_begun
-    assert heard.test.press(heard.test.state.start_s + 1.0) is KeyMeaning.START
-    heard.hear_until(truth.passes_s(12.0) + 2.0)
-    over = heard.test.state
+    assert received.test.press(received.test.state.start_s + 1.0) is KeyMeaning.START
+    received.hear_until(truth.passes_s(12.0) + 2.0)
+    over = received.test.state
     assert over.is_over
-    assert heard.test.press(over.end_s + 0.5) is KeyMeaning.END
-    late = CourseHeard(ten_metres, TimedProtocol.TEN_METRES)
+    assert received.test.press(over.end_s + 0.5) is KeyMeaning.END
+    late = CourseReceived(ten_metres, TimedProtocol.TEN_METRES)
     late.hear_until(math.inf)
     assert late.test.press(late.test.state.end_s + 3.0) is None
 
@@ -114,12 +114,12 @@ def test_a_key_just_after_the_motion_has_started_means_the_start_and_one_in_the_
 @pytest.mark.endurance
 def test_a_silent_foot_takes_the_distance_and_the_time_goes_on() -> None:
     made = simulate_course(replace(TEN, silent_s={Site.LEFT_FOOT: (6.0, 60.0)}))
-    heard = CourseHeard(made, TimedProtocol.TWO_MINUTES)
-    heard.hear_until(5.8)
-    assert math.isfinite(heard.test.state.distance_m)
-    assert heard.test.state.silent == ()
-    heard.hear_until(9.0)
-    silent = heard.test.state
+    received = CourseReceived(made, TimedProtocol.TWO_MINUTES)
+    received.hear_until(5.8)
+    assert math.isfinite(received.test.state.distance_m)
+    assert received.test.state.silent == ()
+    received.hear_until(9.0)
+    silent = received.test.state
     assert silent.has_begun
     assert math.isnan(silent.distance_m)
     assert silent.silent == (Site.LEFT_FOOT,)
@@ -129,27 +129,27 @@ def test_a_silent_foot_takes_the_distance_and_the_time_goes_on() -> None:
 
 @pytest.mark.endurance
 @pytest.mark.parametrize("kind", [CourseKind.UP_AND_GO, CourseKind.SIT_TO_STAND])
-def test_tests_from_a_chair_are_told_live(kind: CourseKind) -> None:
+def test_tests_from_a_chair_are_reported_live(kind: CourseKind) -> None:
     made = simulate_course(draw_course(kind, 1))
-    heard = CourseHeard(made, TimedProtocol(kind.value))
-    heard.hear_until(float(made.truth.left_seat_s[0]) - 0.2)
-    before = heard.test.state
+    received = CourseReceived(made, TimedProtocol(kind.value))
+    received.hear_until(float(made.truth.left_seat_s[0]) - 0.2)
+    before = received.test.state
     assert not before.has_begun
     end_s = float(made.truth.seated_s[0] if kind is CourseKind.UP_AND_GO else made.truth.upright_s[4])
-    heard.hear_until(end_s - 1.0)
-    amid = heard.test.state
+    received.hear_until(end_s - 1.0)
+    amid = received.test.state
     assert (amid.has_begun, amid.is_over) == (True, False)
-    heard.hear_until(math.inf)
-    assert heard.test.state.end_s == pytest.approx(end_s, abs=0.1)
-    assert heard.test.state.elapsed_s(0.0) == pytest.approx(end_s - made.truth.left_seat_s[0], abs=0.15)
+    received.hear_until(math.inf)
+    assert received.test.state.end_s == pytest.approx(end_s, abs=0.1)
+    assert received.test.state.elapsed_s(0.0) == pytest.approx(end_s - made.truth.left_seat_s[0], abs=0.15)
 
 
 @pytest.mark.endurance
 def test_blocks_of_any_size_and_another_estimator_amid_the_walk_lose_no_step(ten_metres: SimulatedCourse) -> None:
-    whole, twice = (CourseHeard(ten_metres, TimedProtocol.TEN_METRES) for _ in range(2))
+    whole, twice = (CourseReceived(ten_metres, TimedProtocol.TEN_METRES) for _ in range(2))
     whole.hear_until(math.inf)
     twice.hear_until(10.0)
-    again = CourseHeard(ten_metres, TimedProtocol.TEN_METRES)  # its ticks begin anew
+    again = CourseReceived(ten_metres, TimedProtocol.TEN_METRES)  # its ticks begin again
     again.test, again.now_s = twice.test, twice.now_s
     again.hear_until(math.inf)
     assert len(again.test.state.steps) == pytest.approx(len(whole.test.state.steps), abs=2)

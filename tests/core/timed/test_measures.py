@@ -1,4 +1,4 @@
-"""Which one figure of a timed test stands in the course, and what does it rest on?"""
+"""Which one figure of a timed test is in the course, and what does it rest on?"""
 
 import math
 from dataclasses import replace
@@ -34,7 +34,7 @@ def test_speed_distance_or_time_by_the_test(protocol: TimedProtocol, figure: flo
     assert not math.isfinite(figure_of(replace(test, end_s=math.nan, distance_m=math.nan)))
 
 
-def test_only_a_way_that_the_feet_tell_rests_on_them() -> None:
+def test_only_a_way_that_the_feet_show_rests_on_them() -> None:
     by_feet = {TimedProtocol.TEN_METRES, TimedProtocol.TWO_MINUTES, TimedProtocol.SIX_MINUTES}
     for protocol in TimedProtocol:
         test = built_test(protocol)

@@ -1,4 +1,4 @@
-"""Are timed tests of the simulated patient told as they were, and what was not measured left out?"""
+"""Are timed tests of the simulated patient reported as they were, and what was not measured left out?"""
 
 from dataclasses import replace
 
@@ -68,7 +68,7 @@ def test_ten_metres_are_timed_without_a_key(ten_metres: SimulatedCourse) -> None
     assert found.missing == ()
 
 
-def test_keys_at_the_tape_win_and_the_sensors_own_distance_is_told(ten_metres: SimulatedCourse) -> None:
+def test_keys_at_the_tape_win_and_the_sensors_own_distance_is_reported(ten_metres: SimulatedCourse) -> None:
     truth = ten_metres.truth
     # one who presses late at the end: time as pressed, 10.00 m, and the sensors say that it was more
     keys_s = (truth.passes_s(2.0), truth.passes_s(12.5))
@@ -199,13 +199,13 @@ def test_every_test_is_defined_with_its_error_and_its_source_was_read() -> None:
 
 @pytest.mark.endurance
 @pytest.mark.parametrize("seed", [0, 3])
-def test_strides_on_stairs_are_told_with_their_heights_and_are_in_no_mean(seed: int) -> None:
+def test_strides_on_stairs_are_reported_with_their_heights_and_are_in_no_mean(seed: int) -> None:
     made = simulate_course(draw_course(CourseKind.STAIRS, seed))
     found = timed(made.session, TimedProtocol.STAIRS)
     for side in Side:
         true_m = [one for one in made.truth.climbs_m[side][1:].tolist() if abs(one) > 0.01]
-        told_m = [one.climb_m for one in found.stairs if one.side is side]
-        np.testing.assert_allclose(told_m, true_m, atol=0.08)
+        reported_m = [one.climb_m for one in found.stairs if one.side is side]
+        np.testing.assert_allclose(reported_m, true_m, atol=0.08)
     assert found.time_s == pytest.approx(made.truth.contacts_s[-1] - made.truth.contacts_s[0], abs=0.1)
     walk = analyse(made.session).recordings[-1]
     reasons = [reason for gait in walk.gait.values() for reason in gait.strides.reason]

@@ -1,4 +1,4 @@
-"""Turns, pauses and starts of made-up ways, rises of made-up tilts: what must be told, and what must not."""
+"""Turns, pauses and starts of made-up ways, rises of made-up tilts: what must be reported, and what must not."""
 
 from dataclasses import replace
 
@@ -46,7 +46,7 @@ def test_a_single_high_step_of_each_foot_is_on_stairs_only_in_the_test_on_stairs
 
 
 @pytest.mark.parametrize("angle_deg", [180.0, -180.0, 90.0])
-def test_a_turn_is_told_with_its_side_and_angle(angle_deg: float) -> None:
+def test_a_turn_is_reported_with_its_side_and_angle(angle_deg: float) -> None:
     (turn,) = turns_of(way_with(ramp(10.0, 2.5, angle_deg)))
     assert np.rad2deg(turn.angle_rad) == pytest.approx(angle_deg, abs=1.0)
     assert turn.middle_s == pytest.approx(11.25, abs=0.1)
@@ -76,7 +76,7 @@ def test_a_second_with_both_feet_down_is_a_pause_and_less_is_none() -> None:
     assert pauses_of(way_with(straight, hesitating)) == ()
 
 
-def test_no_pause_is_invented_where_a_foot_was_not_heard() -> None:
+def test_no_pause_is_invented_where_a_foot_was_not_received() -> None:
     contacts = np.concatenate([np.arange(2.0, 10.0, 0.6), np.arange(12.0, 20.0, 0.6)])
     silence = Silence(Site.LEFT_FOOT, 10.0, 11.5)
     assert pauses_of(way_with(np.zeros_like(TIME_S), contacts, (silence,))) == ()

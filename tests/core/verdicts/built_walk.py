@@ -19,7 +19,7 @@ from core.verdicts.model import Assessment, Verdict, Verdicts
 
 KNEE_RANGE_DEG, ANKLE_RANGE_DEG = 60.0, 25.0
 SURE_CLOCKS = LegClocks(ClockTie.ONE_CLOCK, 0.0, 0.0, 50.0, 0.0)
-Told = Mapping[Joint, JointCalibration]
+Reported = Mapping[Joint, JointCalibration]
 
 
 def calibration(joint: Joint, **changes: Any) -> JointCalibration:
@@ -147,22 +147,22 @@ def with_gaps(percent: float, of: SideGait | None = None, each_s: float = 0.1) -
     raise ValueError("these strides are too few for such gaps")
 
 
-def judged_walk(recording: RecordingAnalysis | None = None, told: Told | None = None) -> RecordingAnalysis:
+def judged_walk(recording: RecordingAnalysis | None = None, reported: Reported | None = None) -> RecordingAnalysis:
     """The walk with its verdicts."""
     recording = recording or walk()
-    return replace(recording, verdicts=verdicts_of(recording, told or calibrations(), ()))
+    return replace(recording, verdicts=verdicts_of(recording, reported or calibrations(), ()))
 
 
 def not_read(found: Verdicts) -> dict[str, tuple[str, tuple[str, ...]]]:
     """What of a walk cannot simply be read: the verdict and the gates of each quantity that has one."""
-    told: dict[str, Assessment] = {}
+    reported: dict[str, Assessment] = {}
     for joint, of_joint in found.joints.items():
-        told |= {f"{joint} {name}": getattr(of_joint, name) for name in ("shape", "height", "sign")}
+        reported |= {f"{joint} {name}": getattr(of_joint, name) for name in ("shape", "height", "sign")}
     for side, of_leg in found.legs.items():
-        told |= {f"{side} {name}": getattr(of_leg, name) for name in ("timing", "distance")}
-    told["between"] = found.between
+        reported |= {f"{side} {name}": getattr(of_leg, name) for name in ("timing", "distance")}
+    reported["between"] = found.between
     return {
         name: (str(one.verdict), tuple(reason.gate for reason in one.reasons))
-        for name, one in told.items()
+        for name, one in reported.items()
         if one.verdict is not Verdict.READ
     }

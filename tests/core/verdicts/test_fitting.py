@@ -1,4 +1,4 @@
-"""Does every measure for fitting rest on the right verdict, and is each told of in the one table?"""
+"""Does every measure for fitting rest on the right verdict, and is each informed of in the one table?"""
 
 import pytest
 
@@ -9,7 +9,7 @@ from core.verdicts.measurement_error import KINDS, ComparisonKind, sigma_of
 from core.verdicts.model import READ, Assessment, JointVerdicts, LegVerdicts, Verdict, Verdicts
 from core.verdicts.quantities import FITTING, assessment_of
 
-BAD = Assessment(Verdict.WITHHELD)
+BAD = Assessment(Verdict.NOT_REPORTED)
 INSTANTS = ("initial_contact", "mid_stance", "toe_off")
 # what each measure needs, written out
 LEANING = {f"{segment}_at_{instant}_deg" for segment in ("shank", "thigh") for instant in INSTANTS}
@@ -44,11 +44,11 @@ def verdicts(
         (verdicts(distance=BAD), FOOT),
     ],
 )
-def test_a_measure_is_withheld_where_what_it_rests_on_is(found: Verdicts, expected: set[str]) -> None:
-    assert {name for name in FITTING if not assessment_of(found, Side.LEFT, name).is_told} == expected
+def test_a_measure_is_not_reported_where_what_it_rests_on_is(found: Verdicts, expected: set[str]) -> None:
+    assert {name for name in FITTING if not assessment_of(found, Side.LEFT, name).is_reported} == expected
 
 
-def test_every_measure_is_defined_once_and_says_what_it_cannot() -> None:
+def test_every_measure_is_defined_once_and_states_what_it_cannot() -> None:
     assert {*LEANING, *TURNING, *FOOT, *KNEE_SIGNED, "foot_flat_percent"} == set(FITTING)
     assert set(FITTING) <= set(BY_COLUMN) <= {*FITTING, *columns_of(ParameterFile.STRIDES, ParameterFile.PEAKS)}
     assert len(BY_COLUMN) == len(MEASURES)

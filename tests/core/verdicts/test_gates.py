@@ -24,8 +24,8 @@ SHAPE_HEIGHT = ("shape", "height")
 LEG = ("timing", "distance")
 
 
-def gates_of(recording: RecordingAnalysis, told: Any = None, stiff: tuple[Side, ...] = ()) -> Verdicts:
-    return verdicts_of(recording, told or calibrations(), stiff)
+def gates_of(recording: RecordingAnalysis, reported: Any = None, stiff: tuple[Side, ...] = ()) -> Verdicts:
+    return verdicts_of(recording, reported or calibrations(), stiff)
 
 
 def left(**changes: Any) -> RecordingAnalysis:
@@ -69,7 +69,7 @@ JOINT_GATES = [
 
 
 @pytest.mark.parametrize(("gate", "changes", "expected"), JOINT_GATES)
-def test_what_a_calibration_says_hits_its_own_joint_alone(
+def test_what_a_calibration_states_hits_its_own_joint_alone(
     gate: str, changes: dict[str, Any], expected: dict[str, tuple[str, ...]]
 ) -> None:
     found = gates_of(walk(), calibrations(Joint.LEFT_KNEE, **changes))
@@ -78,13 +78,13 @@ def test_what_a_calibration_says_hits_its_own_joint_alone(
     }
 
 
-def test_a_reason_tells_what_was_found_and_what_would_have_passed() -> None:
+def test_a_reason_shows_what_was_found_and_what_would_have_passed() -> None:
     found = gates_of(walk(), calibrations(Joint.LEFT_KNEE, axis_sd_rad=np.deg2rad(7.0))).joint(Joint.LEFT_KNEE)
     (reason,) = found.shape.reasons
     assert (reason.limit, reason.unit) == (6.5, "deg")
     assert reason.value == pytest.approx(7.0)
     lag = gates_of(walk(), calibrations(Joint.LEFT_KNEE, lag_sd_s=0.02)).joint(Joint.LEFT_KNEE).shape.reasons
-    assert lag == (GateReason("lag", Verdict.WITHHELD, 20.0, 10.0, "ms"),)
+    assert lag == (GateReason("lag", Verdict.NOT_REPORTED, 20.0, 10.0, "ms"),)
     margin = {"is_sign_certain": False, "clinical_sign_margin": 0.1}
     (sign,) = gates_of(walk(), calibrations(Joint.LEFT_KNEE, **margin)).joint(Joint.LEFT_KNEE).sign.reasons
     assert (sign.value, sign.limit) == (0.1, 0.5)
@@ -101,10 +101,10 @@ def test_a_reason_tells_what_was_found_and_what_would_have_passed() -> None:
 def test_a_figure_that_would_have_passed_is_not_given_as_the_reason(
     gate: str, part: str, changes: dict[str, Any]
 ) -> None:
-    """As of a stiff knee, whose few degrees tell no sign however clearly they lean one way."""
+    """As of a stiff knee, whose few degrees report no sign however clearly they lean one way."""
     found = gates_of(walk(), calibrations(Joint.LEFT_KNEE, **changes)).joint(Joint.LEFT_KNEE)
     (reason,) = getattr(found, part).reasons
-    assert (reason.gate, reason.verdict, reason.value) == (gate, Verdict.WITHHELD, None)
+    assert (reason.gate, reason.verdict, reason.value) == (gate, Verdict.NOT_REPORTED, None)
 
 
 @pytest.mark.parametrize(
@@ -122,7 +122,7 @@ def test_sensors_that_are_not_of_one_joint_are_refused_by_the_gate_that_decided_
 ) -> None:
     found = gates_of(walk(), calibrations(Joint.LEFT_KNEE, is_same_joint=False, **changes)).joint(Joint.LEFT_KNEE)
     (reason,) = found.shape.reasons
-    assert (reason.gate, reason.verdict, reason.value, reason.limit) == (gate, Verdict.WITHHELD, *figures)
+    assert (reason.gate, reason.verdict, reason.value, reason.limit) == (gate, Verdict.NOT_REPORTED, *figures)
 
 
 @pytest.mark.parametrize(("margin", "disagreement"), [(1.6, 0.19), (3.2, 0.32), (9.0, 0.6)])
@@ -190,7 +190,7 @@ def test_a_height_that_no_walking_joint_has_leaves_its_shape(
 @pytest.mark.parametrize(
     ("used", "verdict"), [(10, ""), (9, "care"), (3, "care"), (2, "withheld"), (1, "withheld"), (0, "withheld")]
 )
-def test_few_strides_are_read_with_care_and_fewer_withheld(used: int, verdict: str) -> None:
+def test_few_strides_are_read_with_care_and_fewer_not_reported(used: int, verdict: str) -> None:
     found = not_read(gates_of(left(left_out=12 - used)))
     expected = {}
     if verdict:
@@ -292,7 +292,7 @@ def test_a_strap_that_slips_costs_what_comes_after_it() -> None:
     none = gates_of(with_slip(walk(), -np.inf, leaves=0))
     assert {verdict for verdict, _ in not_read(none).values()} == {"withheld"}
     assert none.leg(Side.RIGHT).timing.verdict is Verdict.READ
-    assert GateReason("strap", Verdict.WITHHELD) in none.joint(Joint.LEFT_KNEE).shape.reasons
+    assert GateReason("strap", Verdict.NOT_REPORTED) in none.joint(Joint.LEFT_KNEE).shape.reasons
 
 
 @pytest.mark.parametrize(("percent", "is_closed"), [(40.1, False), (39.9, True), (84.9, False), (85.1, True)])
@@ -371,9 +371,9 @@ def test_a_free_motion_has_joints_and_no_legs() -> None:
     assert found.legs == {}
 
 
-def test_several_gates_are_all_told_the_gravest_first() -> None:
-    told = calibrations(Joint.LEFT_KNEE, axis_sd_rad=np.deg2rad(7.0), sign_margin=1.0)
-    found = gates_of(left(left_out=3), told).joint(Joint.LEFT_KNEE).shape
+def test_several_gates_are_all_reported_the_gravest_first() -> None:
+    reported = calibrations(Joint.LEFT_KNEE, axis_sd_rad=np.deg2rad(7.0), sign_margin=1.0)
+    found = gates_of(left(left_out=3), reported).joint(Joint.LEFT_KNEE).shape
     assert [(reason.gate, str(reason.verdict)) for reason in found.reasons] == [
         ("pairing", "withheld"),
         ("axis", "care"),

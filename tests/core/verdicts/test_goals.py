@@ -21,7 +21,7 @@ APART = Goal(STANCE, GoalOf.BETWEEN, 2.0, DAY, is_at_most=True)
 
 
 @pytest.mark.parametrize(
-    ("goal", "value", "error", "wanted"),
+    ("goal", "value", "error", "required"),
     [
         (AT_LEAST, 50.7, 9.2, GoalStanding.SHORT),
         (AT_LEAST, 50.9, 9.2, GoalStanding.SHORT_INSIDE),
@@ -44,15 +44,15 @@ APART = Goal(STANCE, GoalOf.BETWEEN, 2.0, DAY, is_at_most=True)
         (AT_LEAST, math.nan, 9.2, GoalStanding.UNKNOWN),
     ],
 )
-def test_a_value_stands_to_its_goal_as_its_error_allows(
-    goal: Goal, value: float, error: float, wanted: GoalStanding
+def test_a_value_is_to_its_goal_as_its_error_allows(
+    goal: Goal, value: float, error: float, required: GoalStanding
 ) -> None:
-    assert standing(goal, value, error) is wanted
+    assert standing(goal, value, error) is required
 
 
-def test_reached_is_said_of_a_judged_value_at_the_goal_or_beyond_and_of_no_other() -> None:
-    said = {one for one in GoalStanding if one.is_reached}
-    assert said == {GoalStanding.REACHED, GoalStanding.REACHED_INSIDE}
+def test_reached_is_stated_of_a_judged_value_at_the_goal_or_beyond_and_of_no_other() -> None:
+    stated = {one for one in GoalStanding if one.is_reached}
+    assert stated == {GoalStanding.REACHED, GoalStanding.REACHED_INSIDE}
 
 
 def test_beyond_counts_towards_the_goal() -> None:

@@ -33,12 +33,12 @@ def test_with_six_sensors_and_a_sure_calibration_every_measure_may_be_a_target(m
     ],
 )
 def test_a_gated_knee_is_no_target_and_the_other_knee_is(changes: dict[str, Any], gate: str) -> None:
-    told = {**SURE, Joint.LEFT_KNEE: replace(SURE[Joint.LEFT_KNEE], **changes)}
-    found = assess_target(TargetMeasure.KNEE_SWING_PEAK, Side.LEFT, ALL, told, ())
-    assert not found.is_told
+    reported = {**SURE, Joint.LEFT_KNEE: replace(SURE[Joint.LEFT_KNEE], **changes)}
+    found = assess_target(TargetMeasure.KNEE_SWING_PEAK, Side.LEFT, ALL, reported, ())
+    assert not found.is_reported
     assert [reason.gate for reason in found.reasons] == [gate]
-    assert assess_target(TargetMeasure.KNEE_SWING_PEAK, Side.RIGHT, ALL, told, ()).is_told
-    assert assess_target(TargetMeasure.FOOT_STRIKE, Side.LEFT, ALL, told, ()).is_told
+    assert assess_target(TargetMeasure.KNEE_SWING_PEAK, Side.RIGHT, ALL, reported, ()).is_reported
+    assert assess_target(TargetMeasure.FOOT_STRIKE, Side.LEFT, ALL, reported, ()).is_reported
 
 
 def test_a_knee_without_a_calibration_or_without_a_foot_sensor_is_no_target() -> None:
@@ -46,15 +46,15 @@ def test_a_knee_without_a_calibration_or_without_a_foot_sensor_is_no_target() ->
     assert assess_target(knee, Side.LEFT, ALL, {}, ()).verdict is Verdict.NOT_MEASURED
     without = tuple(site for site in ALL if site is not Site.LEFT_FOOT)
     assert assess_target(knee, Side.LEFT, without, SURE, ()).verdict is Verdict.NOT_MEASURED
-    assert assess_target(knee, Side.RIGHT, without, SURE, ()).is_told
+    assert assess_target(knee, Side.RIGHT, without, SURE, ()).is_reported
 
 
 def test_stances_are_no_target_beside_a_prosthetic_foot_or_with_one_foot_sensor() -> None:
     found = assess_target(TargetMeasure.STANCE_RATIO, Side.RIGHT, ALL, SURE, (Side.LEFT,))
-    assert found.verdict is Verdict.WITHHELD
+    assert found.verdict is Verdict.NOT_REPORTED
     assert [reason.gate for reason in found.reasons] == ["toe_off"]
     one = (Site.LEFT_FOOT,)
     assert assess_target(TargetMeasure.STANCE_RATIO, Side.LEFT, one, SURE, ()).verdict is Verdict.NOT_MEASURED
-    assert assess_target(TargetMeasure.CADENCE, None, one, SURE, ()).is_told
+    assert assess_target(TargetMeasure.CADENCE, None, one, SURE, ()).is_reported
     assert assess_target(TargetMeasure.FOOT_STRIKE, Side.RIGHT, one, SURE, ()).verdict is Verdict.NOT_MEASURED
     assert assess_target(TargetMeasure.CADENCE, None, (Site.LEFT_SHANK,), SURE, ()).verdict is Verdict.NOT_MEASURED

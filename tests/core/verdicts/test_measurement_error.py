@@ -12,7 +12,7 @@ from core.verdicts.stride_means import MeanOfStrides, mean_of_strides
 
 ATTACHED, LEGS = ComparisonKind.ATTACHED, ComparisonKind.LEGS
 STRAPPINGS, VISITS = ComparisonKind.STRAPPINGS, ComparisonKind.VISITS
-TOLD = (READ, READ)
+REPORTED = (READ, READ)
 
 
 def sure(mean: float, n: int = 12) -> MeanOfStrides:
@@ -21,7 +21,7 @@ def sure(mean: float, n: int = 12) -> MeanOfStrides:
 
 
 def difference(name: str, kind: ComparisonKind, one: float, other: float, n: int = 12) -> Difference:
-    return compare(name, kind, sure(one, n), sure(other, n), TOLD)
+    return compare(name, kind, sure(one, n), sure(other, n), REPORTED)
 
 
 def test_one_mean_is_as_sure_as_its_strides_and_the_walks_parts() -> None:
@@ -39,7 +39,7 @@ def test_one_mean_is_as_sure_as_its_strides_and_the_walks_parts() -> None:
 
 
 def test_strides_that_follow_one_another_count_for_less() -> None:
-    """Five of 55, then five of 65: products of neighbours 4 x 25 - 25 + 4 x 25 = 175 of 250, so r = 0.7.
+    """Five of 55, then five of 65: products of adjacent ones 4 x 25 - 25 + 4 x 25 = 175 of 250, so r = 0.7.
 
     SD sqrt(250/9) = 5.27046; 5.27046 / sqrt(10) x sqrt(1.7/0.3) = 1.66667 x 2.38048 = 3.96746. Half of what the
     halves differ by is 5, of which chance makes sqrt(1.66667 x 3.96746): sqrt(25 - 6.61243) = 4.28807.
@@ -52,8 +52,9 @@ def test_strides_that_follow_one_another_count_for_less() -> None:
     assert mean_of_strides(np.arange(100.0)).standard_error == pytest.approx(12.6458, abs=1e-3)
 
 
-def test_a_walk_that_drifts_there_and_back_is_told_by_its_thirds() -> None:
-    """Four of 60, of 63 and of 60: both halves are 61. Of deviations -1 and 2 the squares sum to 24, neighbours to 14.
+def test_a_walk_that_drifts_there_and_back_is_reported_by_its_thirds() -> None:
+    """Four of 60, of 63 and of 60: both halves are 61. Of deviations -1 and 2 the squares sum to 24, adjacent ones to
+    14.
 
     r = 0.58333; SE^2 = 24/11 / 12 x 1.58333/0.41667 = 0.69091; chance sqrt(0.18182 x 0.69091) = 0.35443.
     The thirds: 0.25 x 3^2 - 2.5 x 0.35443 = 1.36393.
@@ -72,7 +73,7 @@ def test_stance_is_not_judged_between_legs_of_which_one_rolls_over_its_toe_off()
     ):
         for assessments in ((rolls_on, READ), (READ, rolls_on)):
             assert compare(name, kind, sure(70.0), sure(50.0), assessments).judgement is expected, name
-        assert compare(name, kind, sure(70.0), sure(50.0), TOLD).judgement is Judgement.EXCEEDS_ERROR, name
+        assert compare(name, kind, sure(70.0), sure(50.0), REPORTED).judgement is Judgement.EXCEEDS_ERROR, name
 
 
 @pytest.mark.parametrize("kind", ComparisonKind)
@@ -80,9 +81,9 @@ def test_stance_of_a_leg_that_rolls_over_its_toe_off_is_compared_with_nothing(ki
     rolls_on = assess([GateReason("toe_off", Verdict.CARE)])
     for name in ("stance_percent", "swing_percent"):
         found = compare(name, kind, sure(70.0), sure(50.0), (rolls_on, rolls_on))
-        assert (found.is_told, found.judgement) == (False, Judgement.NO_PUBLISHED_FIGURE)
-        assert compare(name, kind, sure(70.0), sure(50.0), TOLD).is_told
-    assert compare("knee_range_deg", kind, sure(70.0), sure(50.0), (rolls_on, rolls_on)).is_told
+        assert (found.is_reported, found.judgement) == (False, Judgement.NO_PUBLISHED_FIGURE)
+        assert compare(name, kind, sure(70.0), sure(50.0), REPORTED).is_reported
+    assert compare("knee_range_deg", kind, sure(70.0), sure(50.0), (rolls_on, rolls_on)).is_reported
 
 
 def test_strides_that_are_not_known_do_not_count_and_one_has_no_spread() -> None:
@@ -96,31 +97,31 @@ def test_strides_that_are_not_known_do_not_count_and_one_has_no_spread() -> None
 def test_what_the_clocks_leave_open_adds_to_it() -> None:
     found = mean_of_strides(np.array([59.0, 61.0] * 5), clock_error=0.8)
     assert found.uncertainty == pytest.approx(0.91997, abs=1e-5)  # sqrt(0.45426^2 + 0.8^2)
-    assert "clock" in compare("knee_range_deg", LEGS, found, found, TOLD).sources
+    assert "clock" in compare("knee_range_deg", LEGS, found, found, REPORTED).sources
 
 
 def test_the_error_of_a_difference_is_that_of_both_means_and_of_what_lies_between() -> None:
     """U^2 = 2 x 0.45426^2 + 2 x 1.0^2 = 2.41270; 1.96 x 1.55329 = 3.04444."""
     values = np.array([59.0, 61.0] * 5)
-    found = compare("knee_range_deg", ATTACHED, mean_of_strides(values + 3.0), mean_of_strides(values), TOLD)
+    found = compare("knee_range_deg", ATTACHED, mean_of_strides(values + 3.0), mean_of_strides(values), REPORTED)
     assert found.difference == pytest.approx(3.0)
     assert found.error == pytest.approx(3.04444, abs=1e-4)
     assert found.judgement is Judgement.INSIDE_ERROR
-    more = compare("knee_range_deg", ATTACHED, mean_of_strides(values + 3.1), mean_of_strides(values), TOLD)
+    more = compare("knee_range_deg", ATTACHED, mean_of_strides(values + 3.1), mean_of_strides(values), REPORTED)
     assert more.judgement is Judgement.EXCEEDS_ERROR
-    less = compare("knee_range_deg", ATTACHED, mean_of_strides(values), mean_of_strides(values + 3.1), TOLD)
+    less = compare("knee_range_deg", ATTACHED, mean_of_strides(values), mean_of_strides(values + 3.1), REPORTED)
     assert less.difference == pytest.approx(-3.1)
     assert less.judgement is Judgement.EXCEEDS_ERROR
 
 
-def test_walks_of_twenty_strides_with_the_sensors_left_on_tell_a_few_degrees_apart() -> None:
+def test_walks_of_twenty_strides_with_the_sensors_left_on_show_a_few_degrees_apart() -> None:
     """An SD of 2.5 deg, 2 points of stance, 0.05 m in 1.3 m: what may be missed is 6 deg, 3 points, 12 %."""
     noise = np.random.default_rng(1).normal(size=(2, 20))
     noise = (noise - noise.mean(axis=1, keepdims=True)) / noise.std(axis=1, ddof=1, keepdims=True)
 
     def error(name: str, mean: float, sd: float) -> float:
         one, other = (mean_of_strides(mean + sd * row) for row in noise)
-        return compare(name, ATTACHED, one, other, TOLD).error
+        return compare(name, ATTACHED, one, other, REPORTED).error
 
     assert 2.7719 < error("knee_range_deg", 60.0, 2.5) < 6.0
     assert 1.3859 < error("stance_percent", 62.0, 2.0) < 3.0
@@ -134,7 +135,7 @@ def test_what_another_speed_alone_may_make_of_an_angle_or_of_stance_is_no_differ
     """
 
     def error(name: str, apart_m_s: float) -> Difference:
-        return compare(name, ATTACHED, sure(60.0), sure(60.0), TOLD, speed_apart_m_s=apart_m_s)
+        return compare(name, ATTACHED, sure(60.0), sure(60.0), REPORTED, speed_apart_m_s=apart_m_s)
 
     assert error("knee_range_deg", 0.2).error == pytest.approx(5.12605, abs=1e-4)
     assert error("ankle_stance_dorsiflexion_deg", -0.2).error == pytest.approx(5.44584, abs=1e-4)
@@ -156,26 +157,26 @@ def test_what_another_speed_alone_may_make_of_an_angle_or_of_stance_is_no_differ
 def test_each_kind_of_figure_has_what_speed_makes_of_it(name: str, per_m_s: float) -> None:
     """What is larger than it is at one speed was added in squares: 1.96 x a metre per second's part."""
     apart, together = (
-        compare(name, ATTACHED, sure(60.0), sure(60.0), TOLD, speed_apart_m_s=apart).error for apart in (1.0, 0.0)
+        compare(name, ATTACHED, sure(60.0), sure(60.0), REPORTED, speed_apart_m_s=apart).error for apart in (1.0, 0.0)
     )
     assert math.sqrt(apart**2 - together**2) == pytest.approx(1.96 * per_m_s, rel=1e-6)
 
 
 def test_every_absolute_angle_is_judged_as_a_height_and_every_movement_as_a_shape() -> None:
-    """Told by what the columns are called, not by the table: a height needs 12.4 degrees, a shape 9.2."""
+    """Reported by what the columns are called, not by the table: a height needs 12.4 degrees, a shape 9.2."""
     heights = ["at_initial_contact", "peak_deg", "minimum", "terminal_extension", "plantarflexion", "dorsiflexion"]
     heights += ["at_mid_stance", "at_toe_off"]
     angles = [name for name in BY_COLUMN if name.endswith("_deg") and not name.startswith(("hip", "pelvis", "foot"))]
     assert len(angles) > 20
     for name in angles:
         is_height = any(word in name for word in heights)
-        found = compare(name, VISITS, sure(60.0), sure(60.0), TOLD)
+        found = compare(name, VISITS, sure(60.0), sure(60.0), REPORTED)
         assert found.error == pytest.approx(12.4 if is_height else 9.2, abs=1e-6), name
 
 
 def test_speeds_that_read_the_same_are_not_called_another_speed() -> None:
     def sources(apart_m_s: float) -> tuple[str, ...]:
-        return compare("knee_range_deg", ATTACHED, sure(60.0), sure(60.0), TOLD, speed_apart_m_s=apart_m_s).sources
+        return compare("knee_range_deg", ATTACHED, sure(60.0), sure(60.0), REPORTED, speed_apart_m_s=apart_m_s).sources
 
     assert "speed" not in sources(0.004)
     assert "speed" in sources(0.006)
@@ -229,7 +230,7 @@ VERIFIED |= {(ATTACHED, "stride_time_s"), (ATTACHED, "step_time_s")}
 def test_the_errors_are_those_of_the_table(kind: ComparisonKind, name: str) -> None:
     expected = TABLE[kind, name]
     mean = 1.0 if name.endswith(("_s", "_m", "m_s")) else 60.0
-    found = compare(name, kind, sure(mean), sure(mean), TOLD)
+    found = compare(name, kind, sure(mean), sure(mean), REPORTED)
     if expected is None:
         assert found.judgement is Judgement.NO_PUBLISHED_FIGURE
         assert math.isnan(found.error)
@@ -242,7 +243,7 @@ def test_the_errors_are_those_of_the_table(kind: ComparisonKind, name: str) -> N
 
 def test_halves_of_one_walk_differ_by_nothing_but_chance_and_drift() -> None:
     values = np.array([59.0, 61.0] * 5)
-    found = compare("knee_range_deg", ComparisonKind.HALVES, mean_of_strides(values), mean_of_strides(values), TOLD)
+    found = compare("knee_range_deg", ComparisonKind.HALVES, mean_of_strides(values), mean_of_strides(values), REPORTED)
     assert found.error == pytest.approx(1.25914, abs=1e-4)  # 1.96 x sqrt(2) x 0.45426
     assert found.sources == ("chance", "drift")
     assert not found.is_unverified
@@ -259,24 +260,24 @@ def test_halves_of_one_walk_differ_by_nothing_but_chance_and_drift() -> None:
         (VISITS, "knee_swing_peak_deg", ("chance", "drift", "walk_to_walk", "strapping", "day", "zero")),
     ],
 )
-def test_an_error_says_what_it_contains(kind: ComparisonKind, name: str, sources: tuple[str, ...]) -> None:
+def test_an_error_states_what_it_contains(kind: ComparisonKind, name: str, sources: tuple[str, ...]) -> None:
     assert difference(name, kind, 60.0, 60.0).sources == sources
 
 
 def test_a_sentence_needs_half_as_much_again_unless_the_error_is_a_published_upper_end() -> None:
     """The error of walks with the sensors left on is 2.772, and 1.5 of it 4.158."""
 
-    def told(apart: float, kind: ComparisonKind, *, is_goal: bool = False) -> tuple[bool, bool]:
-        found = compare("knee_range_deg", kind, sure(60.0 + apart), sure(60.0), TOLD, is_chosen_before=is_goal)
+    def reported(apart: float, kind: ComparisonKind, *, is_goal: bool = False) -> tuple[bool, bool]:
+        found = compare("knee_range_deg", kind, sure(60.0 + apart), sure(60.0), REPORTED, is_chosen_before=is_goal)
         return found.exceeds, found.is_worth_a_sentence
 
-    assert told(2.7, ATTACHED) == (False, False)
-    assert told(4.1, ATTACHED) == (True, False)
-    assert told(4.2, ATTACHED) == (True, True)
-    assert told(-4.2, ATTACHED) == (True, True)
-    assert told(2.8, ATTACHED, is_goal=True) == (True, True)
-    assert told(9.1, VISITS) == (False, False)
-    assert told(9.3, VISITS) == (True, True)
+    assert reported(2.7, ATTACHED) == (False, False)
+    assert reported(4.1, ATTACHED) == (True, False)
+    assert reported(4.2, ATTACHED) == (True, True)
+    assert reported(-4.2, ATTACHED) == (True, True)
+    assert reported(2.8, ATTACHED, is_goal=True) == (True, True)
+    assert reported(9.1, VISITS) == (False, False)
+    assert reported(9.3, VISITS) == (True, True)
     stance = difference("stance_percent", LEGS, 63.0, 60.0)  # 2.5 is no published figure: 3.75 are needed
     assert (stance.exceeds, stance.is_worth_a_sentence) == (True, False)
 
@@ -284,29 +285,29 @@ def test_a_sentence_needs_half_as_much_again_unless_the_error_is_a_published_upp
 def test_an_ankle_across_strappings_is_judged_and_never_worth_a_sentence() -> None:
     for kind in (LEGS, STRAPPINGS, VISITS):
         for name in ("ankle_range_deg", "ankle_stance_dorsiflexion_deg"):
-            found = compare(name, kind, sure(60.0), sure(20.0), TOLD, is_chosen_before=True)
+            found = compare(name, kind, sure(60.0), sure(20.0), REPORTED, is_chosen_before=True)
             assert (found.exceeds, found.is_unverified, found.is_worth_a_sentence) == (True, True, False)
     assert difference("ankle_range_deg", ATTACHED, 30.0, 20.0).is_worth_a_sentence
 
 
-def test_under_ten_strides_nothing_is_judged_and_under_three_nothing_is_told() -> None:
-    nine = compare("knee_range_deg", LEGS, sure(60.0, 10), sure(30.0, 9), TOLD)
+def test_under_ten_strides_nothing_is_judged_and_under_three_nothing_is_reported() -> None:
+    nine = compare("knee_range_deg", LEGS, sure(60.0, 10), sure(30.0, 9), REPORTED)
     assert (nine.difference, nine.judgement) == (30.0, Judgement.TOO_FEW_STRIDES)
     assert math.isnan(nine.error)
     assert not nine.is_worth_a_sentence
     assert difference("knee_range_deg", LEGS, 60.0, 30.0, 10).judgement is Judgement.EXCEEDS_ERROR
     for n in (0, 1, 2):
-        few = compare("knee_range_deg", LEGS, sure(60.0), sure(30.0, n), TOLD)
-        assert (few.judgement, few.is_told) == (Judgement.TOO_FEW_STRIDES, False)
-    assert difference("knee_range_deg", LEGS, 60.0, 30.0, 3).is_told
+        few = compare("knee_range_deg", LEGS, sure(60.0), sure(30.0, n), REPORTED)
+        assert (few.judgement, few.is_reported) == (Judgement.TOO_FEW_STRIDES, False)
+    assert difference("knee_range_deg", LEGS, 60.0, 30.0, 3).is_reported
 
 
-@pytest.mark.parametrize("gone", [Assessment(Verdict.WITHHELD), NOT_MEASURED])
-def test_what_is_withheld_has_no_difference(gone: Assessment) -> None:
+@pytest.mark.parametrize("gone", [Assessment(Verdict.NOT_REPORTED), NOT_MEASURED])
+def test_what_is_not_reported_has_no_difference(gone: Assessment) -> None:
     for pair in ((gone, READ), (READ, gone)):
         found = compare("knee_range_deg", LEGS, sure(60.0), sure(30.0), pair)
-        assert found.judgement is Judgement.WITHHELD
-        assert not found.is_told
+        assert found.judgement is Judgement.NOT_REPORTED
+        assert not found.is_reported
         assert math.isnan(found.error)
         assert not found.is_worth_a_sentence
         assert found.ratio == 0.0
@@ -326,7 +327,7 @@ def test_whiskers_that_lie_apart_differ_by_more_than_the_error() -> None:
     reach = whisker("knee_range_deg", ATTACHED, one)
     assert reach == pytest.approx(1.52222, abs=1e-4)  # half of the 3.04444 above
     for apart in (2 * reach - 0.01, 2 * reach + 0.01):
-        found = compare("knee_range_deg", ATTACHED, mean_of_strides(values + apart), one, TOLD)
+        found = compare("knee_range_deg", ATTACHED, mean_of_strides(values + apart), one, REPORTED)
         assert found.exceeds == (apart > 2 * reach)
 
 

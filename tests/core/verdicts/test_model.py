@@ -19,7 +19,7 @@ from core.verdicts.model import (
 )
 
 CARE = GateReason("drift", Verdict.CARE, 4.0, 3.0, "deg")
-GRAVE = GateReason("axis", Verdict.WITHHELD, 12.0, 9.0, "deg")
+GRAVE = GateReason("axis", Verdict.NOT_REPORTED, 12.0, 9.0, "deg")
 
 
 def test_the_words_are_those_of_the_files() -> None:
@@ -33,22 +33,22 @@ def test_without_a_reason_a_quantity_can_be_read() -> None:
 
 def test_the_gravest_reason_decides_and_comes_first() -> None:
     found = assess([CARE, GRAVE, CARE])
-    assert found.verdict is Verdict.WITHHELD
+    assert found.verdict is Verdict.NOT_REPORTED
     assert found.reasons == (GRAVE, CARE, CARE)
     assert assess([CARE]).verdict is Verdict.CARE
 
 
 @pytest.mark.parametrize(
-    ("verdict", "is_told"),
-    [(Verdict.READ, True), (Verdict.CARE, True), (Verdict.WITHHELD, False), (Verdict.NOT_MEASURED, False)],
+    ("verdict", "is_reported"),
+    [(Verdict.READ, True), (Verdict.CARE, True), (Verdict.NOT_REPORTED, False), (Verdict.NOT_MEASURED, False)],
 )
-def test_a_figure_is_told_while_it_is_not_withheld(verdict: Verdict, is_told: bool) -> None:
-    assert Assessment(verdict).is_told is is_told
+def test_a_figure_is_reported_while_it_is_not_not_reported(verdict: Verdict, is_reported: bool) -> None:
+    assert Assessment(verdict).is_reported is is_reported
 
 
 def test_what_needs_two_quantities_is_as_bad_as_the_worse_and_gives_each_reason_once() -> None:
     found = together([assess([CARE]), assess([GRAVE, CARE]), READ])
-    assert found.verdict is Verdict.WITHHELD
+    assert found.verdict is Verdict.NOT_REPORTED
     assert found.reasons == (GRAVE, CARE)
     assert together([READ, NOT_MEASURED]).verdict is Verdict.NOT_MEASURED
     assert together([READ, READ]) == READ
@@ -76,7 +76,7 @@ def test_walks_taken_together_are_as_bad_as_the_worst_of_them() -> None:
     knee, ankle = found.joint(Joint.LEFT_KNEE), found.joint(Joint.LEFT_ANKLE)
     assert (knee.shape.verdict, knee.height.verdict, knee.sign.verdict) == (
         Verdict.CARE,
-        Verdict.WITHHELD,
+        Verdict.NOT_REPORTED,
         Verdict.READ,
     )
     assert ankle == JointVerdicts(READ, READ, READ)  # only one of the walks has it

@@ -1,4 +1,4 @@
-"""Are the reference bands what their source says, and which of them may stand beside a walk?"""
+"""Are the reference bands what their source states, and which of them may stand beside a walk?"""
 
 from pathlib import Path
 
@@ -76,7 +76,7 @@ def test_the_same_speed_is_faster_for_shorter_legs() -> None:
     assert [class_of_speed(1.45, height_m) for height_m in (1.50, 1.95)] == ["fast", "comfortable"]
 
 
-def test_without_a_height_a_band_stands_only_where_all_adults_legs_agree() -> None:
+def test_without_a_height_a_band_is_only_where_all_adults_legs_agree() -> None:
     assert class_of_speed(1.20, None) == "comfortable"  # Froude 0.20 with legs of 0.75 m, 0.15 with 1.00 m
     assert class_of_speed(1.09, None) is None  # 0.16 and 0.12
     bands = choose_bands(GROUP, GROUPS, 1.09, AgeAndHeight())

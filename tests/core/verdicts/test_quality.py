@@ -65,7 +65,7 @@ def late(by_s: float) -> Change:
     return lambda b: replace(b, time_s=b.time_s + by_s)
 
 
-def told(found: Analysis) -> set[tuple[str, str]]:
+def reported(found: Analysis) -> set[tuple[str, str]]:
     return {(f.key, f.where) for f in found.findings}
 
 
@@ -98,7 +98,7 @@ methods = pytest.mark.parametrize(
 @pytest.mark.parametrize("n", [0, 1, 2, 5, 9, 99])
 def test_hardly_any_samples(knee_visit: Session, n: int, method: Method) -> None:
     found = analyse(changed(knee_visit, first(n)), method)
-    assert told(found) >= everywhere("too_few_samples", THIGH, SHANK)
+    assert reported(found) >= everywhere("too_few_samples", THIGH, SHANK)
     assert_no_angle(found)
 
 
@@ -106,7 +106,7 @@ def test_hardly_any_samples(knee_visit: Session, n: int, method: Method) -> None
 @pytest.mark.parametrize("n", [0, 1, 5])
 def test_one_broken_walk_leaves_the_others(person: "Person", knee_visit: Session, n: int, method: Method) -> None:
     found = analyse(changed(knee_visit, first(n), (SHANK,), "walk"), method)
-    assert ("too_few_samples", "walk, left_shank") in told(found)
+    assert ("too_few_samples", "walk, left_shank") in reported(found)
     assert np.abs(error_deg(person, found, "free motion")).max() < 2.0
     (walk,) = (r for r in found.recordings if r.name == "walk")
     assert KNEE not in walk.joints
@@ -122,14 +122,14 @@ def test_a_second_of_data_identifies_nothing(knee_visit: Session, n: int, method
 def test_all_zeros(knee_visit: Session, method: Method) -> None:
     for sites in ((THIGH, SHANK), (SHANK,)):
         found = analyse(changed(knee_visit, scaled(0.0, 0.0), sites), method)
-        assert told(found) >= everywhere("all_zero", *sites)
+        assert reported(found) >= everywhere("all_zero", *sites)
         assert_no_angle(found)
 
 
 @methods
 def test_a_gyroscope_that_never_turns(knee_visit: Session, method: Method) -> None:
     found = analyse(changed(knee_visit, scaled(gyr=0.0), (SHANK,)), method)
-    assert {("all_zero", "free motion, left_shank"), ("all_zero", "walk, left_shank")} <= told(found)
+    assert {("all_zero", "free motion, left_shank"), ("all_zero", "walk, left_shank")} <= reported(found)
     assert_no_angle(found)
 
 
@@ -147,7 +147,7 @@ def test_storms_of_nan_that_leave_enough(
     person: "Person", knee_visit: Session, share: float, key: str, method: Method
 ) -> None:
     found = analyse(changed(knee_visit, storm(share)), method)
-    assert told(found) >= everywhere(key, THIGH, SHANK)
+    assert reported(found) >= everywhere(key, THIGH, SHANK)
     for name in ("free motion", "walk"):
         error = error_deg(person, found, name)
         assert np.count_nonzero(np.isfinite(error)) > 700
@@ -160,28 +160,28 @@ def test_one_axis_that_is_missing_throughout(knee_visit: Session, method: Method
         return replace(b, acc_m_s2=np.where(np.arange(3) == 1, np.nan, b.acc_m_s2))
 
     found = analyse(changed(knee_visit, without_y, (SHANK,)), method)
-    assert told(found) >= everywhere("too_few_samples", SHANK)
+    assert reported(found) >= everywhere("too_few_samples", SHANK)
     assert_no_angle(found)
 
 
 @methods
 def test_acceleration_in_g(knee_visit: Session, method: Method) -> None:
     found = analyse(changed(knee_visit, scaled(acc=1 / 9.81), (SHANK,)), method)
-    assert told(found) >= everywhere("acc_in_g", SHANK)
+    assert reported(found) >= everywhere("acc_in_g", SHANK)
     assert_no_angle(found)
 
 
 @methods
 def test_acceleration_in_no_unit_known(knee_visit: Session, method: Method) -> None:
     found = analyse(changed(knee_visit, scaled(acc=100.0), (SHANK,)), method)
-    assert told(found) >= everywhere("acc_implausible", SHANK)
+    assert reported(found) >= everywhere("acc_implausible", SHANK)
     assert_no_angle(found)
 
 
 @methods
 def test_rates_in_degrees(knee_visit: Session, method: Method) -> None:
     found = analyse(changed(knee_visit, scaled(gyr=180 / np.pi), (SHANK,)), method)
-    assert {("rate_in_deg_s", "free motion, left_shank"), ("rate_in_deg_s", "walk, left_shank")} <= told(found)
+    assert {("rate_in_deg_s", "free motion, left_shank"), ("rate_in_deg_s", "walk, left_shank")} <= reported(found)
     assert_no_angle(found)
 
 
@@ -189,7 +189,7 @@ def test_rates_in_degrees(knee_visit: Session, method: Method) -> None:
 def test_two_sensors_with_the_same_data(leg_visit: Session, method: Method) -> None:
     twice = [replace(r, imu={**r.imu, FOOT: replace(r.imu[SHANK], sensor="foot")}) for r in leg_visit.recordings]
     found = analyse(replace(leg_visit, recordings=tuple(twice)), method)
-    assert told(found) >= {("same_data", f"{r.name}, left_shank, left_foot") for r in leg_visit.recordings}
+    assert reported(found) >= {("same_data", f"{r.name}, left_shank, left_foot") for r in leg_visit.recordings}
     assert_no_angle(found, KNEE)
     assert_no_angle(found, Joint.LEFT_ANKLE)
 
@@ -198,7 +198,7 @@ def test_two_sensors_with_the_same_data(leg_visit: Session, method: Method) -> N
 @pytest.mark.parametrize("by_s", [30.0, -30.0])
 def test_a_clock_half_a_minute_off(leg_visit: Session, by_s: float, method: Method) -> None:
     found = analyse(changed(leg_visit, late(by_s), (FOOT,)), method)
-    assert told(found) >= everywhere("clock_offset", FOOT)
+    assert reported(found) >= everywhere("clock_offset", FOOT)
     assert_no_angle(found, Joint.LEFT_ANKLE)
     (offset,) = {f.numbers["offset_s"] for f in found.findings if f.key == "clock_offset"}
     assert offset == pytest.approx(by_s, abs=0.1)
@@ -208,7 +208,7 @@ def test_a_clock_half_a_minute_off(leg_visit: Session, by_s: float, method: Meth
 @methods
 def test_two_clocks_that_disagree(knee_visit: Session, method: Method) -> None:
     found = analyse(changed(knee_visit, late(30.0), (SHANK,)), method)
-    assert told(found) >= everywhere("clock_offset", SHANK)
+    assert reported(found) >= everywhere("clock_offset", SHANK)
     assert_no_angle(found)
 
 
@@ -224,16 +224,16 @@ def test_two_clocks_that_disagree(knee_visit: Session, method: Method) -> None:
 )
 def test_sites_that_form_no_joint(person: "Person", sites: tuple[Site, ...], missing: set[str], method: Method) -> None:
     found = analyse(person.visit(sites, duration_s=4.0), method)
-    assert {where for key, where in told(found) if key == "missing_site"} == missing
+    assert {where for key, where in reported(found) if key == "missing_site"} == missing
     is_feet_only = all(site.segment is Segment.FOOT for site in sites)
-    assert ("feet_only" if is_feet_only else "no_joint", "session") in told(found)
+    assert ("feet_only" if is_feet_only else "no_joint", "session") in reported(found)
     assert all(not r.joints for r in found.recordings)
 
 
 @methods
 def test_a_missing_site_leaves_the_other_joint(person: "Person", knee_visit: Session, method: Method) -> None:
     found = analyse(knee_visit, method)
-    assert ("missing_site", "left_foot") in told(found)
+    assert ("missing_site", "left_foot") in reported(found)
     assert np.abs(error_deg(person, found, "walk")).max() < 1.0
 
 
@@ -254,7 +254,7 @@ def test_sessions_without_some_recordings(person: "Person", kinds: tuple[Recordi
 @pytest.mark.parametrize("sites", [(THIGH, SHANK), (FOOT,)])
 def test_only_standing(person: "Person", sites: tuple[Site, ...], method: Method) -> None:
     found = analyse(person.visit(sites, kinds=(S,)), method)
-    assert ("no_joint", "session") in told(found)
+    assert ("no_joint", "session") in reported(found)
     assert (found.recordings, found.calibrations) == ((), ())
 
 
@@ -262,7 +262,7 @@ def test_only_standing(person: "Person", sites: tuple[Site, ...], method: Method
 def test_standing_that_is_called_a_walk(knee_visit: Session, method: Method) -> None:
     standing = knee_visit.recordings[0]
     found = analyse(replace(knee_visit, recordings=(standing, replace(standing, name="walk", kind=W))), method)
-    assert ("too_little_motion", "left_knee") in told(found)
+    assert ("too_little_motion", "left_knee") in reported(found)
     assert_no_angle(found)
 
 
@@ -272,7 +272,7 @@ def test_nothing_at_all(knee_visit: Session, method: Method) -> None:
     bare = tuple(replace(r, imu={}) for r in knee_visit.recordings)
     for recordings in ((), discarded, bare):
         found = analyse(Session(recordings), method)
-        assert ("no_joint", "session") in told(found)
+        assert ("no_joint", "session") in reported(found)
 
 
 @methods
@@ -289,14 +289,14 @@ def test_a_few_infinite_values_are_missing_samples(person: "Person", knee_visit:
 @methods
 def test_infinite_values_throughout(knee_visit: Session, method: Method) -> None:
     found = analyse(changed(knee_visit, lambda b: replace(b, gyr_rad_s=np.full_like(b.gyr_rad_s, np.inf))), method)
-    assert told(found) >= everywhere("too_few_samples", THIGH, SHANK)
+    assert reported(found) >= everywhere("too_few_samples", THIGH, SHANK)
     assert_no_angle(found)
 
 
 @methods
-def test_clipped_rates_are_told(knee_visit: Session, method: Method) -> None:
+def test_clipped_rates_are_reported(knee_visit: Session, method: Method) -> None:
     clipped = changed(knee_visit, lambda b: replace(b, gyr_rad_s=np.clip(b.gyr_rad_s, -2, 2)), (SHANK,), "walk")
-    assert ("clipped", "walk, left_shank") in told(analyse(clipped, method))
+    assert ("clipped", "walk, left_shank") in reported(analyse(clipped, method))
 
 
 @methods
@@ -304,7 +304,7 @@ def test_walking_instead_of_standing_gives_no_zero(person: "Person", knee_visit:
     walk = knee_visit.recordings[2]
     moved = (replace(walk, name="standing", kind=S), *knee_visit.recordings[1:])
     found = analyse(replace(knee_visit, recordings=moved), method)
-    assert {("moved_while_standing", "standing, left_thigh"), ("gyro_bias_unknown", "left_knee")} <= told(found)
+    assert {("moved_while_standing", "standing, left_thigh"), ("gyro_bias_unknown", "left_knee")} <= reported(found)
     assert np.std(error_deg(person, found, "walk")) < 1.0
 
 
@@ -316,7 +316,7 @@ def coarse(gyr_step: float, acc_step: float) -> Change:
     )
 
 
-def test_a_clipped_accelerometer_is_told(knee_visit: Session) -> None:
+def test_a_clipped_accelerometer_is_reported(knee_visit: Session) -> None:
     def clip(b: ImuBlock) -> ImuBlock:
         shock = 40.0 * np.sin(2 * np.pi * 5.0 * b.time_s) * (b.time_s % 1.0 < 0.2)
         return replace(b, acc_m_s2=np.clip(b.acc_m_s2 + shock[:, None], -19.6, 19.6))
@@ -338,8 +338,8 @@ def test_a_slow_peak_of_a_coarse_sensor_is_not_its_range(person: "Person") -> No
         slow = 5.0 * np.sin(2 * np.pi * 0.5 * (b.time_s - b.time_s[0]))
         return replace(b, gyr_rad_s=np.round(np.stack([slow, slow, slow], axis=-1), 1))
 
-    told_of = look_at(changed(person.visit((SHANK,), duration_s=8.0), hold)).findings
-    assert "clipped" not in {f.key for f in told_of}
+    reported_of = look_at(changed(person.visit((SHANK,), duration_s=8.0), hold)).findings
+    assert "clipped" not in {f.key for f in reported_of}
 
 
 def test_a_coarse_sensor_in_free_motion_has_a_range_wider_than_that() -> None:
@@ -388,9 +388,11 @@ def test_a_copy_of_a_coarse_sensor_is_found_by_what_moves(leg_visit: Session) ->
 
 
 @pytest.mark.parametrize(("factor", "unit"), [(1e3, "ms"), (1e6, "µs")])
-def test_times_in_milliseconds_are_told_and_nothing_is_computed(knee_visit: Session, factor: float, unit: str) -> None:
+def test_times_in_milliseconds_are_reported_and_nothing_is_computed(
+    knee_visit: Session, factor: float, unit: str
+) -> None:
     found = analyse(changed(knee_visit, lambda b: replace(b, time_s=factor * (b.time_s - b.time_s[0])), (SHANK,)))
-    assert told(found) >= everywhere("time_in_ms", SHANK)
+    assert reported(found) >= everywhere("time_in_ms", SHANK)
     assert {f.numbers["unit"] for f in found.findings if f.key == "time_in_ms"} == {unit}
     assert_no_angle(found)
 
@@ -399,10 +401,10 @@ def every_20th(b: ImuBlock) -> ImuBlock:
     return ImuBlock(b.sensor, b.time_s[::20], b.gyr_rad_s[::20], b.acc_m_s2[::20])
 
 
-def test_a_slow_sensor_does_not_tell_milliseconds(person: "Person") -> None:
-    keys_told = {f.key for f in look_at(changed(person.visit(duration_s=20.0), every_20th)).findings}
-    assert "time_in_ms" not in keys_told
-    assert "low_rate" in keys_told
+def test_a_slow_sensor_does_not_show_milliseconds(person: "Person") -> None:
+    keys_reported = {f.key for f in look_at(changed(person.visit(duration_s=20.0), every_20th)).findings}
+    assert "time_in_ms" not in keys_reported
+    assert "low_rate" in keys_reported
 
 
 REVERSED = scaled(acc=-1.0)
@@ -410,7 +412,7 @@ TURNING = WalkerSettings(tissue=Tissue.SOFT, recordings=(Standing(), Walk(turn_r
 
 
 @pytest.mark.parametrize("site", [Site.LEFT_THIGH, Site.RIGHT_SHANK, Site.LEFT_FOOT])
-def test_one_reversed_sensor_is_told_and_left_out(site: Site) -> None:
+def test_one_reversed_sensor_is_reported_and_left_out(site: Site) -> None:
     looked = look_at(changed(simulate(TURNING).session, REVERSED, (site,)))
     assert [(f.key, f.where) for f in looked.findings] == [("acc_reversed", f"walk 1, {site}")]
     assert looked.unusable == {("standing", site), ("walk 1", site)}
@@ -432,7 +434,7 @@ def test_gyroscopes_off_by_degrees_are_not_taken_for_reversed_accelerometers() -
 def test_all_accelerometers_reversed_change_no_angle_and_need_no_word() -> None:
     session = simulate(replace(TURNING, recordings=(Standing(), FreeMotion(duration_s=5.0), Walk(strides=4)))).session
     plain, mirrored = analyse(session), analyse(changed(session, REVERSED))
-    assert told(plain) == told(mirrored)
+    assert reported(plain) == reported(mirrored)
     for one, other in zip(plain.recordings, mirrored.recordings, strict=True):
         for joint, angle in one.joints.items():
             difference = np.rad2deg(angle.angle_rad - other.joints[joint].angle_rad)
@@ -466,27 +468,27 @@ def test_sensors_switched_on_one_after_the_other_have_one_clock(leg_visit: Sessi
 
 def test_a_gyroscope_that_holds_one_value_is_stuck(knee_visit: Session) -> None:
     frozen = changed(knee_visit, lambda b: replace(b, gyr_rad_s=np.full_like(b.gyr_rad_s, 0.02)), (SHANK,))
-    told_of = {(f.key, f.where) for f in look_at(frozen).findings}
-    assert {("stuck_throughout", "free motion, left_shank"), ("stuck_throughout", "walk, left_shank")} <= told_of
+    reported_of = {(f.key, f.where) for f in look_at(frozen).findings}
+    assert {("stuck_throughout", "free motion, left_shank"), ("stuck_throughout", "walk, left_shank")} <= reported_of
 
 
-@pytest.mark.parametrize(("tremor_rad_s", "is_told"), [(0.04, False), (1.0, True)])
-def test_a_trembling_stance_is_rest_and_a_shaking_one_is_told(
-    knee_visit: Session, tremor_rad_s: float, is_told: bool
+@pytest.mark.parametrize(("tremor_rad_s", "is_reported"), [(0.04, False), (1.0, True)])
+def test_a_trembling_stance_is_rest_and_a_shaking_one_is_reported(
+    knee_visit: Session, tremor_rad_s: float, is_reported: bool
 ) -> None:
     def tremble(b: ImuBlock) -> ImuBlock:
         shake = tremor_rad_s * np.sin(2 * np.pi * 5.0 * b.time_s)
         return replace(b, gyr_rad_s=b.gyr_rad_s + shake[:, None] * [1.0, 0.0, 0.0])
 
     found = look_at(changed(knee_visit, tremble, (SHANK,), "standing")).findings
-    assert ("moved_while_standing" in {f.key for f in found}) is is_told
+    assert ("moved_while_standing" in {f.key for f in found}) is is_reported
 
 
 @pytest.mark.endurance
 @pytest.mark.parametrize("start_s", [-1e9, 1e9, 1.7e9])
 def test_stamps_far_from_zero_change_nothing(person: "Person", knee_visit: Session, start_s: float) -> None:
     near, far = analyse(knee_visit), analyse(person.visit(start_s=start_s))
-    assert told(near) == told(far)
+    assert reported(near) == reported(far)
     for one, other in zip(near.recordings, far.recordings, strict=True):
         difference = one.joints[KNEE].angle_rad - other.joints[KNEE].angle_rad
         assert np.rad2deg(np.abs(difference)).max() < 0.01
@@ -507,7 +509,7 @@ def test_gaps_are_gaps_in_the_angle(person: "Person", knee_visit: Session, metho
     assert np.isfinite(angle[(t < 3.995) | (t > 4.605)]).all()
     assert np.isnan(walk.joints[KNEE].sd_rad[inside]).all()
     assert np.nanmax(np.abs(error_deg(person, found, "walk"))) < 2.0
-    assert ("gaps", "walk, left_shank") in told(found)
+    assert ("gaps", "walk, left_shank") in reported(found)
 
 
 def test_what_raises_in_progress_ends_the_analysis(knee_visit: Session) -> None:

@@ -1,4 +1,4 @@
-"""Does every figure rest on the right verdict, and is it empty exactly where that is withheld?"""
+"""Does every figure rest on the right verdict, and is it empty exactly where that is not reported?"""
 
 from dataclasses import replace
 from typing import Any
@@ -26,7 +26,7 @@ from core.verdicts.quantities import (
 )
 from tests.core.verdicts.built_walk import calibrations, judged_walk, leg, walk
 
-BAD, CARE = Assessment(Verdict.WITHHELD), Assessment(Verdict.CARE)
+BAD, CARE = Assessment(Verdict.NOT_REPORTED), Assessment(Verdict.CARE)
 # what each column needs, written out
 KNEE_HEIGHTS = {f"knee_{name}_deg" for name in ("at_initial_contact", "loading_peak", "stance_minimum", "swing_peak")}
 ANKLE_HEIGHTS = {
@@ -60,11 +60,11 @@ def with_verdicts(found: Verdicts) -> RecordingAnalysis:
     return replace(walk(), verdicts=found)
 
 
-def withheld_on(side: Side, found: Verdicts) -> set[str]:
+def not_reported_on(side: Side, found: Verdicts) -> set[str]:
     return {
         name
         for name in columns_of(ParameterFile.STRIDES, ParameterFile.PEAKS)
-        if assessment_of(found, side, name).verdict is Verdict.WITHHELD
+        if assessment_of(found, side, name).verdict is Verdict.NOT_REPORTED
     }
 
 
@@ -92,10 +92,10 @@ def test_every_column_is_in_one_class_of_these() -> None:
 
 
 @pytest.mark.parametrize(("found", "expected"), CASES)
-def test_a_column_is_withheld_where_what_it_rests_on_is(found: Verdicts, expected: set[str]) -> None:
-    assert withheld_on(Side.LEFT, found) == expected
+def test_a_column_is_not_reported_where_what_it_rests_on_is(found: Verdicts, expected: set[str]) -> None:
+    assert not_reported_on(Side.LEFT, found) == expected
     # what compares instants of both legs is the other leg's as well, and nothing else is
-    assert withheld_on(Side.RIGHT, found) == ({"step_time_s"} if found.between is BAD else set())
+    assert not_reported_on(Side.RIGHT, found) == ({"step_time_s"} if found.between is BAD else set())
 
 
 def test_care_and_what_was_not_worn_reach_the_column() -> None:
@@ -104,14 +104,14 @@ def test_care_and_what_was_not_worn_reach_the_column() -> None:
     assert assessment_of(found, Side.LEFT, "knee_range_deg") == NOT_MEASURED
 
 
-def test_a_columns_joint_is_told_by_its_name() -> None:
+def test_a_columns_joint_is_reported_by_its_name() -> None:
     assert joint_of("knee_swing_peak_percent", Side.RIGHT) is Joint.RIGHT_KNEE
     assert joint_of("ankle_range_deg", Side.LEFT) is Joint.LEFT_ANKLE
     assert joint_of("stride_time_s", Side.LEFT) is None
 
 
 @pytest.mark.parametrize(("found", "expected"), CASES)
-def test_values_are_empty_where_they_are_withheld_and_else_what_was_measured(
+def test_values_are_empty_where_they_are_not_reported_and_else_what_was_measured(
     found: Verdicts, expected: set[str]
 ) -> None:
     recording = with_verdicts(found)
@@ -119,15 +119,15 @@ def test_values_are_empty_where_they_are_withheld_and_else_what_was_measured(
     for name in PARAMETERS:
         values = values_of(recording, Side.LEFT, name)
         assert len(values) == len(gait.strides)
-        told, mean = side_mean(recording, Side.LEFT, name), raw_values(gait, name).mean()
+        reported, mean = side_mean(recording, Side.LEFT, name), raw_values(gait, name).mean()
         if name in expected:
             assert np.isnan(values).all()
-            assert np.isnan(told.found.mean)
-            assert np.isnan(told.found.sd)
-            assert told.found.n == 0
+            assert np.isnan(reported.found.mean)
+            assert np.isnan(reported.found.sd)
+            assert reported.found.n == 0
         else:
             np.testing.assert_array_equal(values, raw_values(gait, name))
-            np.testing.assert_equal(told.found.mean, mean)
+            np.testing.assert_equal(reported.found.mean, mean)
 
 
 def test_angles_are_degrees_and_means_are_of_the_strides_used() -> None:
@@ -185,19 +185,19 @@ CADENCE, SUPPORT, SPEED = "cadence_steps_min", "double_support_percent", "speed_
 )
 def test_figures_of_both_legs_are_as_sure_as_the_worse(found: Verdicts, expected: dict[str, str]) -> None:
     assert both(found) == expected
-    told = both_sides(with_verdicts(found))
+    reported = both_sides(with_verdicts(found))
     for name, verdict in expected.items():
-        assert np.isfinite(getattr(told, name)) == (verdict in ("read", "care")), name
+        assert np.isfinite(getattr(reported, name)) == (verdict in ("read", "care")), name
 
 
-def test_one_leg_alone_tells_cadence_and_speed_and_no_double_support() -> None:
+def test_one_leg_alone_shows_cadence_and_speed_and_no_double_support() -> None:
     whole = walk()
     recording = judged_walk(replace(whole, gait={Side.LEFT: whole.gait[Side.LEFT]}))
     assert both(recording.verdicts) == {CADENCE: "read", SUPPORT: "not_measured", SPEED: "read"}
-    told = both_sides(recording)
-    assert told.cadence_steps_min == pytest.approx(120 / 1.1)
-    assert told.speed_m_s == pytest.approx(1.3 / 1.1)
-    assert np.isnan(told.double_support_percent)
+    reported = both_sides(recording)
+    assert reported.cadence_steps_min == pytest.approx(120 / 1.1)
+    assert reported.speed_m_s == pytest.approx(1.3 / 1.1)
+    assert np.isnan(reported.double_support_percent)
     assert both(Verdicts()) == dict.fromkeys(OF_BOTH, "not_measured")
 
 
@@ -209,7 +209,7 @@ def test_double_support_is_both_stances_less_a_stride() -> None:
 
 
 def test_a_joint_without_a_zero_keeps_its_range_in_a_walk_that_is_judged() -> None:
-    recording = judged_walk(told=calibrations(Joint.LEFT_KNEE, zero=ZeroKind.NONE))
+    recording = judged_walk(reported=calibrations(Joint.LEFT_KNEE, zero=ZeroKind.NONE))
     assert side_mean(recording, Side.LEFT, "knee_range_deg").found.mean == pytest.approx(60.0)
     assert np.isnan(side_mean(recording, Side.LEFT, "knee_swing_peak_deg").found.mean)
     assert side_mean(recording, Side.RIGHT, "knee_swing_peak_deg").found.mean == pytest.approx(60.0)

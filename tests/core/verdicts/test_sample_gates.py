@@ -37,7 +37,7 @@ def of_joints(*joints: str) -> tuple[str, ...]:
     return tuple(f"left_{joint} {part}" for joint in joints for part in ("shape", "height"))
 
 
-@pytest.mark.parametrize(("percent", "verdict"), [(0.9, ""), (1.1, "care"), (4.9, "care"), (5.1, "withheld")])
+@pytest.mark.parametrize(("percent", "verdict"), [(0.9, ""), (1.1, "care"), (4.9, "care"), (5.1, "not_reported")])
 def test_gaps_in_the_strides_used_hit_the_joints_of_their_sensor_and_a_foots_distances(
     percent: float, verdict: str
 ) -> None:
@@ -59,7 +59,9 @@ def test_a_gap_in_which_whole_strides_are_missing_leaves_the_others_as_they_are(
     assert found_of({THIGH: Reception(gaps_s=np.array([[12.0, 13.9]]))}) == hits("withheld", "loss", *of_joints("knee"))
 
 
-@pytest.mark.parametrize(("strides", "verdict"), [(0, ""), (1, "care"), (2, "care"), (3, "withheld"), (12, "withheld")])
+@pytest.mark.parametrize(
+    ("strides", "verdict"), [(0, ""), (1, "care"), (2, "care"), (3, "not_reported"), (12, "not_reported")]
+)
 def test_strides_that_exceed_a_sensors_range_hit_what_rests_on_it(strides: int, verdict: str) -> None:
     at_s = 10.0 + 1.1 * np.arange(strides) + 0.5
     rates, forces = Reception(clipped_rates_s=at_s), Reception(clipped_forces_s=at_s)
@@ -146,17 +148,17 @@ def times_s() -> FloatArray:
 
 def test_a_foot_at_2_g_has_no_distance_and_keeps_its_angles() -> None:
     found = walk_in(changed(left_foot=Spoiler(m_s2=19.6))).verdicts
-    assert [reason.gate for reason in found.leg(Side.LEFT).distance.reasons if reason.verdict is Verdict.WITHHELD] == [
-        "clipping"
-    ]
-    assert found.joint(ANKLE).shape.verdict is not Verdict.WITHHELD
-    assert found.leg(Side.LEFT).timing.verdict is not Verdict.WITHHELD
+    assert [
+        reason.gate for reason in found.leg(Side.LEFT).distance.reasons if reason.verdict is Verdict.NOT_REPORTED
+    ] == ["clipping"]
+    assert found.joint(ANKLE).shape.verdict is not Verdict.NOT_REPORTED
+    assert found.leg(Side.LEFT).timing.verdict is not Verdict.NOT_REPORTED
 
 
 def test_a_gyroscope_that_is_cut_off_has_no_angles_and_a_sound_one_has() -> None:
     found = walk_in(changed(left_thigh=Spoiler(rad_s=1.8))).verdicts
     assert "clipping" in [reason.gate for reason in found.joint(KNEE).shape.reasons]
-    assert found.joint(KNEE).shape.verdict is Verdict.WITHHELD
+    assert found.joint(KNEE).shape.verdict is Verdict.NOT_REPORTED
     assert found.joint(ANKLE).shape.verdict is Verdict.READ
     assert found.leg(Side.LEFT).distance.verdict is Verdict.READ
 
@@ -181,14 +183,14 @@ def test_a_pause_of_all_sensors_takes_nothing_else() -> None:
     assert max(paused.lost_percent.values()) == 0.0
 
 
-def test_a_sensor_at_half_its_rate_is_told_though_its_stamps_show_no_gap() -> None:
+def test_a_sensor_at_half_its_rate_is_reported_though_its_stamps_show_no_gap() -> None:
     halved = changed(left_shank=Spoiler(np.arange(len(times_s())) % 2 == 0))
     found = analyse(halved)
     (lost,) = (one for one in found.findings if one.key == "every_second_lost")
     assert lost.where == "walk 1, left_shank"
     assert lost.numbers == {"rate_hz": 50.0, "nominal_hz": 100.0, "lost_percent": 50.0}
     knee = found.recordings[-1].verdicts.joint(KNEE).shape
-    assert (knee.verdict, [reason.gate for reason in knee.reasons]) == (Verdict.WITHHELD, ["every_second"])
+    assert (knee.verdict, [reason.gate for reason in knee.reasons]) == (Verdict.NOT_REPORTED, ["every_second"])
     assert found.recordings[-1].lost_percent[SHANK] == pytest.approx(50.0)
-    told = analyse(walked()).findings
-    assert {"every_second_lost", "rate_off"}.isdisjoint(one.key for one in told)
+    reported = analyse(walked()).findings
+    assert {"every_second_lost", "rate_off"}.isdisjoint(one.key for one in reported)

@@ -1,4 +1,4 @@
-"""Is it told where strides or peaks are missing or too few, once and at the right place?"""
+"""Is it reported where strides or peaks are missing or too few, once and at the right place?"""
 
 from collections.abc import Mapping
 from dataclasses import replace
@@ -37,68 +37,70 @@ def without_strides(gait: SideGait) -> SideGait:
     return replace(gait, strides=nothing, cycles={joint: np.empty((0, 101)) for joint in gait.cycles}, events=())
 
 
-def told(walk: RecordingAnalysis, left: SideGait, right: SideGait) -> list[Finding]:
+def reported(walk: RecordingAnalysis, left: SideGait, right: SideGait) -> list[Finding]:
     return about_walk(replace(walk, gait={Side.LEFT: left, Side.RIGHT: right}), FEET)
 
 
 def test_a_walk_with_enough_good_strides_is_no_news(walk: RecordingAnalysis) -> None:
     left, right = (with_used(walk.gait[side], 10) for side in Side)
-    assert told(walk, left, right) == []
+    assert reported(walk, left, right) == []
 
 
 def test_few_strides_make_no_spread_and_fewer_no_mean(walk: RecordingAnalysis) -> None:
     left, right = walk.gait[Side.LEFT], walk.gait[Side.RIGHT]
-    (both,) = told(walk, with_used(left, 4), with_used(right, 9))
+    (both,) = reported(walk, with_used(left, 4), with_used(right, 9))
     assert (both.key, both.severity, both.where) == ("no_spread", Severity.INFO, "walk 1")
     assert both.numbers == {"left": 4, "right": 9, "wanted": 10}
-    (one,) = told(walk, with_used(left, 10), with_used(right, 3))
+    (one,) = reported(walk, with_used(left, 10), with_used(right, 3))
     assert (one.key, one.numbers) == ("no_spread_of_side", {"side": "right", "count": 3, "wanted": 10})
-    none, spread = told(walk, with_used(left, 2), with_used(right, 5))
+    none, spread = reported(walk, with_used(left, 2), with_used(right, 5))
     assert (none.key, none.severity, none.numbers["side"]) == ("no_mean", Severity.WARNING, "left")
     assert (spread.key, spread.numbers["side"]) == ("no_spread_of_side", "right")
 
 
 def test_all_strides_left_out_say_why(walk: RecordingAnalysis) -> None:
     left, right = walk.gait[Side.LEFT], with_used(walk.gait[Side.RIGHT], 10)
-    (found,) = told(walk, with_used(left, 0, Reason.TURN), right)
+    (found,) = reported(walk, with_used(left, 0, Reason.TURN), right)
     assert (found.key, found.where) == ("strides_all_left_out", "walk 1, left_foot")
     assert found.numbers == {"count": len(left.strides), "turn": len(left.strides)}
     reason = (Reason.START, *(Reason.TURN,) * (len(left.strides) - 2), Reason.STOP)
-    (each,) = told(walk, replace(left, strides=replace(left.strides, reason=reason)), right)
+    (each,) = reported(walk, replace(left, strides=replace(left.strides, reason=reason)), right)
     assert each.numbers == {"count": len(reason), "turn": len(reason) - 2, "start": 1, "stop": 1}
-    doubt = told(walk, with_used(left, 0, Reason.DOUBT), right)
+    doubt = reported(walk, with_used(left, 0, Reason.DOUBT), right)
     assert [finding.key for finding in doubt] == ["doubtful_strides", "strides_all_left_out"]
 
 
-def test_no_stride_at_all_is_told_of_the_walk_or_of_the_side(walk: RecordingAnalysis) -> None:
+def test_no_stride_at_all_is_reported_of_the_walk_or_of_the_side(walk: RecordingAnalysis) -> None:
     left, right = walk.gait[Side.LEFT], walk.gait[Side.RIGHT]
-    (of_walk,) = told(walk, without_strides(left), without_strides(right))
+    (of_walk,) = reported(walk, without_strides(left), without_strides(right))
     assert (of_walk.key, of_walk.where) == ("no_strides", "walk 1")
-    (of_side,) = told(walk, with_used(left, 10), without_strides(right))
+    (of_side,) = reported(walk, with_used(left, 10), without_strides(right))
     assert (of_side.key, of_side.where) == ("side_without_strides", "walk 1, right_foot")
-    assert about_walk(replace(walk, gait={}), {}) == []  # without a sensor that could tell
+    assert about_walk(replace(walk, gait={}), {}) == []  # without a sensor that could report
 
 
 def test_a_peak_that_no_stride_has_is_named_unless_the_sign_is_in_doubt(walk: RecordingAnalysis) -> None:
     left, right = (with_used(walk.gait[side], 10) for side in Side)
     name = "ankle_push_off_plantarflexion_rad"
     passing = replace(left, parameters={**left.parameters, name: np.full(len(left.strides), np.nan)})
-    (found,) = told(walk, passing, right)
+    (found,) = reported(walk, passing, right)
     assert (found.key, found.severity, found.where) == ("no_peak", Severity.INFO, "walk 1, left_ankle")
     assert found.numbers == {"peak": "ankle_push_off_plantarflexion"}
-    ankle = replace(walk.verdicts.joint(Joint.LEFT_ANKLE), sign=Assessment(Verdict.WITHHELD))
+    ankle = replace(walk.verdicts.joint(Joint.LEFT_ANKLE), sign=Assessment(Verdict.NOT_REPORTED))
     doubted = replace(walk, verdicts=replace(walk.verdicts, joints={**walk.verdicts.joints, Joint.LEFT_ANKLE: ankle}))
-    assert told(doubted, passing, right) == []
+    assert reported(doubted, passing, right) == []
 
 
-@pytest.mark.parametrize(("whole", "is_told"), [(0, True), (2, True), (3, False)])
-def test_an_angle_with_gaps_in_nearly_every_stride_is_named(walk: RecordingAnalysis, whole: int, is_told: bool) -> None:
+@pytest.mark.parametrize(("whole", "is_reported"), [(0, True), (2, True), (3, False)])
+def test_an_angle_with_gaps_in_nearly_every_stride_is_named(
+    walk: RecordingAnalysis, whole: int, is_reported: bool
+) -> None:
     left, right = (with_used(walk.gait[side], 10) for side in Side)
     cycles = left.cycles[Joint.LEFT_KNEE].copy()
     cycles[whole:] = np.nan
-    findings = told(walk, replace(left, cycles={**left.cycles, Joint.LEFT_KNEE: cycles}), right)
+    findings = reported(walk, replace(left, cycles={**left.cycles, Joint.LEFT_KNEE: cycles}), right)
     numbers = {"count": whole, "used": 10, "wanted": 3}
-    expected = [Finding("angle_without_mean", Severity.WARNING, "walk 1, left_knee", numbers)] if is_told else []
+    expected = [Finding("angle_without_mean", Severity.WARNING, "walk 1, left_knee", numbers)] if is_reported else []
     assert findings == expected
 
 
@@ -110,14 +112,14 @@ def test_standing_through_a_walk_is_no_walk() -> None:
 
 @pytest.mark.endurance
 @pytest.mark.parametrize("typed", ["left", "right", "both", "none", ""])
-def test_the_late_toe_off_of_a_prosthetic_foot_that_walked_is_told(typed: str) -> None:
+def test_the_late_toe_off_of_a_prosthetic_foot_that_walked_is_reported(typed: str) -> None:
     made = simulate(WalkerSettings(recordings=(Standing(), Walk()), sites=tuple(FEET.values()))).session
     found = analyse(replace(made, patient=replace(made.patient, prosthetic_side=typed)))
     gait = found.recordings[0].gait
     worn = [side for side in Side if typed in (side.value, "both")]
     assert [side for side in Side if gait[side].is_toe_off_biased] == worn
-    told = [one.where for one in found.findings if one.key == "prosthetic_toe_off"]
-    assert told == [f"{side}_foot" for side in worn]
+    reported = [one.where for one in found.findings if one.key == "prosthetic_toe_off"]
+    assert reported == [f"{side}_foot" for side in worn]
     assert about_prosthesis([replace(found.recordings[0], gait={})]) == []
 
 
@@ -147,7 +149,7 @@ ABOUT = Turn(8.0, 9.5, np.pi)
 
 
 @pytest.mark.parametrize(
-    ("feet", "pelvis", "told"),
+    ("feet", "pelvis", "reported"),
     [
         ((ABOUT,), (PelvisTurn(7.9, 9.7, 3.0),), None),
         ((ABOUT,), (PelvisTurn(10.0, 11.0, 3.0),), None),  # feet turn a little earlier or later
@@ -160,12 +162,12 @@ ABOUT = Turn(8.0, 9.5, np.pi)
         ((ABOUT,), (PelvisTurn(7.9, 9.7, 3.0), PelvisTurn(14.0, 15.5, -3.0)), (1, 2)),
     ],
 )
-def test_turns_of_feet_and_pelvis_that_contradict_are_told_once(
-    walk: RecordingAnalysis, feet: tuple[Turn, ...], pelvis: tuple[PelvisTurn, ...], told: tuple[int, int] | None
+def test_turns_of_feet_and_pelvis_that_contradict_are_reported_once(
+    walk: RecordingAnalysis, feet: tuple[Turn, ...], pelvis: tuple[PelvisTurn, ...], reported: tuple[int, int] | None
 ) -> None:
     found = about_turns(timed_walk(walk, feet, pelvis))
     assert [(one.key, one.numbers["feet"], one.numbers["pelvis"]) for one in found] == (
-        [] if told is None else [("turns_contradict", *told)]
+        [] if reported is None else [("turns_contradict", *reported)]
     )
 
 

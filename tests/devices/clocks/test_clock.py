@@ -115,7 +115,7 @@ def test_a_wild_stamp_is_damage_and_a_restart_a_new_run() -> None:
 
 
 def test_samples_whose_instants_an_earlier_run_took_are_counted() -> None:
-    """The run before was held up by more than a second: nothing is left out that no count tells of."""
+    """The run before was held up by more than a second: nothing is left out that no count reports."""
     device_s = 10.0 + np.arange(400) / RATE_HZ
     host_s = device_s + 100.0
     host_s[:150] = host_s[150]
@@ -214,7 +214,7 @@ def test_runs_do_not_depend_on_how_the_bytes_were_cut() -> None:
 
 
 @given(st.sampled_from([16, 24, 32]), st.lists(st.floats(0.001, 100.0), min_size=1, max_size=50))
-def test_a_counter_goes_on_however_often_it_began_anew(bits: int, pauses_s: list[float]) -> None:
+def test_a_counter_goes_on_however_often_it_began_again(bits: int, pauses_s: list[float]) -> None:
     unwrapping, tick_hz = Unwrapping(bits, 32768.0), 32768.0
     host_s = np.cumsum(pauses_s)
     true = np.round(host_s * tick_hz).astype(int).tolist()
@@ -230,12 +230,14 @@ def test_one_arrival_is_a_clock_too() -> None:
     assert len(ordered.time_s) == 0
 
 
-@pytest.mark.parametrize("anew", [(), (100,)])
-def test_a_clock_that_shows_what_it_showed_before_is_another_only_where_that_is_known(anew: tuple[int, ...]) -> None:
+@pytest.mark.parametrize("again", [(), (100,)])
+def test_a_clock_that_shows_what_it_showed_before_is_another_only_where_that_is_known(
+    once_more: tuple[int, ...],
+) -> None:
     device_s = np.concatenate([np.arange(100), np.arange(100, 200)]) / RATE_HZ
     taken_s = device_s + np.where(np.arange(200) < 100, 0.0, 4.0)
-    ordered = put_in_order(device_s, taken_s + 0.002, None, (0, 100), anew)
-    if anew:
+    ordered = put_in_order(device_s, taken_s + 0.002, None, (0, 100), once_more)
+    if once_more:
         assert np.abs(ordered.time_s - taken_s).max() < 0.005
         assert ordered.counts.lost == 400
     else:  # they may have been held up on their way

@@ -43,7 +43,7 @@ def test_a_sensor_whose_clock_is_another_is_not_believed_and_draws_nobody_away()
     assert abs(found[0][1].block.time_s[0] - 0.004) < 0.002
 
 
-def test_a_clock_that_began_anew_between_two_first_samples_is_one_clock() -> None:
+def test_a_clock_that_began_again_between_two_first_samples_is_one_clock() -> None:
     quick, slow = starts_s(sensor("a", 0.004), sensor("b", 0.012, moved_s=TURN_S, seed=1))
     assert abs(slow - quick) < 1e-6
 

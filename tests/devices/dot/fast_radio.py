@@ -16,7 +16,7 @@ from devices.transport.bluetooth import Radio
 from tests.devices.dot.virtual_time import turning
 
 SPEED = 50.0
-IDLE_S = 0.01  # of ours, after which the radio's clock is read anew
+IDLE_S = 0.01  # of ours, after which the radio's clock is read again
 
 
 class HurryingSelector(selectors.DefaultSelector):
@@ -50,7 +50,7 @@ class FastRadio(Radio):
         self._hurrying = HurryingLoop()
         self._thread = threading.Thread(target=self._hurrying.run_forever, name="fast bluetooth", daemon=True)
         self.dots = [
-            EmulatedDot(number, motion, self.now_ns, fault, skew=(-1) ** number * 20e-6 * number, says_so=True)
+            EmulatedDot(number, motion, self.now_ns, fault, skew=(-1) ** number * 20e-6 * number, states_so=True)
             for number, fault in enumerate(faults)
         ]
         EmulatedDot.meet(self.dots)

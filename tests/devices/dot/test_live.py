@@ -90,7 +90,7 @@ def test_what_is_cut_is_damaged_and_lost_and_no_more(radio: VirtualRadio) -> Non
     assert (whole.counts.lost, whole.counts.damaged) == (0, 0)
 
 
-def test_a_clock_that_begins_anew_while_it_measures_loses_nothing(radio: VirtualRadio) -> None:
+def test_a_clock_that_begins_again_while_it_measures_loses_nothing(radio: VirtualRadio) -> None:
     wearing = WornDots(radio, [DotFaults(), DotFaults()])
     wearing.dots[0].begin_clock_at(2**32 - 40_000_000)  # about ten seconds after it was synchronised
     wearing.open()
@@ -125,14 +125,14 @@ def test_at_30_hz_loss_is_counted_by_that_rate(radio: VirtualRadio) -> None:
 # synchronising, and what goes wrong with it
 
 
-def test_the_steps_are_told_with_their_waits(radio: VirtualRadio) -> None:
+def test_the_steps_are_reported_with_their_waits(radio: VirtualRadio) -> None:
     wearing = WornDots(radio, [DotFaults() for _ in range(3)])
-    told: list[tuple[float, SyncStage]] = []
-    wearing.group.synchronise(lambda stage, _sensor, _left_s: told.append((radio.loop.time(), stage)))
-    stages = list(dict.fromkeys(stage for _, stage in told))
+    reported: list[tuple[float, SyncStage]] = []
+    wearing.group.synchronise(lambda stage, _sensor, _left_s: reported.append((radio.loop.time(), stage)))
+    stages = list(dict.fromkeys(stage for _, stage in reported))
     assert stages == [SyncStage.PREPARING, SyncStage.WAITING, SyncStage.CONNECTING, SyncStage.LISTENING]
-    waits_s = next(at for at, stage in told if stage == SyncStage.CONNECTING) - next(
-        at for at, stage in told if stage == SyncStage.WAITING
+    waits_s = next(at for at, stage in reported if stage == SyncStage.CONNECTING) - next(
+        at for at, stage in reported if stage == SyncStage.WAITING
     )
     assert waits_s > 13.0
     assert all(dot.is_synchronised for dot in wearing.dots)
@@ -148,14 +148,16 @@ def test_one_of_five_that_fails_once_is_tried_again_with_all(radio: VirtualRadio
     assert len({source.info.settings["clock"] for source in wearing.sources}) == 1
 
 
-@pytest.mark.parametrize(("result", "said"), [(5, "few samples"), (7, "skew too large"), (8, "start failed")])
-def test_one_that_fails_twice_is_named_and_all_may_be_tried_again(radio: VirtualRadio, result: int, said: str) -> None:
+@pytest.mark.parametrize(("result", "stated"), [(5, "few samples"), (7, "skew too large"), (8, "start failed")])
+def test_one_that_fails_twice_is_named_and_all_may_be_tried_again(
+    radio: VirtualRadio, result: int, stated: str
+) -> None:
     faults = [DotFaults() for _ in range(5)]
     faults[3].sync_results = [result, result]
     wearing = WornDots(radio, faults)
     with pytest.raises(NotSynchronisedError, match=r"^DOT 0004 could not") as refused:
         wearing.open()
-    assert refused.value.failed == {"DOT 0004": said}
+    assert refused.value.failed == {"DOT 0004": stated}
     assert not any(dot.is_synchronised or dot.is_streaming for dot in wearing.dots)
     wearing.open()
     assert all(dot.is_synchronised for dot in wearing.dots)
@@ -225,7 +227,7 @@ def test_one_alone_is_not_synchronised_and_measures(radio: VirtualRadio) -> None
 # lost and found
 
 
-def test_a_lost_link_costs_what_was_sent_meanwhile_and_starts_nothing_anew(radio: VirtualRadio) -> None:
+def test_a_lost_link_costs_what_was_sent_meanwhile_and_starts_nothing_again(radio: VirtualRadio) -> None:
     wearing = WornDots(radio, [DotFaults() for _ in range(3)])
     wearing.open()
     wearing.measure(5.0)
@@ -264,7 +266,7 @@ def test_one_that_was_switched_off_comes_back_on_its_own_clock(radio: VirtualRad
 def test_one_that_was_switched_off_twice_is_stamped_when_it_measured(
     radio: VirtualRadio, count: int, drops_after: list[int]
 ) -> None:
-    """Its clock, begun anew, shows what it showed when it was lost: the stamps alone say that no time passed."""
+    """Its clock, begun again, shows what it showed when it was lost: the stamps alone say that no time passed."""
     wearing = WornDots(radio, [DotFaults() for _ in range(count)])
     dot = wearing.dots[-1]
     wearing.open()

@@ -27,7 +27,7 @@ INFO = bytes.fromhex("CCBBAACD22D4020400E6070C1F173B3A010000000E01B0230003444258
 
 
 @pytest.mark.parametrize(
-    ("said", "printed"),
+    ("stated", "printed"),
     [
         (messages.SYNC_STATUS.packed(), "020108F5"),
         (messages.STOP_SYNC.packed(), "020102FB"),
@@ -48,14 +48,14 @@ INFO = bytes.fromhex("CCBBAACD22D4020400E6070C1F173B3A010000000E01B0230003444258
         (messages.switching(21, is_on=False), "010015"),
     ],
 )
-def test_what_is_written_is_what_is_printed(said: bytes, printed: str) -> None:
-    assert said.hex().upper() == printed
+def test_what_is_written_is_what_is_printed(stated: bytes, printed: str) -> None:
+    assert stated.hex().upper() == printed
 
 
 def test_erasing_names_the_memory_and_when_and_its_bytes_add_up() -> None:
-    said = messages.erase(RECORD_UTC_S).packed()
-    assert said[:-1].hex() == "010530df503b5b"
-    assert sum(said) % 256 == 0
+    stated = messages.erase(RECORD_UTC_S).packed()
+    assert stated[:-1].hex() == "010530df503b5b"
+    assert sum(stated) % 256 == 0
 
 
 def test_a_rate_that_no_sensor_has_is_not_written() -> None:
@@ -66,30 +66,30 @@ def test_a_rate_that_no_sensor_has_is_not_written() -> None:
 # what is answered, as it is printed
 
 
-def heard(printed: str, padding: int = 0) -> DotMessage:
+def received(printed: str, padding: int = 0) -> DotMessage:
     return DotMessage.parsed(bytes.fromhex(printed) + bytes(padding))
 
 
 @pytest.mark.parametrize("padding", [0, 1, 140])
 def test_answers_mean_what_is_printed_however_they_are_padded(padding: int) -> None:
-    assert heard("02025109A2", padding) == messages.IS_NOT_SYNCHRONISED
-    assert heard("02025104A7", padding) == messages.IS_SYNCHRONISED
-    assert heard("02025000AC", padding) == messages.SYNC_STOPPED
-    assert SyncResult.of(heard("02020300F9", padding)) is SyncResult.GOOD
-    assert SyncResult.of(heard("0209030001CCBBAACD22D4FD", padding)) is SyncResult.GOOD, "as it is drawn elsewhere"
-    assert answered(Order.GET_STATE, heard("0103010602F3", padding)) is DotAnswer.IDLE
-    assert answered(Order.START, heard("0109010040DF503B5BFFFFF2", padding)) is DotAnswer.DONE
-    assert answered(Order.STOP, heard("0103010041BA", padding)) is DotAnswer.DONE
-    assert answered(Order.CHOOSE, heard("01070100740001070873", padding)) is DotAnswer.DONE
+    assert received("02025109A2", padding) == messages.IS_NOT_SYNCHRONISED
+    assert received("02025104A7", padding) == messages.IS_SYNCHRONISED
+    assert received("02025000AC", padding) == messages.SYNC_STOPPED
+    assert SyncResult.of(received("02020300F9", padding)) is SyncResult.GOOD
+    assert SyncResult.of(received("0209030001CCBBAACD22D4FD", padding)) is SyncResult.GOOD, "as it is drawn elsewhere"
+    assert answered(Order.GET_STATE, received("0103010602F3", padding)) is DotAnswer.IDLE
+    assert answered(Order.START, received("0109010040DF503B5BFFFFF2", padding)) is DotAnswer.DONE
+    assert answered(Order.STOP, received("0103010041BA", padding)) is DotAnswer.DONE
+    assert answered(Order.CHOOSE, received("01070100740001070873", padding)) is DotAnswer.DONE
 
 
 @pytest.mark.parametrize("printed", ["010152AC", "0101639B", "0101728C", "010141BD"])
 def test_notices_are_whole(printed: str) -> None:
-    assert heard(printed).group == messages.RECORDING_GROUP
+    assert received(printed).group == messages.RECORDING_GROUP
 
 
 @pytest.mark.parametrize("code", [5, 7, 8, 9])
-def test_each_failure_of_synchronising_is_told_apart(code: int) -> None:
+def test_each_failure_of_synchronising_is_reported_apart(code: int) -> None:
     assert SyncResult.of(DotMessage(2, bytes([3, code]))) == code
 
 
@@ -99,7 +99,7 @@ def test_what_is_no_result_of_synchronising_is_unknown(data: bytes) -> None:
 
 
 def test_an_answer_to_another_order_is_no_answer() -> None:
-    assert answered(Order.START, heard("0103010041BA")) is DotAnswer.UNKNOWN
+    assert answered(Order.START, received("0103010041BA")) is DotAnswer.UNKNOWN
     assert answered(Order.STOP, DotMessage(1, b"\x01\x99\x41")) is DotAnswer.UNKNOWN
     assert answered(Order.STOP, DotMessage(1, b"\x01\x03\x41")) is DotAnswer.BUSY
 
@@ -107,13 +107,13 @@ def test_an_answer_to_another_order_is_no_answer() -> None:
 @pytest.mark.parametrize("printed", ["", "02", "020251", "02025109", "02025109A3", "02035109A2"])
 def test_what_is_cut_or_changed_is_no_message(printed: str) -> None:
     with pytest.raises(DotMessageError):
-        heard(printed)
+        received(printed)
 
 
 # what characteristics hold
 
 
-def test_a_sensor_says_who_it_is() -> None:
+def test_a_sensor_states_who_it_is() -> None:
     assert DotInfo.parsed(INFO) == DotInfo("D4:22:CD:AA:BB:CC", (2, 4, 0), "4244030023B0010E", "DOT v2")
     assert DotInfo.parsed(INFO).can_synchronise
     assert not DotInfo.parsed(INFO[:6] + b"\x01\x03\x07" + INFO[9:]).can_synchronise
@@ -137,7 +137,7 @@ def test_settings_and_the_stream_are_read_where_they_stand() -> None:
 HEADER = bytes.fromhex("73616C46 80000000 0200 00EEEE5E 0000F400 09000000") + bytes(106)  # its bytes look like files
 
 
-def test_a_list_tells_how_many_files_there_are_and_how_large_whatever_its_header_holds() -> None:
+def test_a_list_shows_how_many_files_there_are_and_how_large_whatever_its_header_holds() -> None:
     assert len(HEADER) == 128
     assert files_listed(HEADER + bytes.fromhex("EECCCCEEEECCFFFFFF")) == (2, 0, 1)
     assert files_listed(HEADER + b"\xff" * 8) == ()
@@ -147,8 +147,8 @@ def test_a_list_tells_how_many_files_there_are_and_how_large_whatever_its_header
             files_listed(cut)
 
 
-def test_a_file_tells_when_it_was_begun_and_not_how_long_it_is() -> None:
-    """Without a timer FFFF stands where its length might be looked for."""
+def test_a_file_shows_when_it_was_begun_and_not_how_long_it_is() -> None:
+    """Without a timer FFFF is where its length might be looked for."""
     data = bytes.fromhex("6F636552800000000001DF503B5BFFFF") + bytes(112)
     assert RecordedFile.parsed(2, data, 3) == RecordedFile(2, RECORD_UTC_S, 684_000)
     with pytest.raises(DotMessageError):

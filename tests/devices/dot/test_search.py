@@ -1,4 +1,4 @@
-"""Are DOTs that announce themselves found among the sensors, and is it said why where nobody could be heard?"""
+"""Are DOTs that announce themselves found among the sensors, and is it stated why where nobody could be received?"""
 
 import builtins
 import importlib.util
@@ -25,7 +25,7 @@ def in_air(*names: str) -> Radio:
     announced: Sequence[Announced] = [
         Announced(name, f"D4:22:CD:00:00:{number + 1:02X}", (0x0886,)) for number, name in enumerate(names)
     ]
-    return Radio(heard=lambda: announced)
+    return Radio(received=lambda: announced)
 
 
 @pytest.mark.endurance
@@ -52,7 +52,7 @@ def test_dots_are_found_by_what_they_announce_and_share_a_group() -> None:
         ("Movella", (0x0886,), False),
     ],
 )
-def test_a_dot_is_told_by_its_name_and_its_maker(name: str, companies: tuple[int, ...], is_one: bool) -> None:
+def test_a_dot_is_reported_by_its_name_and_its_maker(name: str, companies: tuple[int, ...], is_one: bool) -> None:
     assert is_dot(Announced(name, "", companies)) is is_one
 
 
@@ -62,7 +62,7 @@ def test_nothing_is_sent_by_bluetooth_where_nobody_asks_for_it() -> None:
 
 
 @pytest.mark.endurance
-def test_without_the_library_the_other_sensors_are_found_and_it_says_what_to_install(
+def test_without_the_library_the_other_sensors_are_found_and_it_states_what_to_install(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
     found, imported = importlib.util.find_spec, builtins.__import__
@@ -81,7 +81,7 @@ def test_without_the_library_the_other_sensors_are_found_and_it_says_what_to_ins
 
 
 @pytest.mark.endurance
-def test_where_bluetooth_does_not_answer_it_says_so(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_where_bluetooth_does_not_answer_it_states_so(monkeypatch: pytest.MonkeyPatch) -> None:
     async def silent(**_settings: Any) -> Any:
         raise FileNotFoundError("no bus")
 

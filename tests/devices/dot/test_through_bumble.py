@@ -31,7 +31,7 @@ def radio() -> Iterator[VirtualRadio]:
     one.close()
 
 
-def test_what_they_advertise_tells_that_they_are_dots(radio: VirtualRadio) -> None:
+def test_what_they_advertise_shows_that_they_are_dots(radio: VirtualRadio) -> None:
     air, _ = by_bumble(radio, [DotFaults(), DotFaults()])
     found = air.announced()
     assert [(one.name, one.address, one.companies) for one in found] == [
@@ -75,7 +75,7 @@ def test_a_link_that_is_lost_is_found_again_and_streams_on(radio: VirtualRadio) 
 
 
 @pytest.mark.endurance
-def test_a_link_that_carries_too_little_for_samples_says_so_and_gives_none(radio: VirtualRadio) -> None:
+def test_a_link_that_carries_too_little_for_samples_states_so_and_gives_none(radio: VirtualRadio) -> None:
     """bleak, and its backends, do not say how little: it shows in what arrives."""
     wearing = WornDots(radio, [DotFaults(), DotFaults()], through=through(40))
     with pytest.raises(NotSynchronisedError) as refused:

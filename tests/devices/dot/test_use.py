@@ -40,7 +40,7 @@ def test_a_rate_is_not_changed_after_synchronising_and_a_recording_at_another_is
         radio.run(record(wearing.group.sensors, UTC_S, 120))
 
 
-def test_one_that_says_too_little_of_its_rate_is_a_refusal_and_nobody_records(
+def test_one_that_states_too_little_of_its_rate_is_a_refusal_and_nobody_records(
     radio: VirtualRadio, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     wearing = WornDots(radio, [DotFaults(), DotFaults()])
@@ -66,9 +66,9 @@ def test_a_late_notice_about_synchronising_is_no_part_of_a_list_of_files(
     late, due = (0x7003, DotMessage(SYNC_GROUP, b"\x51\x09").packed()), dot.notifications
 
     def notifications() -> list[Notification]:
-        said = due()
-        is_list = any(which == 0x7003 and (notice[0], notice[2]) == (1, 0x51) for which, notice in said)
-        return [late, *said] if is_list else said
+        stated = due()
+        is_list = any(which == 0x7003 and (notice[0], notice[2]) == (1, 0x51) for which, notice in stated)
+        return [late, *stated] if is_list else stated
 
     monkeypatch.setattr(dot, "notifications", notifications)
     (file,) = radio.run(list_files(sensor))
@@ -82,7 +82,7 @@ def test_an_order_to_a_busy_sensor_is_given_again(radio: VirtualRadio) -> None:
     radio.run(record([sensor], UTC_S, 120))
     radio.pass_s(1.0)
     radio.run(stop(sensor))
-    dot.faults.busy = 4  # more than a list is asked for anew
+    dot.faults.busy = 4  # more than a list is asked for again
     (file,) = radio.run(list_files(sensor))
     assert file.started_utc_s == UTC_S
 
@@ -111,19 +111,19 @@ def test_ready_to_record_they_are_on_one_clock_at_that_rate_and_send_nothing(rad
     wearing = WornDots(radio, [DotFaults(), DotFaults()])
     wearing.open()
     first = wearing.group.clock_of("DOT 0001")
-    told: list[SyncStage] = []
-    wearing.group.make_ready_to_record(lambda stage, _sensor, _left_s: told.append(stage))
-    assert SyncStage.WAITING in told
-    assert SyncStage.LISTENING not in told, "nobody streams at this rate"
+    reported: list[SyncStage] = []
+    wearing.group.make_ready_to_record(lambda stage, _sensor, _left_s: reported.append(stage))
+    assert SyncStage.WAITING in reported
+    assert SyncStage.LISTENING not in reported, "nobody streams at this rate"
     assert wearing.group.use is DotUse.RECORDING
     assert [(dot.rate_hz, dot.is_synchronised, dot.is_streaming) for dot in wearing.dots] == [(120, True, False)] * 2
     assert wearing.group.clock_of("DOT 0001") != first
     assert wearing.sources[0].read(kept) == ()
     details = wearing.sources[0].details()["DOT 0001"]
     assert (details.quiet, details.rate_hz) == (Quiet.IN_MEMORY, 120)
-    told.clear()
-    wearing.group.make_ready_to_record(lambda stage, _sensor, _left_s: told.append(stage))
-    assert told == [], "they are ready still"
+    reported.clear()
+    wearing.group.make_ready_to_record(lambda stage, _sensor, _left_s: reported.append(stage))
+    assert reported == [], "they are ready still"
 
 
 def test_back_to_streams_they_are_synchronised_at_theirs_and_what_lies_between_is_no_loss(radio: VirtualRadio) -> None:
@@ -143,12 +143,12 @@ def test_back_to_streams_they_are_synchronised_at_theirs_and_what_lies_between_i
 def test_where_memories_record_at_the_rate_of_streams_one_clock_serves_both(radio: VirtualRadio) -> None:
     wearing = WornDots(radio, [DotFaults(), DotFaults()], record_hz=60)
     wearing.open()
-    clock, told = wearing.group.clock_of("DOT 0001"), list[SyncStage]()
-    wearing.group.make_ready_to_record(lambda stage, _sensor, _left_s: told.append(stage))
+    clock, reported = wearing.group.clock_of("DOT 0001"), list[SyncStage]()
+    wearing.group.make_ready_to_record(lambda stage, _sensor, _left_s: reported.append(stage))
     assert not any(dot.is_streaming for dot in wearing.dots)
-    wearing.group.stream_again(lambda stage, _sensor, _left_s: told.append(stage))
+    wearing.group.stream_again(lambda stage, _sensor, _left_s: reported.append(stage))
     assert all(dot.is_streaming for dot in wearing.dots)
-    assert told == []
+    assert reported == []
     assert wearing.group.clock_of("DOT 0001") == clock
 
 
@@ -173,12 +173,12 @@ def test_where_one_was_switched_off_its_own_clock_is_found_out_and_all_are_synch
 def test_synchronising_that_is_left_off_leaves_nobody_synchronised(radio: VirtualRadio, at: SyncStage) -> None:
     wearing = WornDots(radio, [DotFaults(), DotFaults(), DotFaults()])
 
-    def tell(stage: SyncStage, sensor: str, _left_s: float) -> None:
+    def show_message(stage: SyncStage, sensor: str, _left_s: float) -> None:
         if stage is at and sensor in ("", "DOT 0002"):
             raise InterruptedError
 
     with pytest.raises(InterruptedError):
-        wearing.group.synchronise(tell)
+        wearing.group.synchronise(show_message)
     radio.pass_s(1.0)
     assert not any(dot.is_synchronised or dot.is_streaming for dot in wearing.dots)
     assert not wearing.group.is_synchronising
@@ -186,14 +186,14 @@ def test_synchronising_that_is_left_off_leaves_nobody_synchronised(radio: Virtua
     assert all(dot.is_synchronised for dot in wearing.dots)
 
 
-def test_the_seconds_that_are_left_are_told_and_become_fewer(radio: VirtualRadio) -> None:
+def test_the_seconds_that_are_left_are_reported_and_become_fewer(radio: VirtualRadio) -> None:
     wearing = WornDots(radio, [DotFaults() for _ in range(3)])
-    told: list[tuple[float, float]] = []
-    wearing.group.synchronise(lambda _stage, _sensor, left_s: told.append((radio.loop.time(), left_s)))
-    assert len(told) > 20, "also while all are left alone"
-    left_s = [one[1] for one in told]
+    reported: list[tuple[float, float]] = []
+    wearing.group.synchronise(lambda _stage, _sensor, left_s: reported.append((radio.loop.time(), left_s)))
+    assert len(reported) > 20, "also while all are left alone"
+    left_s = [one[1] for one in reported]
     assert left_s == sorted(left_s, reverse=True)
-    assert left_s[0] == pytest.approx(told[-1][0] - told[0][0], abs=12.0)
+    assert left_s[0] == pytest.approx(reported[-1][0] - reported[0][0], abs=12.0)
 
 
 def test_closed_they_are_not_left_synchronised(radio: VirtualRadio) -> None:

@@ -77,7 +77,7 @@ async def _ended(tasks: set[asyncio.Task[Any]]) -> None:
 
 
 def turning(at_ns: float) -> Sequence[float]:
-    """Something that tells instants apart: a force of a leg, rates that grow."""
+    """Something that reports instants apart: a force of a leg, rates that grow."""
     second = at_ns / 1e9
     return (1.0, 0.0, 0.0, 0.0, 0.25, second % 7, 9.75, second % 300, -second % 200, 3.5)
 

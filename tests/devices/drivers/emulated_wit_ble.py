@@ -1,4 +1,4 @@
-"""A WitMotion sensor with Bluetooth LE that is not there: frames of twenty bytes, as many as its rate says."""
+"""A WitMotion sensor with Bluetooth LE that is not there: frames of twenty bytes, as many as its rate states."""
 
 from collections.abc import Callable, Sequence
 from struct import Struct
@@ -25,14 +25,14 @@ class EmulatedWitBle:
     Attributes
     ----------
     sent
-        Rate and force (6) of every sample that it took while it was heard, and when, ns of the host's clock.
+        Rate and force (6) of every sample that it took while it was received, and when, ns of the host's clock.
 
     Parameters
     ----------
     loss
         Share of its notifications that is lost.
     skew
-        How much faster than it says its quartz runs.
+        How much faster than it states its quartz runs.
     """
 
     def __init__(
@@ -43,17 +43,17 @@ class EmulatedWitBle:
         *,
         loss: float = 0.0,
         skew: float = 0.0,
-        says_so: bool = True,
+        states_so: bool = True,
     ) -> None:
         self.mac = bytes([0xE2, 0x10, 0x00, 0x00, 0x01, number + 1])
-        self.local_name = "WT00 EMULATED" if says_so else "WT901BLE68"
+        self.local_name = "WT00 EMULATED" if states_so else "WT901BLE68"
         self.companies: tuple[int, ...] = ()
         self.characteristics: Sequence[EmulatedCharacteristic] = CHARACTERISTICS
         self.chance = np.random.default_rng(number)
         self.subscribed: set[int] = set()
         self.is_up, self.is_away = False, False
         self.sent: list[tuple[tuple[float, ...], float]] = []
-        self.heard: list[bytes] = []
+        self.received: list[bytes] = []
         self._motion, self._now_ns, self._loss, self._skew = motion, now_ns, loss, skew
         self._rate_hz, self._is_unlocked = 10.0, False
         self._next_ns = float(now_ns())
@@ -78,14 +78,14 @@ class EmulatedWitBle:
         raise KeyError(characteristic)
 
     def write(self, characteristic: int, data: bytes) -> None:
-        self.heard.append(data)
+        self.received.append(data)
         if data == bytes.fromhex("FFAA6988B5"):
             self._is_unlocked = True
         elif data[:3] == b"\xff\xaa\x03" and self._is_unlocked and data[3] in RATES_HZ:
             self._rate_hz = RATES_HZ[data[3]]
 
     def notifications(self) -> Sequence[Notification]:
-        now_ns, said = self._now_ns(), []
+        now_ns, stated = self._now_ns(), []
         while self._next_ns <= now_ns:
             at_ns = self._next_ns
             self._next_ns += 1e9 / (self._rate_hz * (1.0 + self._skew))
@@ -96,5 +96,5 @@ class EmulatedWitBle:
             values = [int(np.clip(number, -32768, 32767)) for number in numbers]
             self.sent.append(((*(value * 2000 / 32768 for value in values[3:6]), *values[:3]), at_ns))
             if self.chance.random() >= self._loss:
-                said.append((0xFFE4, FRAME.pack(0x55, 0x61, *values)))
-        return said
+                stated.append((0xFFE4, FRAME.pack(0x55, 0x61, *values)))
+        return stated

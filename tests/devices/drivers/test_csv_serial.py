@@ -1,4 +1,4 @@
-"""Lines of numbers: what the columns mean is told, kept with the journal, and damage is seen where it can be."""
+"""Lines of numbers: what the columns mean is reported, kept with the journal, and damage is seen where it can be."""
 
 import json
 import math
@@ -17,24 +17,24 @@ from tests.devices.scripted import ScriptedChannel
 COLUMNS = Columns(0, (1, 2, 3), (4, 5, 6), count=7)
 
 
-def heard(columns: Columns, *said: bytes) -> CsvFramer:
+def arrived(columns: Columns, *stated: bytes) -> CsvFramer:
     framer = CsvFramer(columns)
     framer.feed(b"tail\n", 0.0)
-    for piece in said:
+    for piece in stated:
         framer.feed(piece, 0.0)
     return framer
 
 
-def test_columns_units_and_signs_are_as_told() -> None:
+def test_columns_units_and_signs_are_as_reported() -> None:
     columns = Columns(6, (3, 4, 5), (2, 1, 0), 1.0, 0, "rad/s", "mg", "semicolon", signs=(1, -1, 1, -1, 1, 1), count=7)
-    (row,) = heard(columns, b"1000;0;500;1.5;2.5;-3.5;12.25\r\n").heard.rows
+    (row,) = arrived(columns, b"1000;0;500;1.5;2.5;-3.5;12.25\r\n").received.rows
     assert row == pytest.approx((12.25, 1.5, -2.5, -3.5, -0.5 * 9.80665, 0.0, 9.80665))
 
 
 @pytest.mark.parametrize(("separator", "sign"), [("comma", ","), ("tab", "\t"), ("space", "  ")])
 def test_separators(separator: str, sign: str) -> None:
     columns = Columns(0, (1, 2, 3), (4, 5, 6), separator=separator)
-    (row,) = heard(columns, (sign.join(["10", "180", "0", "0", "0", "0", "1"]) + "\n").encode()).heard.rows
+    (row,) = arrived(columns, (sign.join(["10", "180", "0", "0", "0", "0", "1"]) + "\n").encode()).received.rows
     assert row[:2] == pytest.approx((0.01, math.pi))
 
 
@@ -42,18 +42,18 @@ def test_a_heading_is_skipped_and_damage_counted() -> None:
     good = b"10,1,2,3,0,0,1\n"
     bad = [b"10,1,2,3,0,0\n", b"10,1,2,3,0,0,1,5\n", b"10,x,2,3,0,0,1\n", b"10,1e9,2,3,0,0,1\n", b"nan,1,2,3,0,0,1\n"]
     bad += [b"\n", b"9" * (MOST_LINE + 5) + b"\n"]
-    found = heard(COLUMNS, b"time,gx,gy,gz,ax,ay,az\n", good, *bad, good).heard
+    found = arrived(COLUMNS, b"time,gx,gy,gz,ax,ay,az\n", good, *bad, good).received
     assert len(found.rows) == 2
     assert (found.skipped, found.damaged) == (1, len(bad))
 
 
 def test_a_time_beyond_all_numbers_is_damage() -> None:
     columns = Columns(0, (1, 2, 3), (4, 5, 6), tick_hz=0.01, count=7)
-    found = heard(columns, b"1,1,2,3,0,0,1\n", b"1e307,1,2,3,0,0,1\n").heard
+    found = arrived(columns, b"1,1,2,3,0,0,1\n", b"1e307,1,2,3,0,0,1\n").received
     assert (len(found.rows), found.damaged) == (1, 1)
 
 
-def test_a_counter_that_begins_anew_goes_on() -> None:
+def test_a_counter_that_begins_again_goes_on() -> None:
     columns = Columns(0, (1, 2, 3), (4, 5, 6), tick_hz=100.0, wraps_bits=16, rate_hz=100.0)
     decoder = Decoder(CsvSerial())
     decoder.begin(SourceInfo(DRIVER, VERSION, sensors=("C",), settings=columns.settings()))
@@ -85,13 +85,13 @@ def test_what_columns_mean_comes_back_from_a_journal() -> None:
     ],
 )
 def test_columns_that_cannot_be_are_refused(wrong: dict[str, object]) -> None:
-    told: dict[str, object] = {"time": 0, "rate": (1, 2, 3), "force": (4, 5, 6)}
+    reported: dict[str, object] = {"time": 0, "rate": (1, 2, 3), "force": (4, 5, 6)}
     with pytest.raises(ValueError, match=r"columns|unit|expected|signs"):
-        Columns(**{**told, **wrong})  # type: ignore[arg-type]  # wrong on purpose
+        Columns(**{**reported, **wrong})  # type: ignore[arg-type]  # wrong on purpose
 
 
 def test_another_line_is_refused(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr("devices.drivers.csv_serial.SAYS_S", 0.05)
+    monkeypatch.setattr("devices.drivers.csv_serial.STATES_S", 0.05)
     with pytest.raises(SourceRefusedError, match="in the expected format"):
         ByteSource(CsvSerial(COLUMNS), ScriptedChannel([b"hello\nhello\n"])).open()
 
@@ -110,7 +110,7 @@ class ScriptedLines:
         return b""
 
 
-def test_it_is_heard_through_a_port(tmp_path: Path) -> None:
+def test_it_is_received_through_a_port(tmp_path: Path) -> None:
     emulation = Emulation(ScriptedLines(), lambda: PseudoTerminal(tmp_path / "port"))
     source = ByteSource(CsvSerial(COLUMNS, name="home-made"), SerialPort(PortInfo(emulation.place)))
     try:

@@ -11,10 +11,10 @@ def lines(form: str, count: int = 20) -> list[str]:
     return [form.format(t=10 * number, s=0.01 * number, us=10_000 * number) for number in range(count)]
 
 
-def test_lines_of_numbers_are_told_from_text_and_noise() -> None:
-    said = "\r\n".join(lines("{t},0.1,0.2,0.3,0,0,1")).encode()
-    assert columns_in(said) == 7
-    assert columns_in(said[3:]) == 7
+def test_lines_of_numbers_are_reported_from_text_and_noise() -> None:
+    stated = "\r\n".join(lines("{t},0.1,0.2,0.3,0,0,1")).encode()
+    assert columns_in(stated) == 7
+    assert columns_in(stated[3:]) == 7
     assert columns_in(b"time,gx,gy,gz,ax,ay,az\r\n" * 5) == 0
     assert columns_in(b"1,2,3\r\n" * 5) == 0
     assert columns_in(bytes(range(256)) * 20) == 0

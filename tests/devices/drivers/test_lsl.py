@@ -1,4 +1,4 @@
-"""Are streams of Lab Streaming Layer heard, understood and stamped right, and missed without harm?"""
+"""Are streams of Lab Streaming Layer received, understood and stamped right, and missed without harm?"""
 
 import builtins
 import sys
@@ -35,7 +35,7 @@ RATE_HZ = 200.0
 # labels and units
 
 
-def test_two_sensors_in_one_stream_are_told_apart_and_the_wide_range_is_taken() -> None:
+def test_two_sensors_in_one_stream_are_reported_apart_and_the_wide_range_is_taken() -> None:
     first, second = sensors_of("Consensys", SHIMMER, SHIMMER_UNITS)
     assert (first.name, second.name) == ("Shimmer_5E3A", "Shimmer_5E3B")
     assert (first.force, first.rate) == ((3, 4, 5), (6, 7, 8))
@@ -50,7 +50,7 @@ def test_a_stream_of_one_sensor_has_its_name(labels: tuple[str, ...]) -> None:
 
 
 @pytest.mark.parametrize("units", [[], ["", "", "", "g", "g", "g"], ["deg/s"] * 2 + ["rad/s"] + ["g"] * 3])
-def test_units_that_are_not_told_are_not_guessed(units: list[str]) -> None:
+def test_units_that_are_not_reported_are_not_guessed(units: list[str]) -> None:
     with pytest.raises(SourceRefusedError, match="gives no units"):
         sensors_of("s", PLAIN, units)
 
@@ -61,7 +61,7 @@ def test_streams_of_something_else_are_refused(labels: tuple[str, ...]) -> None:
         sensors_of("s", labels, ["deg/s"] * len(labels))
 
 
-def test_without_the_library_there_are_no_streams_and_the_refusal_says_what_to_do(
+def test_without_the_library_there_are_no_streams_and_the_refusal_states_what_to_do(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
     found = builtins.__import__
@@ -85,8 +85,8 @@ def test_without_the_library_there_are_no_streams_and_the_refusal_says_what_to_d
 class Outlet:
     """Sends a sample every 5 ms, in a thread, stamped by a clock that is `offset_s` wrong and `skew` too fast.
 
-    The rate about x tells the sample's number, so that whoever hears it knows when it was taken: when the thread had
-    its turn, for a busy machine's sensors are no better.
+    The rate about x reports the sample's number, so that whoever receives it knows when it was taken: when the thread
+    had its turn, for a busy machine's sensors are no better.
     """
 
     def __init__(self, offset_s: float = 0.0, skew: float = 0.0, per_chunk: int = 1) -> None:
@@ -152,7 +152,7 @@ def opened(outlet: Outlet) -> LslSource:
     return source
 
 
-def heard(sources: list[LslSource], seconds: float) -> list[tuple[FloatArray, FloatArray]]:
+def received(sources: list[LslSource], seconds: float) -> list[tuple[FloatArray, FloatArray]]:
     """Numbers and stamps of what each source gave."""
     got: list[list[tuple[FloatArray, FloatArray]]] = [[] for _ in sources]
     until_s = time.monotonic() + seconds
@@ -216,13 +216,13 @@ def test_how_long_a_sample_waits_to_be_read_does_not_count_for_its_way(
 def assert_stamped(outlets: list[Outlet], seconds: float) -> None:
     sources = [opened(outlet) for outlet in outlets]
     try:
-        for outlet, source, (number, time_s) in zip(outlets, sources, heard(sources, seconds), strict=True):
+        for outlet, source, (number, time_s) in zip(outlets, sources, received(sources, seconds), strict=True):
             assert np.array_equal(np.diff(number), np.ones(len(number) - 1))  # none lost, none twice
             assert len(number) > 0.5 * seconds * RATE_HZ
             wrong_s = (time_s - outlet.taken_s(number))[int(RATE_HZ / 2) :]
             assert np.sqrt(np.mean(wrong_s**2)) < 0.002
-            told = source.details()[outlet.name]
-            assert (told.model, told.rate_hz) == ("IMU", RATE_HZ)
+            reported = source.details()[outlet.name]
+            assert (reported.model, reported.rate_hz) == ("IMU", RATE_HZ)
             assert source.info.sensors == (outlet.name,)
     finally:
         for source in sources:
@@ -259,10 +259,10 @@ def test_who_was_asked_on_this_computer_is_asked_nowhere_else(outlets: list[Outl
 def test_a_stream_that_ends_is_lost_and_then_not_there(outlets: list[Outlet], monkeypatch: pytest.MonkeyPatch) -> None:
     outlets.append(Outlet())
     source = opened(outlets[0])
-    heard([source], 0.3)
+    received([source], 0.3)
     outlets.pop().close()
     with pytest.raises(SourceLostError):
-        heard([source], 10.0)
+        received([source], 10.0)
     source.close()
     monkeypatch.setattr("devices.drivers.lsl.OPEN_S", 0.5)
     with pytest.raises(SourceRefusedError, match="was not found"):

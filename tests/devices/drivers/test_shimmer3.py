@@ -42,21 +42,21 @@ def streaming(has_checksum: bool) -> Shimmer3Voice:
 
 
 @pytest.mark.parametrize(
-    ("count", "told"),
+    ("count", "reported"),
     [(8, b"\xaa\x48"), (9, b"\x5d\x2a"), (10, b"\x17\x8b"), (11, b"\x4e\x79")],
 )
-def test_checksums_are_those_that_the_firmware_tests_itself_with(count: int, told: bytes) -> None:
-    assert checksum(bytes(range(1, count + 1))) == told
+def test_checksums_are_those_that_the_firmware_tests_itself_with(count: int, reported: bytes) -> None:
+    assert checksum(bytes(range(1, count + 1))) == reported
 
 
 def test_raw_numbers_become_units_by_the_sensors_own_calibration() -> None:
     framer = Shimmer3Framer(info(has_checksum=True))
     framer.feed(streaming(True).sample(100), 0.0)
-    ((_, *row),) = framer.heard.rows
+    ((_, *row),) = framer.received.rows
     # alignment, then sensitivity: x and y of the rate change places and turn around
     assert row[:3] == pytest.approx(np.deg2rad([0.0, -(100 - 12) / 16.40, 0.0]))
     assert row[3:] == pytest.approx([0.0, 0.0, 4100 / 419], abs=1e-12)
-    assert framer.heard.battery == pytest.approx(0.48, abs=0.02)
+    assert framer.received.battery == pytest.approx(0.48, abs=0.02)
 
 
 def test_a_calibration_that_was_never_stored_is_none() -> None:
@@ -74,20 +74,20 @@ def test_pieces_of_any_size_give_the_same_samples(has_checksum: bool, size: int)
     for at in range(0, len(data), size):
         framer.feed(data[at : at + size], 0.0)
     framer.flush()
-    assert len(framer.heard.rows) == 200
-    assert np.diff([row[0] for row in framer.heard.rows]) == pytest.approx(PERIOD / 32768)
-    assert framer.heard.damaged == 0
+    assert len(framer.received.rows) == 200
+    assert np.diff([row[0] for row in framer.received.rows]) == pytest.approx(PERIOD / 32768)
+    assert framer.received.damaged == 0
 
 
 def test_answers_between_packets_are_no_damage() -> None:
     voice = streaming(True)
     framer = Shimmer3Framer(info(has_checksum=True))
     framer.feed(voice.sample(0) + voice.hear(b"\x06") + voice.sample(1), 0.0)
-    assert (len(framer.heard.rows), framer.heard.damaged, voice.toggled) == (2, 0, 1)
+    assert (len(framer.received.rows), framer.received.damaged, voice.toggled) == (2, 0, 1)
 
 
 @pytest.mark.parametrize("seconds", [3.0, 700.0])
-def test_what_is_missing_is_counted_by_the_clock_even_where_it_begins_anew(seconds: float) -> None:
+def test_what_is_missing_is_counted_by_the_clock_even_where_it_begins_again(seconds: float) -> None:
     voice, decoding = streaming(True), Decoder(Shimmer3())
     missing = round(seconds * 32768 / PERIOD)
     decoding.begin(info(has_checksum=True))
@@ -120,7 +120,7 @@ def fuzz(frames: int, seed: int, has_checksum: bool) -> tuple[int, int, int]:
         framer.feed(frame, number * PERIOD / 32768)
         longest = max(longest, len(framer._held))
     framer.flush()
-    found = {round((row[0] * 32768 - framer._before - FIRST_TICKS) / PERIOD) for row in framer.heard.rows}
+    found = {round((row[0] * 32768 - framer._before - FIRST_TICKS) / PERIOD) for row in framer.received.rows}
     return len(clean), len(clean & found), longest
 
 
@@ -150,14 +150,14 @@ def test_noise_alone_gives_next_to_nothing(has_checksum: bool) -> None:
     for _ in range(200):
         framer.feed(chance.randbytes(1000), 0.0)
     framer.flush()
-    assert len(framer.heard.rows) <= 1
+    assert len(framer.received.rows) <= 1
 
 
-def test_a_stream_whose_channels_nobody_told_is_not_understood() -> None:
+def test_a_stream_whose_channels_nobody_reported_is_not_understood() -> None:
     framer = Shimmer3Framer(SourceInfo(DRIVER, VERSION))
     framer.feed(streaming(True).sample(0), 0.0)
     framer.flush()
-    assert framer.heard.rows == []
+    assert framer.received.rows == []
 
 
 # through a real port
@@ -177,7 +177,7 @@ def emulation(request: pytest.FixtureRequest, port: Path) -> Iterator[Emulation]
     one.close()
 
 
-def heard_for(source: ByteSource, seconds: float) -> tuple[list[ImuBlock], list[bytes]]:
+def received_for(source: ByteSource, seconds: float) -> tuple[list[ImuBlock], list[bytes]]:
     blocks: list[ImuBlock] = []
     kept: list[bytes] = []
     until_s = time.monotonic() + seconds
@@ -193,16 +193,16 @@ def test_a_sensor_is_set_up_through_a_port_and_its_bytes_are_read_again_alike(em
     source = ByteSource(Shimmer3(rate_hz=204.8), SerialPort(PortInfo(emulation.place)))
     source.open()
     try:
-        blocks, kept = heard_for(source, 0.4)
+        blocks, kept = received_for(source, 0.4)
         assert source.identify(EMULATED)
-        more, kept_more = heard_for(source, 0.2)
+        more, kept_more = received_for(source, 0.2)
     finally:
         source.close()
     assert (voice.period, voice.toggled) == (160, 1)
     assert source.info.is_simulated
-    told = source.details()[EMULATED]
-    assert (told.model, told.rate_hz) == ("Shimmer3", 204.8)
-    assert told.battery == pytest.approx(0.48, abs=0.02)
+    reported = source.details()[EMULATED]
+    assert (reported.model, reported.rate_hz) == ("Shimmer3", 204.8)
+    assert reported.battery == pytest.approx(0.48, abs=0.02)
     live = np.concatenate([block.gyr_rad_s for block in blocks + more])
     again = Decoder(Shimmer3())
     again.begin(source.info)
@@ -215,19 +215,19 @@ def test_a_sensor_is_set_up_through_a_port_and_its_bytes_are_read_again_alike(em
 
 
 @pytest.mark.endurance
-def test_a_sensor_that_vanishes_and_returns_is_heard_again(port: Path) -> None:
+def test_a_sensor_that_vanishes_and_returns_is_received_again(port: Path) -> None:
     emulation = Emulation(Shimmer3Voice(), lambda: PseudoTerminal(port))
     source = ByteSource(Shimmer3(), SerialPort(PortInfo(emulation.place)))
     source.open()
     try:
-        heard_for(source, 0.2)
+        received_for(source, 0.2)
         emulation.vanish()
         with pytest.raises(SourceLostError):
-            heard_for(source, 1.0)
+            received_for(source, 1.0)
         source.close()
         emulation.come_back()
         source.open()  # it was still streaming
-        blocks, _ = heard_for(source, 0.2)
+        blocks, _ = received_for(source, 0.2)
     finally:
         source.close()
         emulation.close()
@@ -239,9 +239,9 @@ def test_its_owners_rate_is_kept_where_it_is_of_use(owned: int, period: int, mon
     """51.2 Hz is too slow for a walk, and 512 more than is used."""
     monkeypatch.setattr("devices.drivers.shimmer3.QUIET_S", 0.01)
     voice = Shimmer3Voice(period=owned)
-    info, told = Shimmer3().greet(ScriptedChannel(answers=voice.hear))
+    info, reported = Shimmer3().greet(ScriptedChannel(answers=voice.hear))
     assert voice.period == info.settings["period_ticks"] == period
-    assert told.rate_hz == 32768 / period
+    assert reported.rate_hz == 32768 / period
 
 
 def test_a_sensor_without_calibration_is_refused_in_words() -> None:

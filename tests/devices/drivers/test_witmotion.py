@@ -30,9 +30,9 @@ def bursts(count: int, content: int = ALL, **settings: float) -> list[bytes]:
     return [voice.sample(number) for number in range(count)]
 
 
-def heard(*said: bytes) -> WitFramer:
+def arrived(*stated: bytes) -> WitFramer:
     framer = WitFramer()
-    for piece in said:
+    for piece in stated:
         framer.feed(piece, 0.0)
     framer.flush()
     return framer
@@ -40,11 +40,11 @@ def heard(*said: bytes) -> WitFramer:
 
 def test_the_frames_of_the_protocol() -> None:
     # by hand, as the protocol has them: 16 g, 2000 deg/s, 2026-01-02 03:04:05.678
-    said = bytes.fromhex("55 50 1A 01 02 03 04 05 A6 02 76")
-    assert frame(TIME, CLOCK.pack(26, 1, 2, 3, 4, 5, 678)) == said
+    stated = bytes.fromhex("55 50 1A 01 02 03 04 05 A6 02 76")
+    assert frame(TIME, CLOCK.pack(26, 1, 2, 3, 4, 5, 678)) == stated
     force = frame(FORCE, bytes.fromhex("00 08 00 F8 00 40 C4 09"))
     rate = frame(RATE, bytes.fromhex("00 40 00 C0 00 00 C4 09"))
-    (row,) = heard(said + force + rate).heard.rows
+    (row,) = arrived(stated + force + rate).received.rows
     day = datetime(2026, 1, 2, 3, 4, 5, 678_000)
     assert row[0] == pytest.approx(day.toordinal() * 86400 + 3 * 3600 + 4 * 60 + 5.678, abs=1e-6)
     assert row[1:4] == pytest.approx((np.radians(1000), -np.radians(1000), 0.0))
@@ -54,10 +54,10 @@ def test_the_frames_of_the_protocol() -> None:
 
 @given(st.lists(st.integers(1, 60)))
 def test_it_does_not_matter_how_bytes_are_cut(cuts: list[int]) -> None:
-    said = b"".join(bursts(20))
-    said = said[:300] + b"\x55\x51\x55" + said[307:]
-    pieces = [said[a:b] for a, b in zip([0, *np.cumsum(cuts)], [*np.cumsum(cuts), len(said)], strict=True)]
-    whole, cut = heard(said).heard, heard(*pieces).heard
+    stated = b"".join(bursts(20))
+    stated = stated[:300] + b"\x55\x51\x55" + stated[307:]
+    pieces = [stated[a:b] for a, b in zip([0, *np.cumsum(cuts)], [*np.cumsum(cuts), len(stated)], strict=True)]
+    whole, cut = arrived(stated).received, arrived(*pieces).received
     assert (whole.rows, whole.damaged, whole.skipped) == (cut.rows, cut.damaged, cut.skipped)
     assert len(whole.rows) >= 18
     assert whole.damaged == 1
@@ -65,9 +65,9 @@ def test_it_does_not_matter_how_bytes_are_cut(cuts: list[int]) -> None:
 
 def test_a_lost_frame_costs_its_own_sample_only() -> None:
     for lost in range(4):
-        said = bursts(5)
-        said[2] = said[2][: 11 * lost] + said[2][11 * (lost + 1) :]
-        rows = heard(*said).heard.rows
+        stated = bursts(5)
+        stated[2] = stated[2][: 11 * lost] + stated[2][11 * (lost + 1) :]
+        rows = arrived(*stated).received.rows
         assert len(rows) == (5 if lost == 3 else 4)
         assert np.allclose(
             [row[1] for row in rows], [np.radians(k) for k in range(5) if k != 2 or lost == 3], atol=2e-3
@@ -77,12 +77,12 @@ def test_a_lost_frame_costs_its_own_sample_only() -> None:
 def test_a_right_sum_by_chance_gives_way_to_the_frame_that_follows() -> None:
     clean = bursts(3)
     (at,) = (k for k in range(256) if sum(bytes([0x55, 0x51, k]) + clean[1][:7]) & 0xFF == clean[1][7])
-    said = clean[0] + bytes([0x55, 0x51, at]) + clean[1] + clean[2]
-    assert len(heard(said).heard.rows) == 3
+    stated = clean[0] + bytes([0x55, 0x51, at]) + clean[1] + clean[2]
+    assert len(arrived(stated).received.rows) == 3
 
 
 def test_frames_without_a_time_are_no_samples() -> None:
-    found = heard(*bursts(5, content=0b1110)).heard
+    found = arrived(*bursts(5, content=0b1110)).received
     assert found.rows == []
     assert found.skipped > 5
 
@@ -90,9 +90,9 @@ def test_frames_without_a_time_are_no_samples() -> None:
 def test_losses_are_counted_by_the_time() -> None:
     decoder = Decoder(WitMotion())
     decoder.begin(SourceInfo(DRIVER, VERSION, sensors=("W",), settings={"rate_hz": 200.0}))
-    for number, said in enumerate(bursts(400, rate_hz=200.0)):
+    for number, stated in enumerate(bursts(400, rate_hz=200.0)):
         if number not in (7, 8, 100):
-            decoder.feed(said, 5.0 + number / 200)
+            decoder.feed(stated, 5.0 + number / 200)
     one = decoder.finish()["W"]
     assert (one.counts.received, one.counts.lost, one.counts.doubled) == (397, 3, 0)
     assert np.ptp(one.block.time_s) == pytest.approx(399 / 200, abs=1e-3)
@@ -116,7 +116,7 @@ def test_it_is_set_up_and_known_by_its_number() -> None:
 
 def test_who_sends_no_time_or_nothing_is_refused(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr("devices.drivers.witmotion.ANSWERS_S", 0.01)
-    monkeypatch.setattr("devices.drivers.witmotion.SAYS_S", 0.05)
+    monkeypatch.setattr("devices.drivers.witmotion.STATES_S", 0.05)
     with pytest.raises(SourceRefusedError, match="sends no time"):
         ByteSource(WitMotion(), ScriptedChannel(bursts(200, content=0b1110))).open()
     with pytest.raises(SourceRefusedError, match="No signal from a WitMotion sensor at"):
@@ -124,7 +124,7 @@ def test_who_sends_no_time_or_nothing_is_refused(monkeypatch: pytest.MonkeyPatch
 
 
 @pytest.mark.endurance
-def test_it_is_heard_through_a_port(tmp_path: Path) -> None:
+def test_it_is_received_through_a_port(tmp_path: Path) -> None:
     voice = WitVoice("1", motion, rate_hz=200.0)
     emulation = Emulation(voice, lambda: PseudoTerminal(tmp_path / "port"))
     source = ByteSource(WitMotion(), SerialPort(PortInfo(emulation.place)))

@@ -29,7 +29,7 @@ def framer() -> WitBleFramer:
 def test_a_frame_is_acceleration_rate_and_angles_scaled_as_by_cable() -> None:
     one = framer()
     one.feed(framed(0xFFE4, FRAME), 5.0)
-    (row,) = one.heard.rows
+    (row,) = one.received.rows
     assert row[0] == 5.0
     assert row[1:4] == pytest.approx((np.radians(1000), -np.radians(1000), 0.0))
     assert row[4:] == pytest.approx((G, -G, 8 * G))
@@ -38,18 +38,18 @@ def test_a_frame_is_acceleration_rate_and_angles_scaled_as_by_cable() -> None:
 def test_several_frames_of_one_notification_follow_one_another_and_what_is_cut_or_another_kind_is_counted() -> None:
     one = framer()
     one.feed(framed(0xFFE4, FRAME * 3) + framed(0xFFE4, FRAME[:19]) + framed(0xFFE4, b"\x55\x71" + bytes(18)), 5.0)
-    assert (len(one.heard.rows), one.heard.damaged, one.heard.skipped) == (3, 1, 1)
-    assert np.all(np.diff([row[0] for row in one.heard.rows]) > 0)
+    assert (len(one.received.rows), one.received.damaged, one.received.skipped) == (3, 1, 1)
+    assert np.all(np.diff([row[0] for row in one.received.rows]) > 0)
 
 
 @pytest.mark.parametrize("size", [1, 7, 60])
 def test_what_is_read_does_not_hang_on_the_pieces(size: int) -> None:
-    said = b"".join(framed(0xFFE4, FRAME) for _ in range(9))
+    stated = b"".join(framed(0xFFE4, FRAME) for _ in range(9))
     one = framer()
-    for at in range(0, len(said), size):
-        one.feed(said[at : at + size], 5.0)
+    for at in range(0, len(stated), size):
+        one.feed(stated[at : at + size], 5.0)
     one.flush()
-    assert (len(one.heard.rows), one.heard.damaged) == (9, 0)
+    assert (len(one.received.rows), one.received.damaged) == (9, 0)
 
 
 @pytest.mark.parametrize(
@@ -62,7 +62,7 @@ def test_what_is_read_does_not_hang_on_the_pieces(size: int) -> None:
         ("Movella DOT", False),
     ],
 )
-def test_they_are_told_by_their_name(name: str, is_one: bool) -> None:
+def test_they_are_reported_by_their_name(name: str, is_one: bool) -> None:
     assert is_wit(Announced(name, "")) is is_one
 
 
@@ -91,7 +91,7 @@ def test_after_a_pause_samples_are_where_they_are_and_not_where_they_would_be() 
 
 
 def test_a_sample_that_is_lost_singly_is_not_seen() -> None:
-    """Which is why it is said of every recording."""
+    """Which is why it is stated about every recording."""
     decoder = Decoder(WitBle())
     decoder.begin(SourceInfo(DRIVER, "1", sensors=("WT",), settings={"rate_hz": 100.0}))
     for number in range(1000):
@@ -144,10 +144,10 @@ def test_each_sample_comes_through_at_the_rate_that_was_asked_for(radio: Virtual
     one = decoder.finish()["WT 0101"]
     sent = [values for values, _ in wit.sent]
     values = np.array(sent)
-    wanted = np.hstack([np.radians(values[:, :3]), values[:, 3:] * 16 * G / 32768])
+    required = np.hstack([np.radians(values[:, :3]), values[:, 3:] * 16 * G / 32768])
     got = np.hstack([one.block.gyr_rad_s, one.block.acc_m_s2])
-    begins = next(k for k in range(first - 60, len(wanted)) if np.allclose(wanted[k : k + 5], got[:5], atol=1e-9))
-    assert np.allclose(wanted[begins : begins + len(got)], got, atol=1e-9)
+    begins = next(k for k in range(first - 60, len(required)) if np.allclose(required[k : k + 5], got[:5], atol=1e-9))
+    assert np.allclose(required[begins : begins + len(got)], got, atol=1e-9)
     assert 490 < len(got) == live
     taken_s = np.array([at_ns for _, at_ns in wit.sent[begins : begins + len(got)]]) / 1e9 - begin_s
     assert np.abs(one.block.time_s - taken_s).max() < 0.05
@@ -155,7 +155,7 @@ def test_each_sample_comes_through_at_the_rate_that_was_asked_for(radio: Virtual
     details = source.details()["WT 0101"]
     assert not details.is_loss_seen
     assert "losses not seen" in details.model
-    assert wit.heard == [bytes.fromhex("FFAA6988B5"), bytes.fromhex("FFAA030900")]
+    assert wit.received == [bytes.fromhex("FFAA6988B5"), bytes.fromhex("FFAA030900")]
     assert not wit.is_up
 
 
@@ -203,9 +203,9 @@ def test_one_that_sends_nothing_is_refused(radio: VirtualRadio) -> None:
 
 @pytest.mark.endurance
 def test_the_search_finds_them_beside_dots(radio: VirtualRadio) -> None:
-    radio.reach(Air([EmulatedWitBle(number, turning, radio.now_ns, says_so=False) for number in range(2)]))
-    heard = [Announced("WT901BLE68", f"E2:10:00:00:01:{k:02X}") for k in (1, 2)]
-    radio.heard = lambda: [*heard, Announced("Movella DOT", "D4:22:CD:00:00:01", (0x0886,))]
+    radio.reach(Air([EmulatedWitBle(number, turning, radio.now_ns, states_so=False) for number in range(2)]))
+    received = [Announced("WT901BLE68", f"E2:10:00:00:01:{k:02X}") for k in (1, 2)]
+    radio.received = lambda: [*received, Announced("Movella DOT", "D4:22:CD:00:00:01", (0x0886,))]
     found = search((), 0, radio=radio)
     assert [(one.driver, one.name) for one in found.sensors] == [
         ("movella-dot", "DOT 0001"),

@@ -26,18 +26,18 @@ def motion(number: int) -> tuple[float, ...]:
     return (number % 1000, -2.5, 3.25, 0.5, -0.25, 1.0)
 
 
-def heard(*said: bytes) -> Ximu3Framer:
+def arrived(*stated: bytes) -> Ximu3Framer:
     framer = Ximu3Framer()
-    for piece in said:
+    for piece in stated:
         framer.feed(piece, 0.0)
     framer.flush()
     return framer
 
 
 def test_text_and_binary_say_the_same_in_si_units() -> None:
-    said = [message("I", 2_500_000, motion(180), is_binary) for is_binary in (False, True)]
-    for one in said:
-        (row,) = heard(one).heard.rows
+    stated = [message("I", 2_500_000, motion(180), is_binary) for is_binary in (False, True)]
+    for one in stated:
+        (row,) = arrived(one).received.rows
         assert row[0] == 2.5
         assert row[1] == pytest.approx(np.pi)
         assert row[4:] == pytest.approx((0.5 * G, -0.25 * G, G))
@@ -52,10 +52,10 @@ def test_stuffing_is_undone(data: bytes) -> None:
 
 @given(st.lists(st.integers(1, 40)), st.booleans())
 def test_it_does_not_matter_how_bytes_are_cut(cuts: list[int], is_binary: bool) -> None:
-    said = b"tail\n" + b"".join(message("I", k * 10_000, motion(k), is_binary) for k in range(20))
-    said = said[:200] + b"\x07" * 3 + said[205:] + text_message("N", 7, "hello", is_binary)
-    pieces = [said[a:b] for a, b in zip([0, *np.cumsum(cuts)], [*np.cumsum(cuts), len(said)], strict=True)]
-    whole, cut = heard(said).heard, heard(*pieces).heard
+    stated = b"tail\n" + b"".join(message("I", k * 10_000, motion(k), is_binary) for k in range(20))
+    stated = stated[:200] + b"\x07" * 3 + stated[205:] + text_message("N", 7, "hello", is_binary)
+    pieces = [stated[a:b] for a, b in zip([0, *np.cumsum(cuts)], [*np.cumsum(cuts), len(stated)], strict=True)]
+    whole, cut = arrived(stated).received, arrived(*pieces).received
     assert (whole.rows, whole.damaged, whole.skipped) == (cut.rows, cut.damaged, cut.skipped)
     assert len(whole.rows) >= 18
 
@@ -82,17 +82,17 @@ def test_it_does_not_matter_how_bytes_are_cut(cuts: list[int], is_binary: bool) 
         b"x" * (MOST_MESSAGE + 9) + b"\n",
     ],
 )
-def test_damage_is_counted_and_the_next_message_heard(bad: bytes) -> None:
+def test_damage_is_counted_and_the_next_message_received(bad: bytes) -> None:
     good = message("I", 10, motion(1), True)
-    found = heard(good + bad + good).heard
+    found = arrived(good + bad + good).received
     assert len(found.rows) == 2
     assert found.damaged == 1
 
 
 def test_whoever_joins_in_the_middle_sees_no_damage() -> None:
     good = message("I", 10, motion(1), False)
-    assert heard(good[7:], good).heard.damaged == 0
-    assert len(heard(good, good).heard.rows) == 2
+    assert arrived(good[7:], good).received.damaged == 0
+    assert len(arrived(good, good).received.rows) == 2
 
 
 def test_what_never_ends_is_not_kept() -> None:
@@ -101,11 +101,11 @@ def test_what_never_ends_is_not_kept() -> None:
         framer.feed(b"x" * 1000, 0.0)
         assert len(framer._rest) <= MOST_MESSAGE + 1000
     framer.feed(b"\n" + message("I", 10, motion(1), True), 0.0)
-    assert len(framer.heard.rows) == 1
+    assert len(framer.received.rows) == 1
 
 
 def test_other_messages_are_understood_or_skipped() -> None:
-    found = heard(
+    found = arrived(
         message("B", 1, (84.0, 3.9, 0.0), True)
         + message("T", 1, (25.0,), False)
         + message("M", 1, (1.0, 2.0, 3.0), True)
@@ -113,7 +113,7 @@ def test_other_messages_are_understood_or_skipped() -> None:
         + text_message("F", 1, "overload", True)
         + b'{"strobe":null}\r\n'
         + b"^A\xc9\n"
-    ).heard
+    ).received
     assert found.battery == 0.84
     assert found.skipped == 5
     assert found.replies == [b'{"strobe":null}']
@@ -145,10 +145,10 @@ def test_the_decoder_pairs_orientation_and_counts_what_is_missing() -> None:
 def test_bytes_after_a_loss_do_not_join_those_before() -> None:
     decoder = Decoder(Ximu3())
     decoder.begin(INFO)
-    said = [message("I", k * 10_000, motion(k), True) for k in range(100)]
-    decoder.feed(b"".join(said[:40]) + said[40][:9], 0.4)
+    stated = [message("I", k * 10_000, motion(k), True) for k in range(100)]
+    decoder.feed(b"".join(stated[:40]) + stated[40][:9], 0.4)
     decoder.begin(INFO)
-    decoder.feed(said[60][5:] + b"".join(said[61:]), 1.0)
+    decoder.feed(stated[60][5:] + b"".join(stated[61:]), 1.0)
     one = decoder.finish()["A"]
     assert (one.counts.received, one.counts.lost, one.counts.damaged) == (79, 21, 0)
 
@@ -171,8 +171,13 @@ def test_it_is_greeted_set_up_and_known_by_its_number() -> None:
     assert source.info.sensors == ("655782F7",)
     assert source.info.settings == {"rate_hz": 100.0}
     assert source.info.is_simulated
-    told = source.details()["655782F7"]
-    assert (told.model, told.serial, told.firmware, told.rate_hz) == ("x-IMU3", "655782F7", "v1.0.0", 100.0)
+    reported = source.details()["655782F7"]
+    assert (reported.model, reported.serial, reported.firmware, reported.rate_hz) == (
+        "x-IMU3",
+        "655782F7",
+        "v1.0.0",
+        100.0,
+    )
     assert voice.settings["inertial_message_rate_divisor"] == 4
     assert voice.settings["binary_mode_enabled"] is True
     assert source.identify("655782F7")
@@ -183,7 +188,7 @@ def test_it_is_greeted_set_up_and_known_by_its_number() -> None:
     assert not channel.is_open
 
 
-def test_it_is_left_as_it_is_unless_a_rate_is_wanted() -> None:
+def test_it_is_left_as_it_is_unless_a_rate_is_required() -> None:
     voice = Ximu3Voice("1", motion, rate_hz=200, is_binary=False)
     channel = ScriptedChannel(answers=voice.hear)
     ByteSource(Ximu3(), channel).open()
@@ -246,7 +251,7 @@ def _free_port() -> int:
 
 
 @pytest.mark.endurance
-def test_it_is_heard_live_and_its_bytes_say_the_same_again(emulated: tuple[Ximu3Voice, Channel]) -> None:
+def test_it_is_received_live_and_its_bytes_say_the_same_again(emulated: tuple[Ximu3Voice, Channel]) -> None:
     _, channel = emulated
     source = ByteSource(Ximu3(), channel)
     source.open()
@@ -260,16 +265,16 @@ def test_it_is_heard_live_and_its_bytes_say_the_same_again(emulated: tuple[Ximu3
     numbers = np.array([row[1] for row in rows]) * 180 / np.pi
     assert np.allclose(np.diff(numbers), 1.0)
     assert source.damaged == 0
-    framer = heard(kept)
-    assert len(framer.heard.rows) == len(rows)
+    framer = arrived(kept)
+    assert len(framer.received.rows) == len(rows)
     assert stamps_s[0] > begin_s - 1.0
 
 
 def test_a_file_is_read_by_the_sensors_clock(tmp_path: Path) -> None:
     path = tmp_path / "655782F7.ximu3"
     voice = Ximu3Voice("655782F7", motion)
-    said = [voice.sample(number) for number in range(300)]
-    path.write_bytes(b"".join(said[:100] + said[110:]) + b"half a mess")
+    stated = [voice.sample(number) for number in range(300)]
+    path.write_bytes(b"".join(stated[:100] + stated[110:]) + b"half a mess")
     one = read_file(path)
     assert one.block.sensor == "655782F7"
     assert (one.counts.received, one.counts.lost, one.counts.damaged) == (290, 10, 0)

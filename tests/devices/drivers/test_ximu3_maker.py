@@ -1,4 +1,4 @@
-"""The maker's own package decodes what our emulator says, and ours decodes the same: the same floats, both ways."""
+"""The maker's own package decodes what our emulator states, and ours decodes the same: the same floats, both ways."""
 
 import time
 from pathlib import Path
@@ -71,9 +71,9 @@ def test_both_make_the_same_floats_of_every_message(tmp_path: Path, count: int, 
     path = logged(tmp_path, count, is_binary)
     maker = theirs(path, count)
     ours = [
-        numbers_of(unstuffed(said), INERTIAL, 6)
-        for said in path.read_bytes().split(END)[:-1]
-        if said[0] & 0x7F == ord("I")
+        numbers_of(unstuffed(stated), INERTIAL, 6)
+        for stated in path.read_bytes().split(END)[:-1]
+        if stated[0] & 0x7F == ord("I")
     ]
     mine = np.array(ours)
     assert len(maker) == len(mine) == count
@@ -87,7 +87,7 @@ def test_both_make_the_same_floats_of_every_message(tmp_path: Path, count: int, 
 
 
 @pytest.mark.endurance
-def test_the_maker_speaks_with_our_emulator_and_logs_what_it_says(tmp_path: Path) -> None:
+def test_the_maker_speaks_with_our_emulator_and_logs_what_it_states(tmp_path: Path) -> None:
     voice = Ximu3Voice("655782F7", lambda number: (number % 1000, -2.5, 3.25, 0.5, -0.25, 1.0), rate_hz=400)
     server = TcpServer()
     emulation = Emulation(voice, lambda: server)

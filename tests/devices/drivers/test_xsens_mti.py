@@ -80,39 +80,39 @@ def golden_items(text: str) -> Iterator[list[tuple[str, list[str]]]]:
         yield items
 
 
-def golden_numbers(name: str, told: list[str]) -> list[float]:
+def golden_numbers(name: str, reported: list[str]) -> list[float]:
     if name == "UTCTime":
         year, month, day, hour, minute, second, fraction = re.fullmatch(
-            r"(\d+)-(\d+)-(\d+)T(\d+):(\d+):(\d+)\.?(\d*)Z", told[0]
+            r"(\d+)-(\d+)-(\d+)T(\d+):(\d+):(\d+)\.?(\d*)Z", reported[0]
         ).groups()  # type: ignore[union-attr]  # a text of another form fails the test all the same
         return [int(fraction.ljust(9, "0")), *map(int, (year, month, day, hour, minute, second))]
     if name.startswith("Status"):
-        return [int(told[0], 2)]
-    return [float(one.split(":")[-1]) for one in told]
+        return [int(reported[0], 2)]
+    return [float(one.split(":")[-1]) for one in reported]
 
 
 @pytest.mark.parametrize("number", CAPTURES)
-def test_a_recorded_stream_says_what_another_program_read_in_it(test_data: Find, number: int) -> None:
+def test_a_recorded_stream_states_what_another_program_read_in_it(test_data: Find, number: int) -> None:
     golden = test_data(f"vendor_streams/xsens_mti/einride_{number}_output.golden").read_text(encoding="utf-8")
     framer = XbusFramer()
     messages = framer.feed(capture(test_data, number))
     expected = list(golden_items(golden))
     assert len(messages) == len(expected) == 100
     assert framer.damaged == 0
-    for one, told in zip(messages, expected, strict=True):
-        assert len(one.items) == len(told)
-        for (identifier, data), (name, texts) in zip(one.items.items(), told, strict=True):
+    for one, reported in zip(messages, expected, strict=True):
+        assert len(one.items) == len(reported)
+        for (identifier, data), (name, texts) in zip(one.items.items(), reported, strict=True):
             plain = name.split("(")[0]
             assert identifier & xbus.ITEM_MASK == KINDS[plain], name
             if number_format := re.search(r"(Float32|FP1220|FP1632|Float64)\)", name):
                 assert identifier & xbus.FORMAT_MASK == FORMATS[number_format[1]]
-            wanted = golden_numbers(plain, texts)
-            got = values(identifier, data)[: len(wanted)]  # it leaves out the flags of the time and the satellites
-            assert list(got) == wanted, name
+            required = golden_numbers(plain, texts)
+            got = values(identifier, data)[: len(required)]  # it leaves out the flags of the time and the satellites
+            assert list(got) == required, name
 
 
 @pytest.mark.parametrize("number", [1, 2, 3, 4])
-def test_samples_of_a_recorded_stream_are_ten_milliseconds_apart_whatever_the_satellites_tell(
+def test_samples_of_a_recorded_stream_are_ten_milliseconds_apart_whatever_the_satellites_show(
     test_data: Find, number: int
 ) -> None:
     sensor = decoded(capture(test_data, number))
@@ -146,7 +146,7 @@ def test_pieces_of_any_size_give_the_same_messages(test_data: Find, number: int)
 def test_orientation_is_to_an_earth_with_z_up_whichever_axes_it_has() -> None:
     q_up = Rotation.from_euler("xyz", [0.4, -0.3, 1.1])
     down_from_up = Rotation.from_matrix([[0, 1, 0], [1, 0, 0], [0, 0, -1]])  # north, east, down of east, north, up
-    told = []
+    reported = []
     for axes, q in ((0x0, q_up), (0x4, down_from_up * q_up)):
         x, y, z, w = q.as_quat()
         data = b"".join(
@@ -159,29 +159,29 @@ def test_orientation_is_to_an_earth_with_z_up_whichever_axes_it_has() -> None:
         )
         framer = MtiFramer(INFO)
         framer.feed(message(Mid.MT_DATA2, data), 0.0)
-        ((_, w, x, y, z),) = framer.heard.orientations
-        told.append(Rotation.from_quat([x, y, z, w]))
-    assert (told[0].inv() * told[1]).magnitude() < 1e-9
-    assert (told[0].inv() * q_up).magnitude() < 1e-9
+        ((_, w, x, y, z),) = framer.received.orientations
+        reported.append(Rotation.from_quat([x, y, z, w]))
+    assert (reported[0].inv() * reported[1]).magnitude() < 1e-9
+    assert (reported[0].inv() * q_up).magnitude() < 1e-9
 
 
-def test_without_a_fine_time_the_counter_tells_it_even_where_it_begins_anew() -> None:
+def test_without_a_fine_time_the_counter_shows_it_even_where_it_begins_again() -> None:
     framer = MtiFramer(INFO)
     for number in range(65530, 65545):
         data = item(Item.COUNTER, struct.pack(">H", number % 65536))
         data += item(Item.ACCELERATION, bytes(12)) + item(Item.RATE, bytes(12))
         framer.feed(message(Mid.MT_DATA2, data), number / 100.0)
-    assert np.diff([row[0] for row in framer.heard.rows]) == pytest.approx(0.01)
+    assert np.diff([row[0] for row in framer.received.rows]) == pytest.approx(0.01)
 
 
 @pytest.mark.parametrize("wild", [math.nan, math.inf, -1e38, 200.0])
-def test_a_rate_that_nobody_turns_at_is_damage_whatever_its_checksum_says(wild: float) -> None:
+def test_a_rate_that_nobody_turns_at_is_damage_whatever_its_checksum_states(wild: float) -> None:
     framer = MtiFramer(INFO)
     for number, rate_rad_s in enumerate([1.0, wild, 1.0]):
         data = item(Item.COUNTER, struct.pack(">H", number)) + item(Item.ACCELERATION, bytes(12))
         framer.feed(message(Mid.MT_DATA2, data + item(Item.RATE, struct.pack(">3f", 0, 0, rate_rad_s))), 0.0)
-    assert [row[3] for row in framer.heard.rows] == [1.0, 1.0]
-    assert framer.heard.damaged == 1
+    assert [row[3] for row in framer.received.rows] == [1.0, 1.0]
+    assert framer.received.damaged == 1
 
 
 def decoded(data: bytes) -> DecodedSensor:
@@ -230,9 +230,9 @@ def fuzz(frames: int, seed: int) -> None:
         framer.feed(frame, number / 100.0)
         longest = max(longest, len(framer._framer._held))
     framer.flush()
-    assert len(framer.heard.rows) == clean
+    assert len(framer.received.rows) == clean
     assert longest <= 2 * xbus.MOST_DATA
-    assert framer.heard.damaged > 0
+    assert framer.received.damaged > 0
 
 
 def test_damaged_frames_cost_no_clean_one() -> None:
@@ -249,12 +249,12 @@ def test_noise_alone_gives_nothing_and_holds_little() -> None:
     for _ in range(200):
         framer.feed(chance.randbytes(1000), 0.0)
     framer.flush()
-    assert framer.heard.rows == []
-    assert framer.heard.damaged > 0
+    assert framer.received.rows == []
+    assert framer.received.damaged > 0
 
 
 @pytest.mark.parametrize("is_restarted", [True, False])
-def test_a_gap_is_right_to_a_sample_whether_the_sensors_clock_went_on_or_began_anew(is_restarted: bool) -> None:
+def test_a_gap_is_right_to_a_sample_whether_the_sensors_clock_went_on_or_began_again(is_restarted: bool) -> None:
     voice, one = MtiVoice("0123"), Decoder(XsensMti())
     for begin, first in ((0, 0), (1300, 0 if is_restarted else 1300)):
         one.begin(INFO)
@@ -282,7 +282,7 @@ def emulation(voice: MtiVoice, tmp_path: Path) -> Iterator[Emulation]:
     one.close()
 
 
-def heard_for(source: ByteSource, seconds: float) -> tuple[list[ImuBlock], list[bytes]]:
+def received_for(source: ByteSource, seconds: float) -> tuple[list[ImuBlock], list[bytes]]:
     blocks: list[ImuBlock] = []
     kept: list[bytes] = []
     until_s = time.monotonic() + seconds
@@ -297,14 +297,14 @@ def test_a_sensor_is_set_up_through_a_port_and_its_bytes_are_read_again_alike(
     source = ByteSource(XsensMti(rate_hz=200.0), SerialPort(PortInfo(emulation.place)))
     source.open()
     try:
-        blocks, kept = heard_for(source, 0.6)
+        blocks, kept = received_for(source, 0.6)
     finally:
         source.close()
     assert voice.rate_hz == 200
     assert source.info.is_simulated
-    told = source.details()["MTi 0280A1B2"]
-    assert (told.model, told.firmware, told.rate_hz) == (EMULATED, "1.8.2", 200.0)
-    assert told.rate_kind is RateKind.AVERAGED
+    reported = source.details()["MTi 0280A1B2"]
+    assert (reported.model, reported.firmware, reported.rate_hz) == (EMULATED, "1.8.2", 200.0)
+    assert reported.rate_kind is RateKind.AVERAGED
     live = np.concatenate([block.gyr_rad_s for block in blocks])
     again = Decoder(XsensMti())
     again.begin(source.info)
@@ -337,8 +337,8 @@ def test_its_owners_rate_is_kept_where_it_is_of_use(owned_hz: int, hz: int, has_
     """115200 baud carry the orientation at 100 Hz, but not at 200."""
     voice = MtiVoice(rate_hz=owned_hz)
     for _ in range(2):  # what was set is its owner's next time
-        _, told = XsensMti().greet(ScriptedChannel(answers=voice.hear))
-        assert (voice.rate_hz, told.rate_hz) == (hz, hz)
+        _, reported = XsensMti().greet(ScriptedChannel(answers=voice.hear))
+        assert (voice.rate_hz, reported.rate_hz) == (hz, hz)
         assert (Item.QUATERNION in voice.settings) == has_orientation
 
 
@@ -349,8 +349,8 @@ def test_a_sensor_that_refuses_its_owners_rate_is_set_to_the_usual_one() -> None
         is_refused = any(one.mid == Mid.OUTPUT and b"\x00\xc8" in one.data for one in XbusFramer(REQUESTS).feed(data))
         return message(Mid.ERROR, b"\x03") if is_refused else voice.hear(data)
 
-    _, told = XsensMti().greet(ScriptedChannel(answers=answer))
-    assert (voice.rate_hz, told.rate_hz) == (100, 100)
+    _, reported = XsensMti().greet(ScriptedChannel(answers=answer))
+    assert (voice.rate_hz, reported.rate_hz) == (100, 100)
 
 
 def test_a_port_where_no_sensor_answers_is_refused_in_words(monkeypatch: pytest.MonkeyPatch) -> None:
@@ -364,14 +364,14 @@ def test_a_sensor_that_vanishes_and_returns_goes_on_with_its_name(emulation: Emu
     source = ByteSource(XsensMti(), SerialPort(PortInfo(emulation.place)))
     source.open()
     try:
-        heard_for(source, 0.2)
+        received_for(source, 0.2)
         emulation.vanish()
         with pytest.raises(SourceLostError):
-            heard_for(source, 1.0)
+            received_for(source, 1.0)
         source.close()
         emulation.come_back()
         source.open()
-        blocks, _ = heard_for(source, 0.2)
+        blocks, _ = received_for(source, 0.2)
     finally:
         source.close()
     assert {block.sensor for block in blocks} == {"MTi 0280A1B2"}

@@ -20,7 +20,7 @@ MakeSession = Callable[..., Path]
 
 @pytest.fixture
 def make_session(tmp_path: Path) -> MakeSession:
-    """A session with one walk: `make_session({"left_thigh.csv": text}, toml=text)` says what differs."""
+    """A session with one walk: `make_session({"left_thigh.csv": text}, toml=text)` states what differs."""
 
     def make(files: dict[str, str | bytes] | None = None, toml: str | bytes = TOML) -> Path:
         folder = tmp_path / "session"

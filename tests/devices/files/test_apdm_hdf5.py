@@ -157,10 +157,10 @@ def test_other_units_are_refused(tmp_path: Path) -> None:
     assert 'the median acceleration of "A" is 1.00, not gravity in m/s2' in refusal(in_g)
     in_degrees = version_5(tmp_path / "b.h5", {"1": ("A", stamps(), still(rate=180.0))})
     assert 'the angular rates of "A" are in deg/s, not in rad/s' in refusal(in_degrees)
-    told = version_5(tmp_path / "c.h5", {"1": ("A", stamps(), still())})
-    with h5py.File(told, "r+") as file:
+    reported = version_5(tmp_path / "c.h5", {"1": ("A", stamps(), still())})
+    with h5py.File(reported, "r+") as file:
         file["Sensors/1/Accelerometer"].attrs["Units"] = "g"
-    assert 'c.h5, Sensors/1/Accelerometer: it is in "g", expected m/s^2' in refusal(told)
+    assert 'c.h5, Sensors/1/Accelerometer: it is in "g", expected m/s^2' in refusal(reported)
 
 
 def test_what_is_missing_or_damaged_is_refused_where_it_is(tmp_path: Path) -> None:
@@ -206,7 +206,7 @@ def test_other_hdf5_is_not_taken_for_it(tmp_path: Path) -> None:
         recognised([tmp_path / "a.h5"])
 
 
-def test_without_its_library_it_says_what_to_install(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_without_its_library_it_states_what_to_install(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     path = version_5(tmp_path / "a.h5", {"1": ("A", stamps(), still())})
     monkeypatch.setattr(hdf5, "LIBRARY", "h5py_that_is_not_there")
     assert "h5py_that_is_not_there, which is not installed. Install gaitwright[imports]" in refusal(path)

@@ -1,4 +1,4 @@
-"""Do the files of a BIDS-Motion recording, written as its specification says, become the samples of its sensors?"""
+"""Do the files of a BIDS-Motion recording, written as its specification states, become the samples of its sensors?"""
 
 import json
 from collections.abc import Mapping, Sequence
@@ -58,8 +58,13 @@ def bids(
     ]
     path = folder / f"{base}_motion.tsv"
     path.write_text("\n".join([*rows, ""]))
-    told = {"SamplingFrequency": 100, "TaskName": "walk", "Manufacturer": "Noraxon", "ManufacturersModelName": "n/a"}
-    (folder / f"{base}_motion.json").write_text(json.dumps(told if settings is None else settings))
+    reported = {
+        "SamplingFrequency": 100,
+        "TaskName": "walk",
+        "Manufacturer": "Noraxon",
+        "ManufacturersModelName": "n/a",
+    }
+    (folder / f"{base}_motion.json").write_text(json.dumps(reported if settings is None else settings))
     return path
 
 
@@ -98,7 +103,7 @@ def test_a_table_of_a_public_set_is_understood(tmp_path: Path) -> None:
     assert sensor.block.time_s[-1] == pytest.approx(299 / 199.9058823529412)
 
 
-def test_units_that_are_told_become_si(tmp_path: Path) -> None:
+def test_units_that_are_reported_become_si(tmp_path: Path) -> None:
     truth = swinging_sensor()
     path = bids(tmp_path, channels("leftThigh", truth, acc_unit="g", rate_unit="deg/s"))
     (sensor,) = bids_motion_trial([path]).sensors
@@ -109,7 +114,7 @@ def test_units_that_are_told_become_si(tmp_path: Path) -> None:
     )
 
 
-def test_units_that_are_told_wrongly_are_refused(tmp_path: Path) -> None:
+def test_units_that_are_reported_wrongly_are_refused(tmp_path: Path) -> None:
     truth = swinging_sensor()
     held = channels("leftThigh", truth)
     assert 'the median acceleration of "leftThigh" is 1.0' in refusal(
@@ -144,7 +149,7 @@ def test_latencies_are_the_times_and_missing_samples_gaps(tmp_path: Path) -> Non
     assert "its latency step of 10 does not match 100 samples per second" in refusal(bids(tmp_path, [in_ms, *held]))
 
 
-def test_a_frequency_that_nothing_tells_is_asked_for(tmp_path: Path) -> None:
+def test_a_frequency_that_nothing_shows_is_asked_for(tmp_path: Path) -> None:
     path = bids(tmp_path, channels("leftThigh", swinging_sensor()), settings={"SamplingFrequency": "n/a"})
     assert "its sampling frequency is missing. Give it in Hz (--rate)" in refusal(path)
     assert bids_motion_trial([path], 100.0).sensors[0].info.rate_hz == 100.0
@@ -176,7 +181,7 @@ def test_an_orientation_is_taken_where_it_turns_gravity_up(tmp_path: Path) -> No
     assert [finding.key for finding in sensor.findings] == ["orientation_left_out"]
 
 
-def test_what_is_said_to_be_in_global_axes_is_looked_at(tmp_path: Path) -> None:
+def test_what_is_stated_to_be_in_global_axes_is_looked_at(tmp_path: Path) -> None:
     """The specification's own example calls what an accelerometer measures global."""
     truth = swinging_sensor(1000, reach_rad=1.2)
     heads = (*HEADS, "reference_frame")
@@ -217,7 +222,7 @@ def test_systems_of_one_recording_are_brought_together_by_their_starts(tmp_path:
     assert trial.started == "2022-12-05T19:23:27.500Z"
 
 
-def test_files_are_told_by_their_table_of_channels_and_gathered(tmp_path: Path) -> None:
+def test_files_are_reported_by_their_table_of_channels_and_gathered(tmp_path: Path) -> None:
     for run in (1, 2):
         for system in ("imuA", "imuB"):
             base = f"sub-01_task-walk_tracksys-{system}_run-{run}"

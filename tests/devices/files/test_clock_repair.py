@@ -90,7 +90,7 @@ def test_stamps_without_faults_stay_to_the_last_bit() -> None:
         assert clock.findings == ()
 
 
-def test_repeated_stamps_are_new_once_and_told() -> None:
+def test_repeated_stamps_are_new_once_and_reported() -> None:
     clock = mended(at([100, 101], EVEN_S[99]))
     assert clock.doubled == 2
     assert [(one.key, one.numbers) for one in clock.findings] == [("doubled_stamps", {"count": 2})]
@@ -166,8 +166,8 @@ def test_no_real_recording_is_refused_or_mended_for_its_clock(test_data: Callabl
     assert trials
     for files in trials:
         for path in files:
-            said = about(path)
-            assert not [one for one in said if "goes back" in one or one == "stamps_mended"], path
+            stated = about(path)
+            assert not [one for one in stated if "goes back" in one or one == "stamps_mended"], path
 
 
 @given(

@@ -77,7 +77,7 @@ def test_what_is_something_else_is_left_alone(name: str) -> None:
     assert meaning_of(name) is None
 
 
-def test_a_unit_that_stands_elsewhere_counts() -> None:
+def test_a_unit_that_is_elsewhere_counts() -> None:
     meaning = meaning_of("acc_x", "m/s^2")
     assert meaning is not None
     assert meaning.unit == "m/s2"

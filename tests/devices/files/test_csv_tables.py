@@ -85,7 +85,7 @@ def test_names_and_units_become_si(
     np.testing.assert_allclose(block.gyr_rad_s, rate, atol=1e-6)
     np.testing.assert_allclose(block.time_s, TIME_S, atol=1e-6)
     assert imported.sensors[Site.LEFT_SHANK].rate_hz == 100.0
-    assert imported.sensors[Site.LEFT_SHANK].rate_kind is None  # which no name tells
+    assert imported.sensors[Site.LEFT_SHANK].rate_kind is None  # which no name reports
     assert finding(imported, "columns_understood").numbers["acc_unit"] == (
         "g" if acc_unit == G else "mg" if "mg" in acc else "m/s2"
     )
@@ -140,7 +140,7 @@ def test_one_file_for_each_sensor_is_called_by_its_file(tmp_path: Path) -> None:
     np.testing.assert_allclose(imported.imu[Site.LEFT_SHANK].acc_m_s2, motion(1)[0], atol=1e-6)
 
 
-def test_one_file_of_several_that_cannot_be_read_is_told_when_it_is_wanted(tmp_path: Path) -> None:
+def test_one_file_of_several_that_cannot_be_read_is_reported_when_it_is_required(tmp_path: Path) -> None:
     write(tmp_path / "thigh.csv", {"time_s": TIME_S, **named("acc_{}_g", "gyr_{}_rad_s", G)})
     write(tmp_path / "shank.csv", {"time_s": TIME_S, **named("acc_{}_m_s2", "gyr_{}_rad_s", G)})
     files = [tmp_path / "thigh.csv", tmp_path / "shank.csv"]
@@ -260,7 +260,7 @@ def test_an_orientation_is_taken_where_it_turns_gravity_upwards(tmp_path: Path) 
         )
 
 
-def test_columns_that_mean_nothing_are_told(tmp_path: Path) -> None:
+def test_columns_that_mean_nothing_are_reported(tmp_path: Path) -> None:
     columns = {"time_s": TIME_S, **named("acc_{}_m_s2", "gyr_{}_rad_s"), "pressure": TIME_S, "acc_norm": TIME_S}
     assert finding(shank(write(tmp_path / "a.csv", columns)), "columns_left_out").numbers == {
         "names": "pressure, acc_norm"

@@ -1,4 +1,4 @@
-"""What each emulated sensor says, kept as a file: imported with its units, counts and rates, or refused as none."""
+"""What each emulated sensor states, kept as a file: imported with its units, counts and rates, or refused as none."""
 
 from collections.abc import Callable
 from pathlib import Path
@@ -38,7 +38,7 @@ def measured() -> bytes:
     return voice.say()
 
 
-SAID: dict[str, Callable[[], bytes]] = {
+STATED: dict[str, Callable[[], bytes]] = {
     "ximu3": lambda: b"\n" + b"".join(Ximu3Voice("0123ABCD", in_g_and_degrees).sample(k) for k in range(COUNT)),
     "xsens-mti": measured,
     "witmotion": lambda: b"".join(WitVoice("7", in_g_and_degrees).sample(k) for k in range(COUNT)),
@@ -50,7 +50,7 @@ SAID: dict[str, Callable[[], bytes]] = {
 @pytest.mark.parametrize("kind", ["ximu3", "xsens-mti"])
 def test_bytes_that_a_program_keeps_are_imported(tmp_path: Path, kind: str) -> None:
     path = tmp_path / "left_shank.bin"
-    path.write_bytes(SAID[kind]())
+    path.write_bytes(STATED[kind]())
     assert format_of(path) == kind
     (sensor,) = read_trial("", [path], None).sensors
     assert (len(sensor.block), sensor.info.rate_hz) == (COUNT, HZ)
@@ -63,7 +63,7 @@ def test_bytes_that_a_program_keeps_are_imported(tmp_path: Path, kind: str) -> N
 @pytest.mark.parametrize("kind", ["witmotion", "shimmer3", "csv"])
 def test_bytes_that_no_program_keeps_so_are_called_none(tmp_path: Path, kind: str) -> None:
     path = tmp_path / "left_shank.bin"
-    path.write_bytes(SAID[kind]())
+    path.write_bytes(STATED[kind]())
     assert format_of(path) is None
     (refusal,) = gather([path]).refused
     assert refusal.what == "this file format is not supported"

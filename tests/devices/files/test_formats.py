@@ -1,4 +1,4 @@
-"""Is the program that wrote a file told by what stands in it?"""
+"""Is the program that wrote a file reported by what is in it?"""
 
 from collections.abc import Callable
 from pathlib import Path
@@ -27,18 +27,18 @@ def test_every_export_there_is(test_data: FindData) -> None:
         assert {recognised([path]) for path in files} == {name}
 
 
-def test_every_format_says_what_writes_it_and_what_it_was_held_against() -> None:
+def test_every_format_states_what_writes_it_and_what_it_was_held_against() -> None:
     assert set(PROGRAMS) == set(FORMATS)
     assert set(PROOFS) == set(FORMATS)
     assert all(proof.endswith(".") for proof in PROOFS.values())
 
 
-def test_the_name_of_a_file_says_nothing(tmp_path: Path) -> None:
+def test_the_name_of_a_file_states_nothing(tmp_path: Path) -> None:
     assert recognised([put(tmp_path / "apdm.csv", MT)]) == "xsens-mtmanager"
     assert recognised([put(tmp_path / "PacketCounter.txt", APDM)]) == "apdm"
 
 
-def test_movella_dot_is_told_from_mt_manager_by_more_than_its_columns(tmp_path: Path) -> None:
+def test_movella_dot_is_reported_from_mt_manager_by_more_than_its_columns(tmp_path: Path) -> None:
     columns = "PacketCounter,SampleTimeFine,Acc_X,Acc_Y,Acc_Z,Gyr_X,Gyr_Y,Gyr_Z\n"
     assert recognised([put(tmp_path / "a.csv", f"sep=,\nDeviceTag:,D4\n\n{columns}")]) == "movella-dot"
     assert recognised([put(tmp_path / "b.csv", "SampleTimeFine,Euler_X,FreeAcc_X\n1,2,3\n")]) == "movella-dot"

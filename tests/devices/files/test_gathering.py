@@ -52,7 +52,7 @@ def test_twenty_mixed_files_come_together(mixed: Path) -> None:
     } == {str(path) for path in (*paths, mixed / "more" / "d.csv")} - {str(mixed / "more")}
 
 
-def test_a_folder_stands_for_what_is_in_it(mixed: Path) -> None:
+def test_a_folder_is_for_what_is_in_it(mixed: Path) -> None:
     assert len(gather([mixed]).trials) == 6  # a folder in a folder is one too many
     many = mixed / "many"
     many.mkdir()

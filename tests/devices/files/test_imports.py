@@ -116,20 +116,20 @@ def test_a_file_that_is_not_there_is_refused(tmp_path: Path) -> None:
 
 
 def test_a_second_import_adds_a_recording(tmp_path: Path) -> None:
-    told = Finding("file_left_out", Severity.INFO, "walk 1", {"name": "x"})
+    reported = Finding("file_left_out", Severity.INFO, "walk 1", {"name": "x"})
     info = {Site.LEFT_THIGH: SensorInfo("A1", rate_hz=100.0, rate_kind=RateKind.AVERAGED)}
-    session = add_recording(Session(()), walk("walk 1"), info, [told])
-    assert session.findings == (told,)
+    session = add_recording(Session(()), walk("walk 1"), info, [reported])
+    assert session.findings == (reported,)
     write_session(session, tmp_path / "s")
     session = add_recording(read_session(tmp_path / "s"), walk("walk 2"), info)
     write_session(session, tmp_path / "s")
     session = read_session(tmp_path / "s")
-    assert session.findings == (told,)
+    assert session.findings == (reported,)
     assert [recording.name for recording in session.recordings] == ["walk 1", "walk 2"]
     assert session.sensors == info
 
 
-def test_a_sensor_that_changes_is_told(tmp_path: Path) -> None:
+def test_a_sensor_that_changes_is_reported(tmp_path: Path) -> None:
     session = add_recording(Session(()), walk("walk 1"), {Site.LEFT_THIGH: SensorInfo("A1", rate_hz=100.0)})
     other = {Site.LEFT_THIGH: SensorInfo("B2", rate_hz=60.0)}
     session = add_recording(session, walk("walk 2", "B2"), other)

@@ -77,7 +77,7 @@ def process_of(reader: LimitedReader) -> int:
 
 
 def same(one: object, other: object) -> bool:
-    """Tell whether two sessions, and all that is in them, hold the same."""
+    """Return whether two sessions, and all that is in them, hold the same."""
     if isinstance(one, np.ndarray):
         if not isinstance(other, np.ndarray) or one.dtype != other.dtype:
             return False
@@ -388,8 +388,8 @@ def test_a_limited_process_reads_and_does_nothing_else(tmp_path: Path) -> None:
     before = (tmp_path / "old").stat()
     with socket.create_server(("127.0.0.1", 0)) as server:
         arguments = [sys.executable, "-c", ATTEMPTS, str(tmp_path), str(server.getsockname()[1])]
-        told = subprocess.run(arguments, capture_output=True, text=True, check=True).stdout.splitlines()
-    came = dict(line.split() for line in told)
+        reported = subprocess.run(arguments, capture_output=True, text=True, check=True).stdout.splitlines()
+    came = dict(line.split() for line in reported)
     assert came.pop("read") == "done"
     assert came.pop("memory") == "MemoryError"
     assert came.pop("write") in ("OSError", "PermissionError")  # the first without Landlock: the file is too large
@@ -412,10 +412,10 @@ def test_not_a_byte_is_written_on_a_kernel_without_landlock_either(tmp_path: Pat
     without = f"from devices.files import limits\n{without}"
     (tmp_path / "old").write_text("as it was")
     # the port is nobody's: what is asked here is only what becomes of files
-    told = subprocess.run(
+    reported = subprocess.run(
         [sys.executable, "-c", without, str(tmp_path), "9"], capture_output=True, text=True, check=True
     ).stdout
-    came = dict(line.split() for line in told.splitlines())
+    came = dict(line.split() for line in reported.splitlines())
     assert came["create"] == "done"  # so Landlock is off
     assert came["write"] == "OSError"
     assert all(path.stat().st_size in (0, len("as it was")) for path in tmp_path.iterdir() if path.is_file())
@@ -427,14 +427,14 @@ LANDLOCK_VERSION = "import ctypes; print(ctypes.CDLL(None).syscall(444, None, 0,
 # --- answers that nobody of ours gives
 
 
-def sent(told: dict[str, object], *arrays: Array) -> bytes:
+def sent(reported: dict[str, object], *arrays: Array) -> bytes:
     stream = io.BytesIO()
-    send(stream, told, arrays)
+    send(stream, reported, arrays)
     return stream.getvalue()
 
 
 ANSWER = sent({"what": "read", "details": [1, "a"]}, np.arange(3.0), np.eye(2, dtype=np.int16))
-END_OF_HEAD = 8 + int.from_bytes(ANSWER[:8], "little")  # what says how long each array is
+END_OF_HEAD = 8 + int.from_bytes(ANSWER[:8], "little")  # what states how long each array is
 
 
 @given(st.integers(0, len(ANSWER) - 1), st.integers(1, 255), st.integers(0, 60))
@@ -442,11 +442,11 @@ def test_a_damaged_answer_is_no_answer(place: int, change: int, cut: int) -> Non
     damaged = bytearray(ANSWER)
     damaged[place] ^= change
     try:
-        told, _ = receive(io.BytesIO(damaged[: len(damaged) - cut]))
+        reported, _ = receive(io.BytesIO(damaged[: len(damaged) - cut]))
     except (BrokenAnswerError, EOFError):
         return
-    assert isinstance(told, dict)
-    assert cut == 0 or place < END_OF_HEAD  # an array that is said to be shorter may miss its end
+    assert isinstance(reported, dict)
+    assert cut == 0 or place < END_OF_HEAD  # an array that is stated to be shorter may miss its end
 
 
 @pytest.mark.parametrize("kind", ["|O", "<O8", "|V8", "|S9", "<U4", "<M8", "f8", "<f16", 8])
@@ -467,10 +467,10 @@ def test_arrays_are_no_larger_than_a_file_can_be(shape: str) -> None:
 
 @pytest.mark.parametrize("what", ["{a.__class__}", "{a:>999999999}", "{a!r}", "{b}", "{}", "{a[0]}", "{", "x" * 99_999])
 def test_a_refusal_has_only_plain_names_in_its_braces(what: str) -> None:
-    told = {"where": "w", "what": what, "remedy": "Do", "values": {"a": "1"}}
+    reported = {"where": "w", "what": what, "remedy": "Do", "values": {"a": "1"}}
     with pytest.raises(BrokenAnswerError):
-        refusal_from(told)
-    assert str(refusal_from({**told, "what": "is {a}"})) == "w: is 1. Do."
+        refusal_from(reported)
+    assert str(refusal_from({**reported, "what": "is {a}"})) == "w: is 1. Do."
 
 
 @pytest.mark.parametrize(
@@ -488,10 +488,10 @@ def test_a_refusal_has_only_plain_names_in_its_braces(what: str) -> None:
 )
 def test_a_block_of_another_shape_is_no_block(change: dict[str, object]) -> None:
     arrays: list[Array] = []
-    told = details_of_block(ImuBlock("a", np.arange(3.0), np.zeros((3, 3)), np.zeros((3, 3))), arrays)
-    assert block_from(told, arrays).sensor == "a"
+    reported = details_of_block(ImuBlock("a", np.arange(3.0), np.zeros((3, 3)), np.zeros((3, 3))), arrays)
+    assert block_from(reported, arrays).sensor == "a"
     with pytest.raises(BrokenAnswerError):
-        block_from(told | change, arrays)
+        block_from(reported | change, arrays)
 
 
 def test_a_finding_of_another_shape_is_no_finding() -> None:

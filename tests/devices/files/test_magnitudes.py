@@ -87,7 +87,7 @@ def test_rates_beyond_every_range_are_in_another_unit() -> None:
 
 
 @pytest.mark.parametrize("scale", [1.0, np.pi / 180, 180 / np.pi])
-def test_the_orientation_tells_by_how_much_rates_are_off(scale: float) -> None:
+def test_the_orientation_shows_by_how_much_rates_are_off(scale: float) -> None:
     swing = swinging_sensor()
     counter = np.arange(len(swing.time_s))
     found = times_the_turning(scale * swing.gyr_rad_s, swing.q_earth_from_sensor, counter, 100.0)

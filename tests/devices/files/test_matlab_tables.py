@@ -96,7 +96,7 @@ def left_shank(path: Path, name: str, rate_hz: float | None = None) -> Any:
 
 
 @pytest.mark.parametrize("write", [written, written_7_3])
-def test_structures_are_sensors_and_what_stands_around_them_counts_for_all(tmp_path: Path, write: Any) -> None:
+def test_structures_are_sensors_and_what_is_around_them_counts_for_all(tmp_path: Path, write: Any) -> None:
     trial = {"time": TIME_S[:, None], "units": {"time": "s"}, "left_shank": sensor(), "right_shank": sensor(0.1)}
     path = write(tmp_path / "a.txt", {"trial": trial, "comment": "a walk"})
     assert recognised([path]) == "matlab"
@@ -107,7 +107,7 @@ def test_structures_are_sensors_and_what_stands_around_them_counts_for_all(tmp_p
     np.testing.assert_allclose(imported.imu[Site.RIGHT_SHANK].gyr_rad_s, GYR)
     np.testing.assert_allclose(imported.imu[Site.LEFT_SHANK].time_s, TIME_S)
     assert imported.sensors[Site.LEFT_SHANK].rate_hz == 100.0
-    assert imported.sensors[Site.LEFT_SHANK].rate_kind is None  # which no name tells
+    assert imported.sensors[Site.LEFT_SHANK].rate_kind is None  # which no name reports
     understood = next(one.numbers for one in imported.findings if one.key == "columns_understood")
     assert understood["acc"] == "acc_m_s2_x, acc_m_s2_y, acc_m_s2_z"
     assert understood["time"] == "time [s]"
@@ -176,7 +176,7 @@ def test_units_are_held_to_their_size_and_asked_for(tmp_path: Path) -> None:
     back[50:] -= 0.5
     assert 'a.mat, sample 51: "time_s" goes back from 0.49 to 0' in refusal({"time_s": back, **sensor()})
     quat = {"time_s": TIME_S, **sensor(), "quat": np.tile((1.0, 0.0, 0.0, 0.0), (ROWS, 1))}
-    trial = matlab_trial([written(tmp_path / "b.mat", quat)])  # whose order nothing tells
+    trial = matlab_trial([written(tmp_path / "b.mat", quat)])  # whose order nothing reports
     assert trial.sensors[0].block.q_earth_from_sensor is None
     assert [one.numbers for one in trial.sensors[0].findings if one.key == "columns_left_out"] == [{"names": "quat"}]
 

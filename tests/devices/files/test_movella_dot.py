@@ -102,7 +102,7 @@ def test_samples_are_those_of_the_file_in_si_units(tmp_path: Path) -> None:
     assert sensor.block.mag[0].tolist() == [0.1, 0.2, 0.3]
     assert not sensor.block.is_rate_derived
     assert (sensor.info.serial, sensor.info.firmware, sensor.info.rate_hz) == ("D422CD004D68", "2.0.0", 60.0)
-    assert sensor.info.rate_kind is RateKind.INSTANTANEOUS  # as the orientation beside them tells
+    assert sensor.info.rate_kind is RateKind.INSTANTANEOUS  # as the orientation beside them reports
     assert sensor.ids == ("D422CD004D68", "left thigh")
     assert sensor.findings == ()
 
@@ -160,7 +160,7 @@ def test_an_excel_file_holds_the_same(tmp_path: Path) -> None:
     assert 'b.xlsx, row 20: "moved" is not a number' in refusal(tmp_path / "b.xlsx")
 
 
-def test_an_excel_file_without_the_library_says_what_to_install(
+def test_an_excel_file_without_the_library_states_what_to_install(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     book = openpyxl.Workbook()
@@ -180,7 +180,7 @@ def test_lost_samples_are_gaps_and_a_turn_of_the_clock_is_none(tmp_path: Path) -
     assert np.isnan(odd.gyr_rad_s).all()  # no two that follow each other: nothing to derive a rate of
 
 
-def test_a_repeated_time_is_told_and_a_step_back_refused(tmp_path: Path) -> None:
+def test_a_repeated_time_is_reported_and_a_step_back_refused(tmp_path: Path) -> None:
     ticks = [STEP * k for k in range(240)]
     ticks[100] = ticks[99]
     trial = movella_dot_trial([dot(tmp_path / "a.csv", "Acc", "Gyr", ticks=ticks)])
@@ -203,7 +203,7 @@ def test_synchronised_sensors_share_a_clock(tmp_path: Path) -> None:
     assert keys(trial) == [[], [], []]
 
 
-def test_one_grid_of_stamps_proves_a_shared_clock_where_the_file_says_nothing(tmp_path: Path) -> None:
+def test_one_grid_of_stamps_proves_a_shared_clock_where_the_file_states_nothing(tmp_path: Path) -> None:
     nothing = {"DeviceTag": "a", "OutputRate": "60Hz"}
     started = (3343444552, 3343444552 + 7 * STEP, 3343444552 + 7 * STEP + 5000)
     files = [
@@ -218,7 +218,7 @@ def test_one_grid_of_stamps_proves_a_shared_clock_where_the_file_says_nothing(tm
     assert [float(sensor.block.time_s[0]) for sensor in apart.sensors] == [0.0, 0.0]
 
 
-def test_sensors_that_were_not_synchronised_are_told(tmp_path: Path) -> None:
+def test_sensors_that_were_not_synchronised_are_reported(tmp_path: Path) -> None:
     files = [
         dot(tmp_path / f"{k}_D422CD004D6{k}_x.csv", "Acc", "Gyr", heads=HEADS | {"SyncStatus": "Un-synced"})
         for k in range(2)

@@ -26,14 +26,14 @@ def stream(test_data: Find, number: int) -> Path:
     return test_data(f"vendor_streams/xsens_mti/einride_{number}_output.bin")
 
 
-def golden(test_data: Find, number: int, wanted: str) -> list[list[float]]:
+def golden(test_data: Find, number: int, required: str) -> list[list[float]]:
     """The values of one kind of item as another program read them."""
     text = test_data(f"vendor_streams/xsens_mti/einride_{number}_output.golden").read_text(encoding="utf-8")
     return [
-        golden_numbers(wanted, told)
+        golden_numbers(required, reported)
         for items in golden_items(text)
-        for name, told in items
-        if name.split("(")[0] == wanted
+        for name, reported in items
+        if name.split("(")[0] == required
     ]
 
 
@@ -100,7 +100,7 @@ def test_a_recorded_stream_is_recognised_and_read_as_by_another_program(test_dat
     assert np.diff(block.time_s) == pytest.approx(0.01, abs=1e-9)
 
 
-def test_free_acceleration_and_no_rates_are_made_good_by_the_orientation_and_said(test_data: Find) -> None:
+def test_free_acceleration_and_no_rates_are_made_good_by_the_orientation_and_stated(test_data: Find) -> None:
     """Of the fifth stream the orientation comes twice, as quaternion and as matrix."""
     sensor = one(stream(test_data, 5))
     assert {finding.key for finding in sensor.findings} == {"rate_from_orientation", "gravity_from_orientation"}
@@ -180,7 +180,7 @@ def test_without_a_time_the_rate_is_asked_for(tmp_path: Path) -> None:
     assert "samples per second" in refused.value.remedy
 
 
-def test_what_tells_no_motion_is_refused_with_what_to_set(tmp_path: Path) -> None:
+def test_what_shows_no_motion_is_refused_with_what_to_set(tmp_path: Path) -> None:
     silent = written(tmp_path / "a.bin", kinds=frozenset())
     assert format_of(silent) == "xsens-mti"
     with pytest.raises(FileRefusedError, match="it contains no rate of turn, acceleration or orientation") as refused:
@@ -198,7 +198,7 @@ def test_what_tells_no_motion_is_refused_with_what_to_set(tmp_path: Path) -> Non
         mti_trial([blind])
 
 
-def test_damage_is_passed_over_and_told(tmp_path: Path) -> None:
+def test_damage_is_passed_over_and_reported(tmp_path: Path) -> None:
     path = written(tmp_path / "a.bin", kinds=frozenset({Item.RATE, Item.ACCELERATION}))
     data = bytearray(path.read_bytes())
     data[5000:5010] = bytes(10)
@@ -212,7 +212,7 @@ def test_damage_is_passed_over_and_told(tmp_path: Path) -> None:
 def test_several_sensors_keep_their_own_clocks(
     tmp_path: Path, apart_ticks: int, keys: list[str], start_s: float
 ) -> None:
-    """As they tell them, where these can be of one trial; else each begins with the others, which is said."""
+    """As they report them, where these can be of one trial; else each begins with the others, which is stated."""
     kinds = frozenset({Item.RATE, Item.ACCELERATION})
     paths = [written(tmp_path / f"{name}.bin", kinds=kinds, first=apart_ticks * k) for k, name in enumerate("ab")]
     first, second = mti_trial(paths).sensors

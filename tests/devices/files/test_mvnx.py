@@ -23,7 +23,7 @@ def two() -> tuple[SwingingSensor, SwingingSensor]:
     return swinging_sensor(), swinging_sensor(reach_rad=0.3)
 
 
-def elements(sensors: Sequence[SwingingSensor], *wanted: str) -> dict[str, FloatArray]:
+def elements(sensors: Sequence[SwingingSensor], *required: str) -> dict[str, FloatArray]:
     """Of each element the values of all sensors side by side, (n, sensors * width)."""
     of = {
         "sensorOrientation": [one.q_earth_from_sensor for one in sensors],
@@ -32,7 +32,7 @@ def elements(sensors: Sequence[SwingingSensor], *wanted: str) -> dict[str, Float
         "sensorAngularVelocity": [one.gyr_rad_s for one in sensors],
         "sensorMagneticField": [np.tile([0.1, 0.2, 0.3 + k], (300, 1)) for k in range(len(sensors))],
     }
-    return {name: np.hstack(of[name]) for name in wanted}
+    return {name: np.hstack(of[name]) for name in required}
 
 
 def mvnx(
@@ -108,13 +108,13 @@ def test_older_files_hold_what_the_sensors_measured(tmp_path: Path) -> None:
         assert found.findings == ()
 
 
-def test_missing_frames_are_a_gap_and_a_repeated_one_is_told(tmp_path: Path) -> None:
+def test_missing_frames_are_a_gap_and_a_repeated_one_is_reported(tmp_path: Path) -> None:
     held = elements(two(), "sensorFreeAcceleration", "sensorOrientation")
     path = mvnx(tmp_path / "a.mvnx", held, index=[*range(100), *range(150, 350)])
     (block, _) = (sensor.block for sensor in mvnx_trial([path]).sensors)
     assert len(block) == 300
     assert float(np.diff(block.time_s).max()) == pytest.approx(0.51)
-    assert np.isnan(block.gyr_rad_s[[0, 99, 100, 299]]).all()  # there is no neighbour on one side
+    assert np.isnan(block.gyr_rad_s[[0, 99, 100, 299]]).all()  # there is no adjacent one on one side
     trial = mvnx_trial([mvnx(tmp_path / "b.mvnx", held, index=[*range(100), *range(99, 299)])])
     assert len(trial.sensors[0].block) == 299
     assert trial.sensors[0].findings[-1].numbers == {"count": 1}

@@ -1,4 +1,4 @@
-"""Do OpenSim's tables of orientations, written as it documents them, become motion, and is what they lack told?"""
+"""Do OpenSim's tables of orientations, written as it documents them, become motion, and is what they lack reported?"""
 
 from pathlib import Path
 

@@ -30,9 +30,9 @@ def columns(prefix: str = "", acc: NDArray[np.float64] = ACC) -> dict[str, NDArr
 def written(path: Path, named: Mapping[str, object], units: Mapping[str, str] | None = None) -> Path:
     """A table whose units stand in the metadata of its columns."""
     arrays = {name: pa.array(values) for name, values in named.items()}
-    told = units or {}
+    reported = units or {}
     fields = [
-        pa.field(name, array.type, metadata={"unit": told[name]} if name in told else None)
+        pa.field(name, array.type, metadata={"unit": reported[name]} if name in reported else None)
         for name, array in arrays.items()
     ]
     pq.write_table(pa.table(list(arrays.values()), schema=pa.schema(fields)), path)

@@ -153,13 +153,13 @@ def test_an_infinite_value_is_missing(make_session: MakeSession) -> None:
     assert np.isnan(session.recordings[0].imu[Site.LEFT_THIGH].acc_m_s2[0, 0])
 
 
-def test_a_last_line_without_end_is_read_and_told(make_session: MakeSession) -> None:
+def test_a_last_line_without_end_is_read_and_reported(make_session: MakeSession) -> None:
     folder = make_session({"left_thigh.csv": table("0,1,1,1,1,1,1", end="")})
     assert keys(read_session(folder)) == [("last_line_open", PLACE, None)]
     assert len(thigh(folder)) == 1
 
 
-def test_files_without_a_site_are_told(make_session: MakeSession) -> None:
+def test_files_without_a_site_are_reported(make_session: MakeSession) -> None:
     folder = make_session({"left_thigh.csv": table(*ROWS), "video.mp4": b"\0", ".DS_Store": b"\0"})
     assert keys(read_session(folder)) == [("file_left_out", "walk 1", "video.mp4")]
 
@@ -172,7 +172,7 @@ def test_a_recording_without_data_beside_one_with(make_session: MakeSession) -> 
     assert len(session.recordings[1].imu) == 0
 
 
-def test_a_sensor_that_changes_is_told(make_session: MakeSession) -> None:
+def test_a_sensor_that_changes_is_reported(make_session: MakeSession) -> None:
     second = '[[recordings]]\nname = "walk 2"\nkind = "walking"\nfolder = "walk_2"\nsensors = {left_thigh = "B"}\n'
     folder = make_session(toml=TOML + second)
     (folder / "walk_2").mkdir()
@@ -219,7 +219,7 @@ strides_left_out = {left = [3.5, "late"]}
 """
 
 
-def test_unknown_keys_are_told_and_survive(make_session: MakeSession, tmp_path: Path) -> None:
+def test_unknown_keys_are_reported_and_survive(make_session: MakeSession, tmp_path: Path) -> None:
     session = read_session(make_session(toml=UNKNOWN))
     assert sorted(keys(session)) == sorted(
         [
@@ -243,7 +243,7 @@ def test_unknown_keys_are_told_and_survive(make_session: MakeSession, tmp_path: 
     assert_same(read_session(tmp_path / "copy"), session)
 
 
-def test_unknown_columns_are_told_and_survive(make_session: MakeSession, tmp_path: Path) -> None:
+def test_unknown_columns_are_reported_and_survive(make_session: MakeSession, tmp_path: Path) -> None:
     names = COLUMNS + ',"a ""b"", c",steps'
     session = read_session(make_session({"left_thigh.csv": table('0,1,1,1,1,1,1," x, ""y""",007', columns=names)}))
     assert keys(session) == [("unknown_column", PLACE, 'a "b", c'), ("unknown_column", PLACE, "steps")]
@@ -615,8 +615,8 @@ def test_spoilt_files_are_refused_or_read(
     try:
         session = read_session(folder)
     except FileRefusedError as refused:
-        said = str(refused)
-        assert said.isprintable()
+        stated = str(refused)
+        assert stated.isprintable()
         return
     assert session.recordings
 

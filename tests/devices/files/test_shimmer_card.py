@@ -1,4 +1,4 @@
-"""Files of a Shimmer3's card, laid out here as their description says: times, numbers, calibration, clocks."""
+"""Files of a Shimmer3's card, laid out here as their description states: times, numbers, calibration, clocks."""
 
 import struct
 from pathlib import Path
@@ -48,7 +48,7 @@ def written(
     calibration: bytes = GYR_BLOCK,
     acc_calibration: bytes = ACC_BLOCK,
 ) -> Path:
-    """`ahead`: ticks at the first sample, and more for each one, written as the radio tells them in each block."""
+    """`ahead`: ticks at the first sample, and more for each one, written as the radio reports them in each block."""
     head = bytearray(256)
     head[0:2] = struct.pack("<H", PERIOD)
     head[3:6] = switches.to_bytes(3, "little")

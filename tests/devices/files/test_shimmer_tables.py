@@ -25,7 +25,7 @@ QUANTITIES = {
 def written(
     path: Path,
     sensors: Sequence[str] = ("Shimmer_40AC",),
-    wanted: Sequence[str] = ("Timestamp_Unix", "Accel_WR", "Gyro"),
+    required: Sequence[str] = ("Timestamp_Unix", "Accel_WR", "Gyro"),
     *,
     delimiter: str = ",",
     has_sep: bool = True,
@@ -34,21 +34,21 @@ def written(
     lost: int = -1,
     kind: str = "CAL",
 ) -> Path:
-    names, told = [], []
+    names, reported = [], []
     scale = 9.80665 if (units or {}).get("Accel_WR") == "g" else 1.0
     for sensor in sensors:
-        for what in wanted:
+        for what in required:
             unit, axes = QUANTITIES[what]
             names += [f"{sensor}_{what}{'_' * bool(axis)}{axis}_{kind}" for axis in axes]
-            told += [(units or {}).get(what, unit)] * len(axes)
+            reported += [(units or {}).get(what, unit)] * len(axes)
     lines = [f'"sep={delimiter}"'] if has_sep else []
-    lines += [delimiter.join([*names, ""]), delimiter.join([*told, ""])]
+    lines += [delimiter.join([*names, ""]), delimiter.join([*reported, ""])]
     for k in range(COUNT):
         if k == lost:
             continue
         cells: list[str] = []
         for s in range(len(sensors)):
-            for what in wanted:
+            for what in required:
                 if what.startswith("Timestamp"):
                     cells.append(repr(BEGIN_MS + later_ms + 10.0 * k))
                 elif what == "Gyro":
@@ -76,15 +76,15 @@ def test_a_table_is_recognised_and_read(tmp_path: Path, delimiter: str, has_sep:
 
 
 def test_the_wide_accelerometer_is_taken_and_the_narrow_one_where_there_is_no_other(tmp_path: Path) -> None:
-    both = written(tmp_path / "a.csv", wanted=("Timestamp_Unix", "Accel_LN", "Accel_WR", "Gyro", "Mag"))
+    both = written(tmp_path / "a.csv", required=("Timestamp_Unix", "Accel_LN", "Accel_WR", "Gyro", "Mag"))
     (sensor,) = shimmer_trial([both]).sensors
     assert sensor.block.acc_m_s2[0].tolist() == [0.5, -0.25, 9.8]
     assert sensor.block.mag is not None
-    narrow = written(tmp_path / "b.csv", wanted=("Timestamp_Unix", "Accel_LN", "Gyro"))
+    narrow = written(tmp_path / "b.csv", required=("Timestamp_Unix", "Accel_LN", "Gyro"))
     assert shimmer_trial([narrow]).sensors[0].block.acc_m_s2[0].tolist() == [1.0, 2.0, 9.0]
 
 
-def test_units_are_those_that_are_told(tmp_path: Path) -> None:
+def test_units_are_those_that_are_reported(tmp_path: Path) -> None:
     path = written(tmp_path / "a.csv", units={"Gyro": "rad/s", "Accel_WR": "g"})
     (sensor,) = shimmer_trial([path]).sensors
     assert sensor.block.gyr_rad_s[0].tolist() == [0.0, -20.0, 0.0]
@@ -95,8 +95,8 @@ def test_units_are_those_that_are_told(tmp_path: Path) -> None:
 
 
 def test_sensors_that_the_base_synchronised_share_a_clock(tmp_path: Path) -> None:
-    wanted = ("TimestampSync_Unix", "Accel_WR", "Gyro")
-    paths = [written(tmp_path / f"{k}.csv", (f"S_{k}",), wanted, later_ms=250.0 * k) for k in range(2)]
+    required = ("TimestampSync_Unix", "Accel_WR", "Gyro")
+    paths = [written(tmp_path / f"{k}.csv", (f"S_{k}",), required, later_ms=250.0 * k) for k in range(2)]
     first, second = shimmer_trial(paths).sensors
     assert first.info.clock == second.info.clock == "Consensys"
     assert (first.block.time_s[0], second.block.time_s[0]) == pytest.approx((0.0, 0.25), abs=1e-6)
@@ -129,7 +129,7 @@ def test_what_is_not_calibrated_is_refused_with_what_to_set(tmp_path: Path) -> N
     ) as refused:
         shimmer_trial([raw])
     assert "calibrated, with Unix time in milliseconds" in refused.value.remedy
-    without = written(tmp_path / "b.csv", wanted=("Timestamp_Unix", "Gyro"))
+    without = written(tmp_path / "b.csv", required=("Timestamp_Unix", "Gyro"))
     with pytest.raises(FileRefusedError, match="calibrated acceleration"):
         shimmer_trial([without])
     seconds = written(tmp_path / "c.csv", units={"Timestamp_Unix": "s"})

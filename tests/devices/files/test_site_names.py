@@ -34,7 +34,7 @@ T, S, F = Site.LEFT_THIGH, Site.LEFT_SHANK, Site.LEFT_FOOT
         ("left forearm near the thigh", None),
     ],
 )
-def test_a_name_says_one_site_or_none(name: str, site: Site | None) -> None:
+def test_a_name_states_one_site_or_none(name: str, site: Site | None) -> None:
     assert site_of_name(name) is site
 
 
@@ -47,7 +47,7 @@ def test_a_name_says_one_site_or_none(name: str, site: Site | None) -> None:
         ("left_thigh", ""),
         ("trial_left_thigh_00B421E6", "trial"),
         ("trial_20260301", "trial"),
-        ("left_turn", "left_turn"),  # says no site, so nothing of it is one
+        ("left_turn", "left_turn"),  # states no site, so nothing of it is one
     ],
 )
 def test_what_the_sensors_of_a_trial_have_in_common(name: str, common: str) -> None:

@@ -1,4 +1,4 @@
-"""Do XDF files become samples on the recording computer's clock, with every loss told?
+"""Do XDF files become samples on the recording computer's clock, with every loss reported?
 
 No recording of LabRecorder is at hand: files are written here by the format's description, chunk by chunk.
 """
@@ -50,7 +50,7 @@ class SentStream:
     rate_hz: float = RATE_HZ
     host: str = "lab"
     offset_s: float | None = 0.0  # from the sender's clock to the recorder's
-    is_deduced: bool = False  # stamps are told of the first of ten samples only
+    is_deduced: bool = False  # stamps are given of the first of ten samples only
     footer: bool = True
     source: str | None = None
 
@@ -93,12 +93,12 @@ def recorded(path: Path, *streams: SentStream, has_markers: bool = True) -> Path
                 )
             if not rows:
                 continue
-            told = [
+            reported = [
                 struct.pack("<B", 0) if one.is_deduced and k != first else struct.pack("<Bd", 8, one.stamp_s[k])
                 for k in rows
             ]
             values = [one.samples[k].astype("<f4").tobytes() for k in rows]
-            samples = b"".join(stamp + value for stamp, value in zip(told, values, strict=True))
+            samples = b"".join(stamp + value for stamp, value in zip(reported, values, strict=True))
             content.append(chunk(3, struct.pack("<IBB", number, 1, len(rows)) + samples))
         if first % 1000 == 0:
             content.append(chunk(5, BOUNDARY))
@@ -147,7 +147,7 @@ def test_two_sensors_in_one_stream_and_stamps_that_are_deduced(tmp_path: Path) -
     np.testing.assert_allclose(trial.sensors[1].block.time_s, TIME_S, atol=1e-9)
 
 
-def test_a_shimmers_labels_are_understood_as_when_it_is_heard(tmp_path: Path) -> None:
+def test_a_shimmers_labels_are_understood_as_when_it_is_received(tmp_path: Path) -> None:
     """Labels and units as Consensys sends them: two accelerometers, of which the wide one is taken."""
     parts = {"Accel_LN": "m/(s^2)", "Accel_WR": "m/(s^2)", "Gyro": "deg/s"}
     labels = [f"Shimmer_5E3A_{part}_{axis}_CAL" for part in parts for axis in "XYZ"]
@@ -176,9 +176,9 @@ def test_stamps_of_packets_are_put_on_a_line_and_losses_stay_gaps(tmp_path: Path
     late_s[1000:1050] += 0.4  # five packets wait and come at once
     stamps = np.repeat((TIME_S[9::10]), 10) + np.tile(np.arange(-9, 1), ROWS // 10) / RATE_HZ + late_s
     sensor = only(recorded(tmp_path / "a.xdf", SentStream("a", motion()[kept], START_S + stamps[kept])))
-    said = finding(sensor, "times_straightened")
-    assert said is not None
-    assert 5.0 < float(said.numbers["away_ms"]) < 40.0
+    stated = finding(sensor, "times_straightened")
+    assert stated is not None
+    assert 5.0 < float(stated.numbers["away_ms"]) < 40.0
     off_s = sensor.block.time_s - TIME_S[kept]
     assert np.ptp(off_s) < 0.012  # the one sample that does not show, and nothing of 400 ms
     assert np.diff(sensor.block.time_s)[699] == pytest.approx(0.13, abs=0.001)
@@ -194,7 +194,7 @@ def test_even_stamps_stay_as_they_are() -> None:
     assert np.ptp(straight.time_s - TIME_S) < 0.002
 
 
-def test_a_recording_that_was_not_ended_says_so(tmp_path: Path) -> None:
+def test_a_recording_that_was_not_ended_states_so(tmp_path: Path) -> None:
     whole = recorded(tmp_path / "a.xdf", SentStream("a"))
     assert finding(only(whole), "stream_not_ended") is None
     assert finding(only(recorded(tmp_path / "b.xdf", SentStream("a", footer=False))), "stream_not_ended") is not None
@@ -213,7 +213,7 @@ def test_a_recording_that_was_not_ended_says_so(tmp_path: Path) -> None:
     assert set(map(tuple, damaged.block.acc_m_s2)) <= set(map(tuple, motion()[:, :3]))  # and nothing was made up
 
 
-def test_a_clock_that_nobody_measured_is_told(tmp_path: Path) -> None:
+def test_a_clock_that_nobody_measured_is_reported(tmp_path: Path) -> None:
     both = xdf_trial(
         [recorded(tmp_path / "a.xdf", SentStream("a"), SentStream("b", host="phone", offset_s=None))]
     ).sensors
@@ -222,7 +222,7 @@ def test_a_clock_that_nobody_measured_is_told(tmp_path: Path) -> None:
     assert finding(alone, "clock_not_measured") is None
 
 
-def test_what_senders_do_not_tell_is_asked_for(tmp_path: Path) -> None:
+def test_what_senders_do_not_show_is_asked_for(tmp_path: Path) -> None:
     def refusal(*streams: SentStream) -> str:
         with pytest.raises(FileRefusedError) as caught:
             xdf_trial([recorded(tmp_path / "a.xdf", *streams)])
@@ -281,7 +281,7 @@ def test_other_files_and_damaged_ones_are_refused(tmp_path: Path) -> None:
             xdf_trial([path])
 
 
-def test_without_its_library_it_says_what_to_install(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_without_its_library_it_states_what_to_install(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     path = recorded(tmp_path / "a.xdf", SentStream("a"))
     monkeypatch.setattr(xdf_streams, "find_spec", lambda _: None)
     with pytest.raises(FileRefusedError, match=r"pyxdf, which is not installed. Install gaitwright\[imports\]"):
@@ -302,7 +302,7 @@ def test_stamps_of_packets_that_step_back_for_good_are_refused_and_make_no_other
             only(recorded(tmp_path / "a.xdf", SentStream("a", stamp_s=back)))
 
 
-def test_a_line_through_stamps_of_packets_has_the_rate_that_the_sender_tells(tmp_path: Path) -> None:
+def test_a_line_through_stamps_of_packets_has_the_rate_that_the_sender_shows(tmp_path: Path) -> None:
     packets = np.repeat(TIME_S[9::10], 10)
     late_s = np.repeat(np.random.default_rng(3).exponential(0.008, size=ROWS // 10), 10)
     late_s[1000:1050] += 0.4  # five packets wait and come at once
@@ -314,17 +314,17 @@ def test_a_line_through_stamps_of_packets_has_the_rate_that_the_sender_tells(tmp
             only(recorded(tmp_path / "a.xdf", SentStream("a", stamp_s=START_S + packets * factor)))
 
 
-def test_a_block_that_jumps_away_and_returns_is_put_back_and_told(tmp_path: Path) -> None:
+def test_a_block_that_jumps_away_and_returns_is_put_back_and_reported(tmp_path: Path) -> None:
     stamps = START_S + TIME_S
     stamps[800:900] += 200_000.0
     sensor = only(recorded(tmp_path / "a.xdf", SentStream("a", stamp_s=stamps)))
     np.testing.assert_allclose(sensor.block.time_s, TIME_S, atol=1e-6)
-    told = finding(sensor, "stamps_mended")
-    assert told is not None
-    assert told.numbers == {"count": 100, "left_out": 0, "first": 801, "off_s": 200_000.0}
+    reported = finding(sensor, "stamps_mended")
+    assert reported is not None
+    assert reported.numbers == {"count": 100, "left_out": 0, "first": 801, "off_s": 200_000.0}
 
 
-def test_streams_of_one_name_are_told_apart_by_their_source_or_their_number(tmp_path: Path) -> None:
+def test_streams_of_one_name_are_reported_apart_by_their_source_or_their_number(tmp_path: Path) -> None:
     def names(*sources: str) -> list[str]:
         streams = [SentStream("imu", motion(seed), source=source) for seed, source in enumerate(sources)]
         return [one.name for one in xdf_trial([recorded(tmp_path / "a.xdf", *streams)]).sensors]

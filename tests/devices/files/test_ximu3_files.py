@@ -83,7 +83,7 @@ def test_folders_beside_each_other_are_one_trial(tmp_path: Path) -> None:
     assert {thigh.info.clock, shank.info.clock} == {"left_thigh", "left_shank"}
 
 
-def test_a_loss_is_a_gap_and_damage_is_told(tmp_path: Path) -> None:
+def test_a_loss_is_a_gap_and_damage_is_reported(tmp_path: Path) -> None:
     path = kept(tmp_path / "a.ximu3", lost=50)
     data = path.read_bytes()
     path.write_bytes(data[:2000] + b"Inonsense\n" + data[2000:])

@@ -155,9 +155,9 @@ def test_a_real_walk_is_imported(test_data: FindData) -> None:
         np.testing.assert_allclose(block.time_s, np.arange(len(block)) / 100)
         assert np.isfinite(block.gyr_rad_s[1:-1]).all()
         assert imported.sensors[site].rate_kind is RateKind.INSTANTANEOUS
-    told = [(finding.key, finding.where) for finding in imported.findings]
-    assert told.count(("file_left_out", "walk 1")) == 3
-    assert all(("rate_from_orientation", f"walk 1, {site}") in told for site in LEG_SITES)
+    reported = [(finding.key, finding.where) for finding in imported.findings]
+    assert reported.count(("file_left_out", "walk 1")) == 3
+    assert all(("rate_from_orientation", f"walk 1, {site}") in reported for site in LEG_SITES)
 
 
 def test_the_kind_of_rate_is_read_from_the_orientation(test_data: FindData) -> None:
@@ -182,7 +182,7 @@ def test_files_that_lack_what_is_needed_are_refused(test_data: FindData, name: s
     assert words in refusal(test_data(FOLDER) / name)
 
 
-def test_a_rate_that_no_file_tells_is_asked_for(test_data: FindData) -> None:
+def test_a_rate_that_no_file_shows_is_asked_for(test_data: FindData) -> None:
     path = test_data(FOLDER) / "MT_01200454_000-000_00B40DE4.txt"
     placement = {Site.LEFT_THIGH: "00B40DE4"}
     with pytest.raises(FileRefusedError, match=r"its update rate is missing\. Give it in Hz \(--rate\)"):
@@ -205,7 +205,7 @@ def test_files_are_aligned_by_the_counter_across_its_turn(tmp_path: Path) -> Non
         assert stamps["00B40002"] == pytest.approx([0.02, 0.03, 0.04])
 
 
-def test_a_packet_twice_is_dropped_and_told(tmp_path: Path) -> None:
+def test_a_packet_twice_is_dropped_and_reported(tmp_path: Path) -> None:
     path = export(tmp_path / "a.txt", ACC_GYR, still([1, 2, 2, 3]))
     imported = import_with(mtmanager_trial, [path], {Site.LEFT_FOOT: "a"}, "walk 1")
     assert len(imported.imu[Site.LEFT_FOOT]) == 3
@@ -230,7 +230,7 @@ def test_files_of_two_rates_are_refused(tmp_path: Path) -> None:
         import_with(mtmanager_trial, [one], {Site.LEFT_FOOT: "a"}, "walk 1", rate_hz=50.0)
 
 
-def test_a_rate_told_once_holds_for_the_trial(tmp_path: Path) -> None:
+def test_a_rate_reported_once_holds_for_the_trial(tmp_path: Path) -> None:
     one = export(tmp_path / "a.txt", ACC_GYR, still([1, 2, 3]))
     other = export(tmp_path / "b.txt", ACC_GYR, still([1, 2, 3]), head="// Filter Profile: human")
     assert import_two(other, one).imu[Site.LEFT_THIGH].time_s[1] == pytest.approx(0.01)
@@ -312,7 +312,7 @@ def test_spoilt_files_are_refused_or_read(
     try:
         imported = import_with(mtmanager_trial, [path], {Site.LEFT_FOOT: "a.txt"}, "walk 1")
     except FileRefusedError as refused:
-        said = str(refused)
-        assert said.isprintable()
+        stated = str(refused)
+        assert stated.isprintable()
         return
     assert len(imported.imu[Site.LEFT_FOOT]) <= 4

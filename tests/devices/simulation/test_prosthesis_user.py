@@ -1,4 +1,4 @@
-"""Does the demonstration's user of a prosthesis walk as it is said to be set?"""
+"""Does the demonstration's user of a prosthesis walk as it is stated to be set?"""
 
 import time
 
@@ -22,7 +22,7 @@ def patient() -> ProsthesisUser:
     return ProsthesisUser(Side.RIGHT, few, speed=FAST)
 
 
-def heard(user: ProsthesisUser, kind: RecordingKind, seconds: float) -> dict[str, list[ImuBlock]]:
+def received(user: ProsthesisUser, kind: RecordingKind, seconds: float) -> dict[str, list[ImuBlock]]:
     """What is sent in so many of its seconds after it was asked."""
     user.ask(kind)
     blocks: dict[str, list[ImuBlock]] = {}
@@ -59,10 +59,10 @@ def test_what_is_turned_is_what_moves() -> None:
 def test_the_walk_after_a_change_is_walked_so(turns: float) -> None:
     user = patient()
     user.open()
-    before = swing_of(heard(user, RecordingKind.WALKING, 40 + FAST))  # and a second to make it in
+    before = swing_of(received(user, RecordingKind.WALKING, 40 + FAST))  # and a second to make it in
     user.ask(None)
     user.set_up([NetChange(ProsthesisPart.KNEE_UNIT, turns=turns)])
-    after = swing_of(heard(user, RecordingKind.WALKING, 40 + 2 * FAST))
+    after = swing_of(received(user, RecordingKind.WALKING, 40 + 2 * FAST))
     assert before > 3.0
     assert np.sign(after - before) == np.sign(turns)
     assert abs(after - before) > 0.3
@@ -70,7 +70,7 @@ def test_the_walk_after_a_change_is_walked_so(turns: float) -> None:
 
 
 @pytest.mark.endurance
-def test_who_was_told_to_stop_meanwhile_does_not_walk() -> None:
+def test_who_was_reported_to_stop_meanwhile_does_not_walk() -> None:
     user = patient()
     user.open()
     user.ask(RecordingKind.WALKING)

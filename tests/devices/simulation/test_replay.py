@@ -34,8 +34,8 @@ class SteppedClock:
 
 @pytest.fixture(scope="module")
 def session() -> Session:
-    wanted = (Standing(), FreeMotion(duration_s=4.0), Walk("walk 1", strides=3), Walk("walk 2", 0.8, strides=3))
-    return simulate(WalkerSettings(seed=1, tissue=Tissue.SOFT, recordings=wanted)).session
+    required = (Standing(), FreeMotion(duration_s=4.0), Walk("walk 1", strides=3), Walk("walk 2", 0.8, strides=3))
+    return simulate(WalkerSettings(seed=1, tissue=Tissue.SOFT, recordings=required)).session
 
 
 @pytest.fixture
@@ -57,13 +57,13 @@ def make(session: Session, clock: SteppedClock) -> Make:
 def listen(source: ReplaySource, clock: SteppedClock, seconds: float) -> dict[str, ImuBlock]:
     """All that comes within `seconds`, by sensor; without their orientation."""
     until_ns = clock.time_ns + round(seconds * 1e9)
-    heard: dict[str, list[ImuBlock]] = {name: [] for name in source.info.sensors}
+    received: dict[str, list[ImuBlock]] = {name: [] for name in source.info.sensors}
     while clock.time_ns < until_ns:
         for block in source.read(lambda _: None):
             assert len(block) > 0
             assert block.time_s[-1] <= clock.time_ns / 1e9
-            heard[block.sensor].append(block)
-    return {name: joined(blocks) for name, blocks in heard.items() if blocks}
+            received[block.sensor].append(block)
+    return {name: joined(blocks) for name, blocks in received.items() if blocks}
 
 
 def joined(blocks: list[ImuBlock]) -> ImuBlock:
@@ -84,10 +84,10 @@ def test_standing_is_played_over_and_over_without_a_seam_in_time(
 ) -> None:
     source = make()
     source.open()
-    heard = listen(source, clock, 10.0)
-    assert set(heard) == set(source.info.sensors)
+    received = listen(source, clock, 10.0)
+    assert set(received) == set(source.info.sensors)
     standing = session.recordings[0].imu
-    for (name, block), site in zip(heard.items(), standing, strict=True):
+    for (name, block), site in zip(received.items(), standing, strict=True):
         assert name == standing[site].sensor
         assert is_even(block)
         assert len(block) == pytest.approx(10.0 * RATE_HZ, abs=3)
@@ -96,7 +96,7 @@ def test_standing_is_played_over_and_over_without_a_seam_in_time(
         assert np.array_equal(block.acc_m_s2[loop : 2 * loop], standing[site].acc_m_s2)
 
 
-def test_what_is_asked_is_done_at_once_and_then_the_patient_stands(
+def test_what_is_asked_is_done_at_once_and_then_the_patient_is(
     make: Make, clock: SteppedClock, session: Session
 ) -> None:
     source = make()
@@ -112,18 +112,18 @@ def test_what_is_asked_is_done_at_once_and_then_the_patient_stands(
         (played,) = (b for b in session.recordings[number].imu.values() if b.sensor == name)
         source.ask(kind)
         asked_s = clock.time_ns / 1e9
-        heard = listen(source, clock, len(played) / RATE_HZ + 1.0)[name]
-        assert is_even(heard)
-        first = int(np.searchsorted(heard.time_s, asked_s))
+        received = listen(source, clock, len(played) / RATE_HZ + 1.0)[name]
+        assert is_even(received)
+        first = int(np.searchsorted(received.time_s, asked_s))
         assert first <= 2
-        assert np.array_equal(heard.gyr_rad_s[first : first + len(played)], played.gyr_rad_s)
+        assert np.array_equal(received.gyr_rad_s[first : first + len(played)], played.gyr_rad_s)
         standing = next(b for b in session.recordings[0].imu.values() if b.sensor == name)
-        after = heard.gyr_rad_s[first + len(played) :]
+        after = received.gyr_rad_s[first + len(played) :]
         assert len(after) > 50
         assert np.array_equal(after, standing.gyr_rad_s[: len(after)])
 
 
-def test_it_says_how_long_it_will_do_what_it_is_asked(make: Make, session: Session, clock: SteppedClock) -> None:
+def test_it_states_how_long_it_will_do_what_it_is_asked(make: Make, session: Session, clock: SteppedClock) -> None:
     source = make()
     assert source.ask(RecordingKind.WALKING) is None, "it is not open"
     source.open()
@@ -160,21 +160,21 @@ def test_who_finishes_walks_on_and_moves_freely_until_something_else_is_asked(
         next(block.gyr_rad_s for block in session.recordings[k].imu.values() if block.sensor == name) for k in (1, 2, 0)
     )
     source.ask(RecordingKind.FREE_MOTION)
-    heard = listen(source, clock, 1.5 * len(free) / RATE_HZ)[name].gyr_rad_s
-    assert np.array_equal(heard[: len(free)], free)
-    assert np.array_equal(heard[len(free) :], free[: len(heard) - len(free)])
+    received = listen(source, clock, 1.5 * len(free) / RATE_HZ)[name].gyr_rad_s
+    assert np.array_equal(received[: len(free)], free)
+    assert np.array_equal(received[len(free) :], free[: len(received) - len(free)])
     source.ask(RecordingKind.WALKING)
-    rest = free[len(heard) - len(free) :]
-    heard = listen(source, clock, (len(rest) + len(walk) + 100) / RATE_HZ)[name].gyr_rad_s
+    rest = free[len(received) - len(free) :]
+    received = listen(source, clock, (len(rest) + len(walk) + 100) / RATE_HZ)[name].gyr_rad_s
     played = np.concatenate([rest, walk, standing])
-    assert np.array_equal(heard, played[: len(heard)])
+    assert np.array_equal(received, played[: len(received)])
 
 
 def test_demonstration_patient_takes_the_same_pose_between_all_that_is_asked() -> None:
     few = replace(DEMONSTRATION_SESSION, recordings=(Standing(), FreeMotion(duration_s=6.0), Walk(strides=3)))
     source, truth = demonstration(few), simulate(few).truth
     assert sorted(source.info.sensors) == list(source.info.sensors)
-    assert {told.serial for told in source.details().values()} == set(source.info.sensors)
+    assert {reported.serial for reported in source.details().values()} == set(source.info.sensors)
     for name, recording in truth.recordings.items():
         limit_deg = 6.0 if name.startswith("free motion") else 1.5  # a leg that hangs has its ankle at 0
         for joint in recording.joints.values():
@@ -182,25 +182,27 @@ def test_demonstration_patient_takes_the_same_pose_between_all_that_is_asked() -
             np.testing.assert_allclose(ends, joint.standing_rad, atol=np.deg2rad(limit_deg))
 
 
-def test_losses_a_lag_and_a_silence_are_as_told(make: Make, clock: SteppedClock) -> None:
+def test_losses_a_lag_and_a_silence_are_as_reported(make: Make, clock: SteppedClock) -> None:
     names = make().info.sensors
     late, silent = names[1], names[2]
     source = make(ReplayFaults(loss_share=0.1, lag_s={late: 0.03}, silent_s={silent: (2.0, 5.0)}, seed=3))
     source.open()
     opened_ns = clock.time_ns
     opened_s = opened_ns / 1e9
-    heard = listen(source, clock, 20.0)
-    whole = {name: len(block) / (20.0 * RATE_HZ) for name, block in heard.items()}
+    received = listen(source, clock, 20.0)
+    whole = {name: len(block) / (20.0 * RATE_HZ) for name, block in received.items()}
     assert all(share == pytest.approx(0.9, abs=0.03) for name, share in whole.items() if name != silent)
-    assert heard[late].time_s[0] >= opened_s + 0.03
-    since_s = heard[silent].time_s - opened_s
+    assert received[late].time_s[0] >= opened_s + 0.03
+    since_s = received[silent].time_s - opened_s
     assert not np.any((since_s >= 2.0) & (since_s < 5.0))
     assert np.any(since_s < 2.0)
     assert np.any(since_s > 5.0)
     clock.time_ns = opened_ns
     again = make(ReplayFaults(loss_share=0.1, lag_s={late: 0.03}, silent_s={silent: (2.0, 5.0)}, seed=3))
     again.open()
-    assert all(np.array_equal(block.time_s, heard[name].time_s) for name, block in listen(again, clock, 20.0).items())
+    assert all(
+        np.array_equal(block.time_s, received[name].time_s) for name, block in listen(again, clock, 20.0).items()
+    )
 
 
 def test_a_sensor_is_silenced_woken_and_shaken(make: Make, clock: SteppedClock) -> None:
@@ -212,11 +214,11 @@ def test_a_sensor_is_silenced_woken_and_shaken(make: Make, clock: SteppedClock) 
     source.wake(name)
     assert name in listen(source, clock, 1.0)
     source.shake(name)
-    heard = listen(source, clock, 3.0)
-    shaken = np.linalg.norm(heard[name].gyr_rad_s, axis=1)
+    received = listen(source, clock, 3.0)
+    shaken = np.linalg.norm(received[name].gyr_rad_s, axis=1)
     assert shaken[:200].max() > 0.9 * SHAKE_RAD_S
     assert shaken[210:].max() < 0.1
-    assert np.abs(heard[other].gyr_rad_s).max() < 0.1
+    assert np.abs(received[other].gyr_rad_s).max() < 0.1
 
 
 def test_a_source_that_vanishes_is_lost_and_does_not_open_until_it_is_back(make: Make, clock: SteppedClock) -> None:
@@ -259,8 +261,8 @@ def test_what_is_played_faster_is_buffered_for_as_long(make: Make, clock: Steppe
     source = make(speed=20.0)
     source.open()
     clock.sleep(0.8 * BUFFER_S)
-    heard = [block for block in source.read(lambda _: None) if block.sensor == source.info.sensors[0]]
-    assert sum(map(len, heard)) > 20 * 0.8 * BUFFER_S * RATE_HZ
+    received = [block for block in source.read(lambda _: None) if block.sensor == source.info.sensors[0]]
+    assert sum(map(len, received)) > 20 * 0.8 * BUFFER_S * RATE_HZ
 
 
 def test_time_runs_faster_where_it_is_asked_to(make: Make, clock: SteppedClock) -> None:
@@ -269,11 +271,11 @@ def test_time_runs_faster_where_it_is_asked_to(make: Make, clock: SteppedClock) 
     begin_ns = source.now_ns()
     clock.sleep(0.1)
     assert source.now_ns() - begin_ns == 2_000_000_000
-    heard = [block for _ in range(10) for block in source.read(lambda _: None)]
-    assert sum(map(len, heard)) / 6 == pytest.approx((0.1 + 10 * 0.015) * 20 * RATE_HZ, abs=5)
+    received = [block for _ in range(10) for block in source.read(lambda _: None)]
+    assert sum(map(len, received)) / 6 == pytest.approx((0.1 + 10 * 0.015) * 20 * RATE_HZ, abs=5)
 
 
-def test_the_demonstration_stands_for_ten_seconds_and_moves_freely_for_six() -> None:
+def test_the_demonstration_is_for_ten_seconds_and_moves_freely_for_six() -> None:
     kinds = (Standing, FreeMotion)
     lasts_s = [one.duration_s for one in DEMONSTRATION_SESSION.recordings if isinstance(one, kinds)]
     assert lasts_s == [10.0, *[6.0] * 6]

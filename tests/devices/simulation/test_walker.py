@@ -1,4 +1,4 @@
-"""Is the truth that the simulated session tells the truth of its samples?"""
+"""Is the truth that the simulated session reports the truth of its samples?"""
 
 from dataclasses import replace
 
@@ -215,7 +215,7 @@ def test_lag_is_what_brings_the_distal_clock_to_the_proximal_one() -> None:
     assert joints[Joint.RIGHT_KNEE].lag_s == 0.0
 
 
-def test_angles_are_told_at_the_proximal_sensors_stamps() -> None:
+def test_angles_are_reported_at_the_proximal_sensors_stamps() -> None:
     plain = simulate(CLEAN).truth.recordings["walk 1"].joints[Joint.LEFT_ANKLE]
     late = simulate(replace(CLEAN, clock_late_s={Site.LEFT_SHANK: 0.03})).truth.recordings["walk 1"]
     np.testing.assert_allclose(late.joints[Joint.LEFT_ANKLE].angle_rad[3:], plain.angle_rad[:-3], atol=1e-12)
@@ -225,7 +225,7 @@ def test_angles_are_told_at_the_proximal_sensors_stamps() -> None:
     np.testing.assert_allclose(truth.angle_rad, np.interp(truth.time_s, plain.time_s, plain.angle_rad), atol=1e-9)
 
 
-def test_standing_is_quiet_and_its_angle_is_told() -> None:
+def test_standing_is_quiet_and_its_angle_is_reported() -> None:
     proximal, _, truth = pair(simulate(CLEAN), "standing", Joint.LEFT_KNEE)
     assert abs(truth.angle_rad.mean() - truth.standing_rad) < 1e-3
     assert np.deg2rad(0.3) < truth.standing_rad < np.deg2rad(10.0)
@@ -273,7 +273,7 @@ def test_knee_only_leaves_the_thigh_still() -> None:
 
 
 @pytest.mark.parametrize("joint", [Joint.LEFT_KNEE, Joint.RIGHT_KNEE])
-def test_lying_on_the_side_the_knee_axis_stands_ten_degrees_from_vertical(joint: Joint) -> None:
+def test_lying_on_the_side_the_knee_axis_is_ten_degrees_from_vertical(joint: Joint) -> None:
     proximal, _, truth = pair(free(Motion.SIDE_LYING), "free", joint)
     up = proximal.acc_m_s2 / np.linalg.norm(proximal.acc_m_s2, axis=1, keepdims=True)
     from_vertical = np.rad2deg(np.arccos(np.abs(up @ truth.axis_proximal)))
@@ -291,7 +291,7 @@ def test_legs_in_turn_move_one_after_the_other() -> None:
     assert np.abs(left.gyr_rad_s[~first]).max() < 0.01 < 1.0 < np.abs(left.gyr_rad_s[first]).max()
 
 
-def test_restrapping_mounts_every_sensor_anew_and_only_from_then_on() -> None:
+def test_restrapping_mounts_every_sensor_again_and_only_from_then_on() -> None:
     again = Walk("walk 2", strides=3, is_restrapped_before=True)
     recordings = (Standing(), Walk("walk 1", strides=3), again, Walk("walk 3", strides=3))
     simulated = simulate(replace(CLEAN, recordings=recordings))
@@ -341,17 +341,17 @@ def test_a_course_within_a_session_is_worn_as_its_walks_and_changed_as_they_are(
     course = TimedCourse(kind, seed=3, speed_m_s=1.19, name="walk 2", change=less, changed_side=left)
     recordings = (Standing(), Walk("walk 1", strides=4, change=less, changed_side=left), course)
     simulated = simulate(replace(CLEAN, tissue=Tissue.RIGID, recordings=recordings))
-    told = simulated.truth.recordings
+    reported = simulated.truth.recordings
     assert [r.kind for r in simulated.session.recordings] == [RecordingKind.STANDING, *2 * [RecordingKind.WALKING]]
     for joint in (Joint.LEFT_KNEE, Joint.RIGHT_KNEE):
-        walk, timed = (told[name].joints[joint] for name in ("walk 1", "walk 2"))
+        walk, timed = (reported[name].joints[joint] for name in ("walk 1", "walk 2"))
         np.testing.assert_array_equal(walk.axis_proximal, timed.axis_proximal)
         assert np.rad2deg(walk.angle_rad.max()) == pytest.approx(np.rad2deg(timed.angle_rad.max()), abs=6.0)
-    peaks = [np.rad2deg(told["walk 2"].joints[Joint(f"{side}_knee")].angle_rad.max()) for side in Side]
+    peaks = [np.rad2deg(reported["walk 2"].joints[Joint(f"{side}_knee")].angle_rad.max()) for side in Side]
     assert peaks[1] - peaks[0] == pytest.approx(20.0, abs=6.0)
 
 
-def test_a_session_says_that_it_is_simulated_and_holds_what_was_asked() -> None:
+def test_a_session_states_that_it_is_simulated_and_holds_what_was_asked() -> None:
     sites = (Site.LEFT_SHANK, Site.LEFT_FOOT, Site.RIGHT_FOOT)
     simulated = simulate(replace(CLEAN, sites=sites))
     session = simulated.session
@@ -380,5 +380,5 @@ def test_the_truth_table_holds_every_angle_and_every_event() -> None:
     assert len(events) == 2 * 3 * 4
     assert {row[0] for row in events} == {"walk 1"}
     column = header.index("right_ankle_deg")
-    told = np.array([float(row[column]) for row in rows if row[0] == "walk 1" and row[column]])
-    np.testing.assert_allclose(told, np.rad2deg(walk.joints[Joint.RIGHT_ANKLE].angle_rad), atol=1e-5)
+    reported = np.array([float(row[column]) for row in rows if row[0] == "walk 1" and row[column]])
+    np.testing.assert_allclose(reported, np.rad2deg(walk.joints[Joint.RIGHT_ANKLE].angle_rad), atol=1e-5)

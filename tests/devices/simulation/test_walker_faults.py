@@ -25,7 +25,7 @@ SITE = Site.LEFT_SHANK
 
 @pytest.mark.endurance
 @pytest.mark.parametrize("errors", [COARSE, VERY_COARSE])
-def test_a_coarse_sensor_tells_whole_steps_only(errors: SensorErrors) -> None:
+def test_a_coarse_sensor_shows_whole_steps_only(errors: SensorErrors) -> None:
     coarse = simulate(replace(WALK, errors=errors)).session.recordings[0].imu[SITE]
     fine = simulate(replace(WALK, errors=replace(errors, gyro_step_rad_s=0.0, acc_step_m_s2=0.0)))
     same = fine.session.recordings[0].imu[SITE]
@@ -64,7 +64,7 @@ def test_a_fast_clock_stretches_the_stamps_and_takes_more_samples() -> None:
                                   simulate(WALK).session.recordings[0].imu[Site.LEFT_FOOT].time_s)  # fmt: skip
 
 
-def test_the_angle_is_told_at_a_fast_clocks_stamps() -> None:
+def test_the_angle_is_reported_at_a_fast_clocks_stamps() -> None:
     fast, plain = (
         simulate(settings).truth.recordings["walk 1"].joints[Joint.LEFT_ANKLE]
         for settings in (replace(WALK, clock_rate={SITE: 1.02}), WALK)
@@ -108,8 +108,8 @@ def test_a_belt_that_rises_takes_the_feet_up_and_one_that_ripples_moves_them_whi
     np.testing.assert_allclose(ends_m["rippling"], ends_m["none"], atol=1e-9)
     assert ends_m["rising"][2] == pytest.approx(0.1 * np.linalg.norm(ends_m["rising"][:2]), abs=0.005)
     foot = feet["none"]
-    stands = slice(*np.searchsorted(foot.time_s, [foot.events.full_contact_s[0], foot.events.heel_rise_s[1]]))
-    moves_m = {name: float(np.ptp(one.ankle_path_m[stands, :2], axis=0).max()) for name, one in feet.items()}
+    shown = slice(*np.searchsorted(foot.time_s, [foot.events.full_contact_s[0], foot.events.heel_rise_s[1]]))
+    moves_m = {name: float(np.ptp(one.ankle_path_m[shown, :2], axis=0).max()) for name, one in feet.items()}
     assert moves_m["even"] == pytest.approx(moves_m["none"], abs=1e-9)
     assert moves_m["rippling"] > moves_m["none"] + 0.003
 

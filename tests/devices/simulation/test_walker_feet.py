@@ -47,7 +47,7 @@ def test_a_flat_foot_neither_turns_nor_moves(walked: SimulatedSession, side: Sid
 
 @pytest.mark.parametrize("side", list(Side))
 def test_a_foot_rolls_over_heel_and_toe_and_swings_clear_of_the_floor(walked: SimulatedSession, side: Side) -> None:
-    """The ankle stands 8 cm over the floor in foot flat, rises over the heel and, more, over the toes."""
+    """The ankle is 8 cm over the floor in foot flat, rises over the heel and, more, over the toes."""
     foot = walked.truth.recordings["walk 1"].feet[side]
     events, height_m = foot.events, foot.ankle_path_m[:, 2]
 
@@ -120,7 +120,7 @@ def test_sensors_sit_where_they_are_strapped(walked: SimulatedSession) -> None:
 
 
 @pytest.mark.parametrize("joint", list(LEG_JOINTS))
-def test_it_stands_after_the_walk_as_it_stood_before(walked: SimulatedSession, joint: Joint) -> None:
+def test_it_is_after_the_walk_as_it_stood_before(walked: SimulatedSession, joint: Joint) -> None:
     angle_deg = np.rad2deg(walked.truth.recordings["walk 1"].joints[joint].angle_rad)
     assert angle_deg[-1] == pytest.approx(angle_deg[0], abs=0.3)
     assert abs(angle_deg[0]) < 12.0

@@ -1,4 +1,4 @@
-"""Do feet that hardly roll, are stiff, drag or land on the toes move as they are said to?"""
+"""Do feet that hardly roll, are stiff, drag or land on the toes move as they are stated to?"""
 
 import numpy as np
 import pytest
@@ -103,7 +103,7 @@ def test_one_side_may_walk_in_a_manner_of_its_own() -> None:
     assert times[0] == pytest.approx(times[1], rel=0.02)
 
 
-def test_a_leg_after_a_stroke_lands_flat_and_late_bends_little_and_stands_for_a_shorter_time() -> None:
+def test_a_leg_after_a_stroke_lands_flat_and_late_bends_little_and_is_for_a_shorter_time() -> None:
     walk = Walk(speed_m_s=0.5, strides=8, manner_of_side={Side.RIGHT: Manner.HEMIPARETIC})
     truth = simulate(WalkerSettings(errors=NO_ERRORS, recordings=(walk,))).truth.recordings["walk 1"]
     peaks = {side: np.rad2deg(truth.joints[Joint(f"{side}_knee")].angle_rad.max()) for side in Side}

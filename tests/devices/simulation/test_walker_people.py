@@ -1,4 +1,4 @@
-"""Do simulated people differ as much as they are said to?"""
+"""Do simulated people differ as much as they are stated to?"""
 
 import numpy as np
 import pytest
@@ -14,7 +14,7 @@ PEOPLE = 400
 
 @pytest.mark.parametrize("side", list(Side))
 def test_joint_axes_lean_as_much_forward_as_upward(side: Side) -> None:
-    """Knees by 3 degrees each way from straight across, ankles by 0.04 from the malleoli; 400 people tell to 4 %."""
+    """Knees by 3 degrees each way from straight across, ankles by 0.04 from the malleoli; 400 people report to 4 %."""
     legs = [make_leg(WalkerSettings(seed=seed), side) for seed in range(PEOPLE)]
     knees = np.array([leg.knee_axis / leg.knee_axis[1] for leg in legs])
     ankles = np.array([leg.ankle_axis / -leg.ankle_axis[1] for leg in legs])

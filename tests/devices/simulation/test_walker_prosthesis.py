@@ -1,4 +1,4 @@
-"""Does what is set at a simulated prosthesis move the leg as geometry says, and nothing else?"""
+"""Does what is set at a simulated prosthesis move the leg as geometry states, and nothing else?"""
 
 from dataclasses import replace
 

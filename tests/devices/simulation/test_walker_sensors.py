@@ -144,7 +144,7 @@ def test_lost_samples_leave_gaps_and_the_rest_untouched() -> None:
     np.testing.assert_allclose(without_noise, same, atol=1e-12)
 
 
-def test_jittered_stamps_ascend_and_scatter_as_told() -> None:
+def test_jittered_stamps_ascend_and_scatter_as_reported() -> None:
     jittered = simulate(WalkerSettings(stamp_jitter_s=0.001)).session.recordings[-1].imu[Site.LEFT_SHANK].time_s
     away = jittered - np.arange(len(jittered)) / 100.0
     assert (np.diff(jittered) > 0).all()
@@ -159,10 +159,10 @@ def test_every_site_may_have_a_rate_of_its_own() -> None:
     assert session.sensors[Site.LEFT_FOOT].rate_hz == 60.0
 
 
-def test_bias_is_what_the_truth_says_and_noise_what_was_asked() -> None:
-    told = SensorErrors(gyro_scale_sd=0.0, acc_scale_sd=0.0)
+def test_bias_is_what_the_truth_states_and_noise_what_was_asked() -> None:
+    reported = SensorErrors(gyro_scale_sd=0.0, acc_scale_sd=0.0)
     recordings = (Standing(duration_s=60.0),)
-    faulty = simulate(WalkerSettings(errors=told, recordings=recordings))
+    faulty = simulate(WalkerSettings(errors=reported, recordings=recordings))
     clean = simulate(WalkerSettings(errors=NO_ERRORS, recordings=recordings))
     site = Site.RIGHT_THIGH
     block, ideal = (s.session.recordings[0].imu[site] for s in (faulty, clean))

@@ -1,4 +1,4 @@
-"""Do gait and sensors vary by as much as they are told to, and by nothing where they are not?"""
+"""Do gait and sensors vary by as much as they are given to, and by nothing where they are not?"""
 
 from dataclasses import replace
 from itertools import pairwise
@@ -35,9 +35,11 @@ def truth_of(**settings: object) -> RecordingTruth:
 def ranges_deg(truth: RecordingTruth, joint: Joint) -> FloatArray:
     """Of each whole stride at steady speed."""
     contact_s = truth.feet[joint.side].events.initial_contact_s
-    told = truth.joints[joint]
+    reported = truth.joints[joint]
     strides = pairwise(contact_s[1:-1])
-    return np.array([np.rad2deg(np.ptp(told.angle_rad[(told.time_s >= a) & (told.time_s < b)])) for a, b in strides])
+    return np.array(
+        [np.rad2deg(np.ptp(reported.angle_rad[(reported.time_s >= a) & (reported.time_s < b)])) for a, b in strides]
+    )
 
 
 def stance_percent(truth: RecordingTruth, side: Side) -> FloatArray:
@@ -54,7 +56,7 @@ def lengths_m(truth: RecordingTruth) -> FloatArray:
     return truth.feet[Side.LEFT].stride_lengths_m[2:-2]
 
 
-def test_a_change_of_a_walk_is_as_large_as_told_and_on_the_side_told() -> None:
+def test_a_change_of_a_walk_is_as_large_as_reported_and_on_the_side_reported() -> None:
     plain = truth_of()
     changed = truth_of(change=GaitChange(knee_deg=6.0, ankle_deg=5.0), changed_side=Side.LEFT)
     for joint, expected in ((Joint.LEFT_KNEE, 6.0), (Joint.LEFT_ANKLE, 5.0)):
@@ -64,14 +66,14 @@ def test_a_change_of_a_walk_is_as_large_as_told_and_on_the_side_told() -> None:
         np.testing.assert_array_equal(changed.joints[joint].angle_rad, plain.joints[joint].angle_rad)
 
 
-def test_a_longer_stance_is_longer_by_the_points_told() -> None:
+def test_a_longer_stance_is_longer_by_the_points_reported() -> None:
     plain, changed = truth_of(), truth_of(change=GaitChange(stance_percent=3.0), changed_side=Side.LEFT)
     for side, expected in ((Side.LEFT, 3.0), (Side.RIGHT, 0.0)):
         longer = stance_percent(changed, side) - stance_percent(plain, side)
         assert longer.mean() == pytest.approx(expected, abs=0.2)
 
 
-def test_longer_and_slower_strides_are_so_by_the_share_told() -> None:
+def test_longer_and_slower_strides_are_so_by_the_share_reported() -> None:
     plain = truth_of()
     changed = truth_of(change=GaitChange(length=0.12, time=0.04))
     assert lengths_m(changed).mean() / lengths_m(plain).mean() == pytest.approx(1.12, abs=0.01)
@@ -80,7 +82,7 @@ def test_longer_and_slower_strides_are_so_by_the_share_told() -> None:
 
 
 @pytest.mark.endurance
-def test_a_gait_that_drifts_ends_where_it_was_told_to() -> None:
+def test_a_gait_that_drifts_ends_where_it_was_reported_to() -> None:
     recordings = (Walk("even", strides=20), Walk("drifting", strides=20, drift=GaitChange(knee_deg=8.0, time=0.1)))
     truth = simulate(replace(CLEAN, recordings=recordings)).truth.recordings
     even, drifting = (truth[name] for name in ("even", "drifting"))
@@ -124,7 +126,7 @@ def test_people_vary_as_people_do() -> None:
 
 
 @pytest.mark.endurance
-def test_walks_differ_by_the_spread_told() -> None:
+def test_walks_differ_by_the_spread_reported() -> None:
     varied = Variation(walks=GaitChange(knee_deg=5.0, length=0.05))
     walks = tuple(Walk(f"{k}", strides=6) for k in range(10))
     truth = simulate(replace(CLEAN, recordings=walks, variation=varied)).truth.recordings
@@ -135,7 +137,7 @@ def test_walks_differ_by_the_spread_told() -> None:
 
 
 def read_range_deg(simulated: SimulatedSession, number: int, joint: Joint) -> tuple[float, JointTruth]:
-    """What two sensors tell of a hinge's range, by the difference of their rates about its axis."""
+    """What two sensors report of a hinge's range, by the difference of their rates about its axis."""
     recording = simulated.session.recordings[number]
     truth = simulated.truth.recordings[recording.name].joints[joint]
     proximal, distal = recording.imu[joint.proximal], recording.imu[joint.distal]
@@ -144,7 +146,7 @@ def read_range_deg(simulated: SimulatedSession, number: int, joint: Joint) -> tu
     return float(np.rad2deg(np.ptp(angle))), truth
 
 
-def test_tissue_makes_knees_read_more_and_the_truth_says_by_how_much() -> None:
+def test_tissue_makes_knees_read_more_and_the_truth_states_by_how_much() -> None:
     settings = replace(CLEAN, rate_hz=200.0, recordings=(Walk(strides=3),), tissue_gain=0.09, tissue_gain_sd=0.04)
     simulated = simulate(settings)
     for joint in (Joint.LEFT_KNEE, Joint.RIGHT_KNEE):

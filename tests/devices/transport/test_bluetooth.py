@@ -1,4 +1,4 @@
-"""Is what happens in the thread of the links waited for, told of, and ended when nobody waits any more?"""
+"""Is what happens in the thread of the links waited for, informed of, and ended when nobody waits any more?"""
 
 import asyncio
 import threading
@@ -16,7 +16,7 @@ async def answered(after_s: float) -> int:
     return 7
 
 
-def test_what_is_done_is_waited_for_and_told_of() -> None:
+def test_what_is_done_is_waited_for_and_reported_of() -> None:
     ticks: list[int] = []
     assert radio.run(answered(0.0)) == 7
     assert radio.run(answered(0.5), lambda: ticks.append(1)) == 7

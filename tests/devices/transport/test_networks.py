@@ -18,8 +18,8 @@ def test_they_are_addresses_that_others_know_it_by_and_nothing_is_sent_for_them(
         def connect(self, address: object) -> None:
             pytest.fail(f"{address} was called")
 
-        def sendto(self, *told: object) -> int:
-            pytest.fail(f"{told} was sent")
+        def sendto(self, *reported: object) -> int:
+            pytest.fail(f"{reported} was sent")
 
     monkeypatch.setattr(socket, "socket", Mute)
     monkeypatch.setattr(socket, "getaddrinfo", None)

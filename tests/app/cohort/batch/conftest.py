@@ -9,4 +9,4 @@ ROOT = Path(__file__).parents[4]
 
 @pytest.fixture(autouse=True)
 def _workers_find_the_tests(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.syspath_prepend(ROOT)  # which a worker is told by the process that starts it
+    monkeypatch.syspath_prepend(ROOT)  # which a worker is given by the process that starts it

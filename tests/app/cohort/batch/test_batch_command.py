@@ -1,4 +1,4 @@
-"""`batch` writes what `analyse` writes, does nothing twice, keeps what is done, and tells what failed."""
+"""`batch` writes what `analyse` writes, does nothing twice, keeps what is done, and gives what failed."""
 
 import csv
 import shutil
@@ -80,11 +80,11 @@ def test_what_failed_is_listed_with_its_reason_and_the_rest_is_done(
     assert failed["reason"].startswith("session.toml: this is not TOML")
     assert {row["session"] for row in rows(place)} == {"visit 000", "visit 001"}
     assert again(place) == 0
-    first, told = capsys.readouterr().out.splitlines()
+    first, reported = capsys.readouterr().out.splitlines()
     assert first.endswith(
         "3 sessions, 0 analysed, 2 were done before, 1 failed; 6 rows in parameters.csv and .parquet."
     )
-    assert told.startswith("- broken: session.toml: this is not TOML")
+    assert reported.startswith("- broken: session.toml: this is not TOML")
 
 
 def test_the_same_command_again_analyses_nothing_and_writes_the_same_table(place: Path, analysed: list[str]) -> None:
@@ -163,7 +163,7 @@ def test_results_whose_record_was_not_written_any_more_are_made_again(place: Pat
     assert not (place / "out" / done.FOLDER / "work").exists()
 
 
-def test_progress_tells_the_count_the_rate_and_the_end(place: Path, capsys: pytest.CaptureFixture[str]) -> None:
+def test_progress_shows_the_count_the_rate_and_the_end(place: Path, capsys: pytest.CaptureFixture[str]) -> None:
     assert again(place) == 0
     lines = capsys.readouterr().err.splitlines()
     assert lines[0] == "  0 % 0 of 3 sessions"
@@ -215,7 +215,7 @@ def test_what_is_no_number_of_workers_is_refused_as_usage(workers: str, capsys: 
     assert "is no number of workers" in capsys.readouterr().err
 
 
-def test_a_worker_that_sees_other_folders_or_has_other_software_says_so(place: Path) -> None:
+def test_a_worker_that_sees_other_folders_or_has_other_software_states_so(place: Path) -> None:
     from app.cohort.batch.analysed_folder import AnalysisChoices
     from core.results import Method
 

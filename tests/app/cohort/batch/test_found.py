@@ -34,7 +34,7 @@ def test_recordings_inside_their_results_are_called_as_these(tmp_path: Path) -> 
     assert names(tmp_path) == {"demo/session": "demo", "plain/session": "session"}
 
 
-def test_sessions_of_one_name_are_told_by_their_paths(tmp_path: Path) -> None:
+def test_sessions_of_one_name_are_reported_by_their_paths(tmp_path: Path) -> None:
     make(tmp_path, "a/visit", "b/Visit", "other")
     assert names(tmp_path) == {"a/visit": "a-visit", "b/Visit": "b-Visit", "other": "other"}
     assert [one.shares_name for one in find_sessions(tmp_path, tmp_path / "out")] == [True, True, False]

@@ -132,7 +132,7 @@ def test_what_was_lost_on_its_way_is_done_again_and_given_up_after_some_tries() 
     assert str(lost) == "the answer was lost on its way"
 
 
-@pytest.mark.endurance  # processes take seconds to start; what they are told is held above
+@pytest.mark.endurance  # processes take seconds to start; what they are reported is held above
 def test_processes_give_what_this_process_gives_and_a_killed_one_costs_its_own_task_only(tmp_path: Path) -> None:
     notes = str(tmp_path)
     given = [StandIn(number, notes) for number in range(30)]
@@ -142,7 +142,7 @@ def test_processes_give_what_this_process_gives_and_a_killed_one_costs_its_own_t
     assert begun(given[13]) == 2
 
 
-@pytest.mark.endurance  # processes take seconds to start; what they are told is held above
+@pytest.mark.endurance  # processes take seconds to start; what they are reported is held above
 def test_a_task_that_kills_every_worker_ends_as_a_failure_with_its_reason() -> None:
     executor = ProcessExecutor(2)
     found = dict(finished(ends_its_worker, tasks(20), Workers(executor, lambda: 2, most_tries=2)))

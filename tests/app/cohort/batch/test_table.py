@@ -14,13 +14,13 @@ from app.cohort.batch.table import write_tables
 from devices.files.session_folder import write_session
 from tests.app.batch_material import walked_session, write_swinging
 
-SAID_OF_PATIENT = ("MUSTER", "Muster", "Anna", "Keller", "Bern", "limped")
+STATED_OF_PATIENT = ("MUSTER", "Muster", "Anna", "Keller", "Bern", "limped")
 VERDICTS = {"read", "care", "withheld", "not_measured"}
 
 
 @pytest.fixture(scope="module")
 def out(tmp_path_factory: pytest.TempPathFactory) -> Path:
-    """A batch of a walk with both feet, whose patient said much, and of two sessions without feet."""
+    """A batch of a walk with both feet, whose patient stated much, and of two sessions without feet."""
     place = tmp_path_factory.mktemp("table")
     write_session(walked_session(), place / "in" / "walked")
     write_swinging(place / "in", 2)
@@ -38,16 +38,20 @@ def test_every_figure_and_verdict_is_that_of_the_sessions_summary(out: Path) -> 
     rows, compared = rows_of(out), 0
     for row in rows:
         walk = json.loads((out / row["session"] / "summary.json").read_bytes())["walks"][row["walk"]]
-        told = walk[row["side"]]
+        reported = walk[row["side"]]
         for column, cell in row.items():
             if column.endswith(("_status", "_sd", "_error")):
-                wanted = told.get(column) if not column.startswith("walk_speed") else walk["both"]["speed_m_s_status"]
+                required = (
+                    reported.get(column) if not column.startswith("walk_speed") else walk["both"]["speed_m_s_status"]
+                )
             elif f"{column}_status" in row:
                 name = column if row["side"] == "both" else f"{column}_mean"
-                wanted = told.get(name) if column != "walk_speed_m_s" else walk["both"]["speed_m_s"]
+                required = reported.get(name) if column != "walk_speed_m_s" else walk["both"]["speed_m_s"]
             else:
                 continue
-            assert cell == ("" if wanted is None else wanted if isinstance(wanted, str) else repr(wanted)), column
+            assert cell == ("" if required is None else required if isinstance(required, str) else repr(required)), (
+                column
+            )
             compared += bool(cell)
     assert compared > 150
     assert [(row["session"], row["side"]) for row in rows] == [
@@ -55,7 +59,7 @@ def test_every_figure_and_verdict_is_that_of_the_sessions_summary(out: Path) -> 
     ]
 
 
-def test_each_number_of_a_leg_has_a_verdict_beside_it_and_a_withheld_one_is_empty(out: Path) -> None:
+def test_each_number_of_a_leg_has_a_verdict_beside_it_and_a_not_reported_one_is_empty(out: Path) -> None:
     for row in rows_of(out):
         for column, cell in row.items():
             if f"{column}_status" in row and cell:
@@ -65,23 +69,23 @@ def test_each_number_of_a_leg_has_a_verdict_beside_it_and_a_withheld_one_is_empt
                 assert cell in {"read", "care"} or not row[column.removesuffix("_status")]
 
 
-def test_what_groups_the_rows_is_what_was_told_of_the_patient(out: Path) -> None:
+def test_what_groups_the_rows_is_what_was_reported_of_the_patient(out: Path) -> None:
     left, right, both = rows_of(out)[-3:]
     assert (left["is_affected"], right["is_affected"], both["is_affected"]) == ("true", "false", "")
     assert (left["is_prosthetic"], right["is_prosthetic"]) == ("false", "true")
-    told = ("condition", "device", "aids", "sex", "age_years", "height_m", "mass_kg", "started", "is_simulated")
-    assert [left[name] for name in told] == [
+    reported = ("condition", "device", "aids", "sex", "age_years", "height_m", "mass_kg", "started", "is_simulated")
+    assert [left[name] for name in reported] == [
         *("barefoot", "C-Leg 4", "cane", "female", "90", "1.62", "58.5", "2026-05-04", "true"),
     ]
 
 
 def test_nobodys_name_is_in_the_table(out: Path) -> None:
     parquet = json.dumps(pq.read_table(out / "parameters.parquet").to_pylist())
-    for said in SAID_OF_PATIENT:
-        assert said not in (out / "parameters.csv").read_text(encoding="utf-8")
-        assert said not in parquet
+    for stated in STATED_OF_PATIENT:
+        assert stated not in (out / "parameters.csv").read_text(encoding="utf-8")
+        assert stated not in parquet
         for record in (out / ".gaitwright-batch").rglob("*.json"):
-            assert said not in record.read_text(encoding="utf-8")
+            assert stated not in record.read_text(encoding="utf-8")
     assert not any("1930" in row.values() for row in rows_of(out))  # as a cell: digits of figures may be the same
 
 
@@ -97,8 +101,8 @@ def test_both_files_hold_the_same(out: Path) -> None:
     assert table.column_names == list(COLUMNS) == list(rows_of(out)[0])
     for row, cells in zip(table.to_pylist(), rows_of(out), strict=True):
         for name, value in row.items():
-            wanted = "" if value is None else str(value).lower() if isinstance(value, bool) else str(value)
-            assert cells[name] == wanted
+            required = "" if value is None else str(value).lower() if isinstance(value, bool) else str(value)
+            assert cells[name] == required
 
 
 def test_what_begins_as_a_formula_is_none_in_the_csv(tmp_path: Path) -> None:

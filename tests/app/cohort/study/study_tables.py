@@ -1,4 +1,4 @@
-"""Tables as a batch writes them, made at random: gaps, withheld values, single walks, conditions that change."""
+"""Tables as a batch writes them, made at random: gaps, not reported values, single walks, conditions that change."""
 
 from pathlib import Path
 from typing import Any
@@ -57,14 +57,14 @@ def random_rows(seed: int, sessions: int) -> list[dict[str, Any]]:
     rows = []
     for number in range(sessions):
         prosthetic = rng.choice(["left", "right", "none", ""])
-        told = {
+        reported = {
             "patient": f"patient {number // 2}",
             "age_years": None if rng.random() < 0.1 else int(rng.integers(5, 95)),
             "device": rng.choice(np.array(["knee A", " knee B ", None, ""], dtype=object)),
             "is_simulated": bool(rng.random() < 0.1),
         }
         for walk in range(int(rng.integers(1, 5))):
-            told |= {
+            reported |= {
                 "walk": f"walk {walk + 1}",
                 "condition": rng.choice(np.array(["barefoot", "shoes", 'it\'s "odd"', None], dtype=object)),
                 "walk_speed_m_s": None if rng.random() < 0.1 else float(rng.uniform(0.1, 2.0)),
@@ -78,14 +78,14 @@ def random_rows(seed: int, sessions: int) -> list[dict[str, Any]]:
                         f"session {number}",
                         None if has_none else value,
                         str(rng.choice(STATUSES, p=[0.6, 0.2, 0.15, 0.05])),
-                        **told,
+                        **reported,
                         side=side,
                         is_affected=None,
                         is_prosthetic=None if not prosthetic else side == prosthetic,
                     )
                 )
             rows.append(
-                row(f"session {number}", None, "", **told, side="both")
+                row(f"session {number}", None, "", **reported, side="both")
                 | {"cadence_steps_min": float(rng.normal(100, 9)), "cadence_steps_min_status": "read"}
             )
     return rows

@@ -67,7 +67,7 @@ def test_a_terminal_gets_columns_that_align() -> None:
     assert lines == ["name        n      mean", "a           5  0.333333", "long name  12"]
 
 
-def test_a_terminal_is_told_when_rows_are_left_out() -> None:
+def test_a_terminal_is_reported_when_rows_are_left_out() -> None:
     assert "--out" not in list(aligned_lines(("n",), ((k,) for k in range(MOST_ON_TERMINAL))))[-1]
     assert "--out" in list(aligned_lines(("n",), ((k,) for k in range(MOST_ON_TERMINAL + 1))))[-1]
 

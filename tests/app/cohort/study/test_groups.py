@@ -37,8 +37,8 @@ def pandas_groups(frame: pd.DataFrame, grouping: Grouping) -> pd.Series:
 
     def banded(values: pd.Series, edges: tuple[float, ...]) -> pd.Series:
         names = ["0", *(f"{edge:g}" for edge in edges)]
-        told = pd.cut(values, [-np.inf, *edges, np.inf], right=False, labels=names).astype(object)
-        return told.where(values.notna(), "")
+        reported = pd.cut(values, [-np.inf, *edges, np.inf], right=False, labels=names).astype(object)
+        return reported.where(values.notna(), "")
 
     match grouping:
         case Grouping.CONDITION | Grouping.DEVICE:
@@ -46,8 +46,8 @@ def pandas_groups(frame: pd.DataFrame, grouping: Grouping) -> pd.Series:
         case Grouping.AGE:
             return banded(frame["age_years"].astype(float), AGE_EDGES)
         case Grouping.SPEED:
-            is_told = frame["walk_speed_m_s_status"].isin(["read", "care"])
-            return banded(frame["walk_speed_m_s"].where(is_told), SPEED_EDGES)
+            is_reported = frame["walk_speed_m_s_status"].isin(["read", "care"])
+            return banded(frame["walk_speed_m_s"].where(is_reported), SPEED_EDGES)
         case Grouping.SIDE:
             return frame["side"]
         case Grouping.LEG:
@@ -68,8 +68,8 @@ def pandas_figures(path: Path, question: GroupQuestion) -> dict[str, dict[str, A
     if not question.has_simulated:
         frame = frame[~frame["is_simulated"].astype(bool)]
     frame = frame.assign(group=pandas_groups(frame, question.grouping))
-    told = ["read", "care"] if question.has_care else ["read"]
-    is_used = frame[f"{MEASURE}_status"].isin(told) & np.isfinite(frame[MEASURE])
+    reported = ["read", "care"] if question.has_care else ["read"]
+    is_used = frame[f"{MEASURE}_status"].isin(reported) & np.isfinite(frame[MEASURE])
     used = frame[is_used]
     sides = used.groupby(["group", "session", "side"])[MEASURE].mean()
     values = sides.groupby(["group", "session"]).mean()
@@ -107,11 +107,11 @@ def test_the_figures_are_those_of_pandas(
     question = GroupQuestion(MEASURE, grouping, has_care=is_more, has_simulated=is_more)
     with ParameterTable.opened(path) as table:
         found = answer(table, question)
-    wanted = pandas_figures(path, question)
-    assert {one.group for one in found.rows} == set(wanted)
+    required = pandas_figures(path, question)
+    assert {one.group for one in found.rows} == set(required)
     for one in found.rows:
         low, high = one.interval
-        for name, value in wanted[one.group].items():
+        for name, value in required[one.group].items():
             ours = {"low": low, "high": high}.get(name, getattr(one, name, None))
             assert ours == pytest.approx(value, rel=CLOSE, abs=CLOSE, nan_ok=True), (one.group, name)
 
@@ -141,11 +141,11 @@ def test_under_three_sessions_there_is_a_mean_and_no_spread(tmp_path: Path, sess
     assert [math.isfinite(one) for one in (found.sd, found.standard_error, found.half_interval)] == [sessions > 2] * 3
 
 
-def test_what_is_withheld_counts_nowhere_even_with_a_number(tmp_path: Path) -> None:
+def test_what_is_not_reported_counts_nowhere_even_with_a_number(tmp_path: Path) -> None:
     rows = [row("a", 60.0), row("b", 1e6, "withheld"), row("c", 1e6, ""), row("d", None), row("e", 66.0, "care")]
     path = write_rows(rows, tmp_path / "p.parquet")
     (found,) = asked(path).rows
-    assert (found.sessions, found.mean, found.withheld, found.with_care, found.not_measured) == (1, 60.0, 1, 1, 2)
+    assert (found.sessions, found.mean, found.not_reported, found.with_care, found.not_measured) == (1, 60.0, 1, 1, 2)
     assert found.sessions_without == 4
     (found,) = asked(path, has_care=True).rows
     assert (found.sessions, found.mean, found.with_care) == (2, 63.0, 0)
@@ -159,7 +159,7 @@ def test_simulated_sessions_count_only_when_asked_for(tmp_path: Path) -> None:
     assert (found.rows[0].mean, found.simulated, found.simulated_left_out) == (65.0, 1, 0)
 
 
-def test_groups_that_share_a_session_are_told(tmp_path: Path) -> None:
+def test_groups_that_share_a_session_are_reported(tmp_path: Path) -> None:
     rows = [row("a", 60.0), row("a", 61.0, walk="walk 2", condition="shoes"), row("b", 62.0)]
     path = write_rows(rows, tmp_path / "p.parquet")
     assert asked(path).is_overlapping
@@ -167,7 +167,7 @@ def test_groups_that_share_a_session_are_told(tmp_path: Path) -> None:
     assert not asked(path, Grouping.AGE).is_overlapping
 
 
-def test_people_are_not_counted_where_one_session_does_not_tell_its_own(tmp_path: Path) -> None:
+def test_people_are_not_counted_where_one_session_does_not_show_its_own(tmp_path: Path) -> None:
     path = write_rows([row("a", 60.0), row("b", 61.0, patient=None)], tmp_path / "p.parquet")
     assert asked(path).patients == 0
     assert asked(path).rows[0].patients == 0

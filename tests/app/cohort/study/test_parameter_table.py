@@ -25,10 +25,10 @@ def asked(path: Path, sql: str) -> list[tuple[object, ...]]:
 
 
 def refused(path: Path, sql: str) -> str:
-    with ParameterTable.opened(path) as table, pytest.raises(FileRefusedError) as told:
+    with ParameterTable.opened(path) as table, pytest.raises(FileRefusedError) as reported:
         list(table.ask(sql).rows)
-    assert "\n" not in str(told.value)
-    return str(told.value)
+    assert "\n" not in str(reported.value)
+    return str(reported.value)
 
 
 @pytest.mark.parametrize(
@@ -50,7 +50,7 @@ def test_a_number_that_is_none_is_empty(path: Path) -> None:
     assert asked(path, f"SELECT avg({MEASURE}), count({MEASURE}) FROM parameters") == [(60.0, 1)]
 
 
-def test_a_folder_of_a_batch_stands_for_its_table(tmp_path: Path) -> None:
+def test_a_folder_of_a_batch_is_for_its_table(tmp_path: Path) -> None:
     write_rows([row("a", 60.0)], tmp_path / "parameters.parquet")
     with ParameterTable.opened(tmp_path) as table:
         assert table.measures == ("walk_speed_m_s", MEASURE, "cadence_steps_min")
@@ -118,7 +118,7 @@ def test_nothing_but_the_table_can_be_reached(
 
 
 def test_the_configuration_is_locked_down(path: Path) -> None:
-    wanted = {
+    required = {
         "enable_external_access": "false",
         "lock_configuration": "true",
         "autoinstall_known_extensions": "false",
@@ -131,9 +131,9 @@ def test_the_configuration_is_locked_down(path: Path) -> None:
         "temp_directory": "",
         "threads": "2",
     }
-    names = ", ".join(f"'{name}'" for name in wanted)
+    names = ", ".join(f"'{name}'" for name in required)
     found = asked(path, f"SELECT name, coalesce(value, '') FROM duckdb_settings() WHERE name IN ({names})")
-    assert {str(name): str(value) for name, value in found} == wanted
+    assert {str(name): str(value) for name, value in found} == required
 
 
 @pytest.mark.parametrize(
@@ -150,10 +150,10 @@ def test_the_configuration_is_locked_down(path: Path) -> None:
     ],
 )
 def test_what_cannot_be_answered_is_named_in_one_line_without_a_mark(path: Path, sql: str, named: str) -> None:
-    said = refused(path, sql)
-    assert named in said
-    assert "Error:" not in said
-    assert "!" not in said
+    stated = refused(path, sql)
+    assert named in stated
+    assert "Error:" not in stated
+    assert "!" not in stated
 
 
 @pytest.mark.parametrize(
@@ -184,16 +184,16 @@ def test_what_is_no_table_of_a_batch_is_refused(tmp_path: Path) -> None:
     pq.write_table(pa.table({"session": ["a"], "walk": ["1"]}), other)
     broken.write_bytes(b"PAR1 and no more")
     empty.mkdir()
-    for place, said in (
+    for place, stated in (
         (other, "column side is missing"),
         (broken, "this is not a readable Parquet file"),
         (empty, "parameters.parquet: not found"),
         (tmp_path / "nothing.parquet", "not found"),
     ):
-        with pytest.raises(FileRefusedError) as told, ParameterTable.opened(place):
+        with pytest.raises(FileRefusedError) as reported, ParameterTable.opened(place):
             pass
-        assert said in str(told.value)
-        assert "\n" not in str(told.value)
+        assert stated in str(reported.value)
+        assert "\n" not in str(reported.value)
 
 
 def test_a_column_called_like_sql_stays_a_column(tmp_path: Path) -> None:

@@ -126,7 +126,7 @@ def test_ticks_are_turned_by_the_space_bar_and_by_whole_kinds(qtbot: QtBot, look
     assert (len(page.ticked), page.none.isEnabled()) == (0, False)
 
 
-def test_why_a_session_could_not_be_analysed_stands_in_its_line(qtbot: QtBot, look: ThemeNotifier) -> None:
+def test_why_a_session_could_not_be_analysed_is_in_its_line(qtbot: QtBot, look: ThemeNotifier) -> None:
     page = AnalyseAgainPage(look)
     qtbot.addWidget(page)
     page.show_lines([line(1, failure="this recording's file is missing"), line(2)], [])
@@ -136,7 +136,7 @@ def test_why_a_session_could_not_be_analysed_stands_in_its_line(qtbot: QtBot, lo
 
 
 @pytest.mark.endurance
-def test_home_leads_there_with_the_patients_sessions_ticked_and_tells_what_failed(
+def test_home_leads_there_with_the_patients_sessions_ticked_and_shows_what_failed(
     qtbot: QtBot, qapp: QApplication, tmp_path: Path
 ) -> None:
     """Of the fixture no samples were recorded: all fail, each for its reason."""
@@ -145,10 +145,10 @@ def test_home_leads_there_with_the_patients_sessions_ticked_and_tells_what_faile
     home = Home(ThemeNotifier(), controller, Settings(QSettings(str(tmp_path / "s.ini"), QSettings.Format.IniFormat)))
     qtbot.addWidget(home)
     home.show()
-    with qtbot.waitSignal(controller.opened, timeout=WAIT_MS) as told:
+    with qtbot.waitSignal(controller.opened, timeout=WAIT_MS) as reported:
         (tmp_path / "library").mkdir()
         controller.open(make_course_library(tmp_path / "library", visits=2), PASSPHRASE)
-    home.show_library((told.args or [])[0])
+    home.show_library((reported.args or [])[0])
     qtbot.waitUntil(lambda: bool(home.page.sessions.lines), timeout=WAIT_MS)
     home.page.panel.analyse_again.trigger()
     qtbot.waitUntil(lambda: len(home.again.page.ticked) == 2, timeout=WAIT_MS)

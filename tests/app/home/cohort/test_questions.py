@@ -34,7 +34,7 @@ def asked(qtbot: QtBot, home: Home, table: Path) -> QuestionsPage:
     return page
 
 
-def test_home_leads_to_the_page_which_says_how_a_table_comes_to_be(home: Home) -> None:
+def test_home_leads_to_the_page_which_states_how_a_table_comes_to_be(home: Home) -> None:
     row = home.rail.rows[QUESTIONS]
     assert row.text() == "Cohort"
     row.click()
@@ -47,29 +47,31 @@ def test_home_leads_to_the_page_which_says_how_a_table_comes_to_be(home: Home) -
     assert home.page.isVisible()
 
 
-def test_a_table_is_asked_beside_the_screen_and_each_change_anew(
+def test_a_table_is_asked_beside_the_screen_and_each_change_again(
     qtbot: QtBot, home: Home, table: Path, watchdog: Watchdog
 ) -> None:
     page = asked(qtbot, home, table)
     assert page.sentence.text().startswith("Walking speed: means of ")
     QTest.keyClicks(page.measure, "K")  # as a list of choices takes letters
-    wanted = GroupQuestion(MEASURE, Grouping.CONDITION)
-    qtbot.waitUntil(lambda: page.found is not None and page.found.question == wanted, timeout=WAIT_MS)
+    required = GroupQuestion(MEASURE, Grouping.CONDITION)
+    qtbot.waitUntil(lambda: page.found is not None and page.found.question == required, timeout=WAIT_MS)
     page.grouping.setCurrentIndex(page.grouping.findData("age"))  # while the first is asked, the last of these waits
     page.grouping.setCurrentIndex(page.grouping.findData("side"))
     page.included.choose("care")
-    wanted = GroupQuestion(MEASURE, Grouping.SIDE, has_care=True)
-    qtbot.waitUntil(lambda: page.found is not None and page.found.question == wanted, timeout=WAIT_MS)
+    required = GroupQuestion(MEASURE, Grouping.SIDE, has_care=True)
+    qtbot.waitUntil(lambda: page.found is not None and page.found.question == required, timeout=WAIT_MS)
 
 
 def test_what_is_shown_is_the_answer(qtbot: QtBot, home: Home, table: Path) -> None:
     shown = asked(qtbot, home, table).found
     assert shown is not None
     with ParameterTable.opened(table) as opened:
-        wanted = answer(opened, shown.question)
-    assert [one.group for one in shown.rows] == [one.group for one in wanted.rows]
+        required = answer(opened, shown.question)
+    assert [one.group for one in shown.rows] == [one.group for one in required.rows]
     # two threads add up in any order
-    assert [one.mean for one in shown.rows] == pytest.approx([one.mean for one in wanted.rows], rel=1e-12, nan_ok=True)
+    assert [one.mean for one in shown.rows] == pytest.approx(
+        [one.mean for one in required.rows], rel=1e-12, nan_ok=True
+    )
 
 
 def test_everything_is_reached_by_tab_in_the_order_of_reading(qtbot: QtBot, home: Home, table: Path) -> None:
@@ -80,8 +82,8 @@ def test_everything_is_reached_by_tab_in_the_order_of_reading(qtbot: QtBot, home
         reached.append(home.focusWidget())
         QTest.keyClick(home.focusWidget(), Qt.Key.Key_Tab)
     included = next(one for one in page.included.segments if one.isChecked())
-    wanted = [page.choose_table, page.measure, page.grouping, included, page.simulated, page.table]
-    assert reached == wanted
+    required = [page.choose_table, page.measure, page.grouping, included, page.simulated, page.table]
+    assert reached == required
 
 
 def test_what_is_in_sight_is_saved_with_all_its_numbers(qtbot: QtBot, home: Home, table: Path, tmp_path: Path) -> None:

@@ -1,4 +1,4 @@
-"""The page of questions: what is said comes only where it is so, nothing is judged, and nobody is named."""
+"""The page of questions: what is stated comes only where it is so, nothing is judged, and nobody is named."""
 
 import math
 from dataclasses import replace
@@ -28,8 +28,8 @@ FEW = replace(
 
 def found(*rows: GroupRow, grouping: Grouping = Grouping.CONDITION, **more: int) -> GroupAnswer:
     sessions = sum(row.sessions for row in rows)
-    told = {"sessions": sessions, "patients": sessions, "simulated": 0, "simulated_left_out": 0} | more
-    return GroupAnswer(GroupQuestion(MEASURE, grouping), rows, **told)
+    reported = {"sessions": sessions, "patients": sessions, "simulated": 0, "simulated_left_out": 0} | more
+    return GroupAnswer(GroupQuestion(MEASURE, grouping), rows, **reported)
 
 
 @pytest.fixture
@@ -48,7 +48,7 @@ def shown(page: QuestionsPage) -> str:
 
 
 @pytest.mark.parametrize(
-    ("said", "so", "not_so"),
+    ("stated", "so", "not_so"),
     [
         ("1 group has fewer than 3 sessions: no interval", found(WHOLE, FEW), found(WHOLE)),
         ("Some sessions are in several groups", found(WHOLE, FEW, sessions=12), found(WHOLE, FEW)),
@@ -60,21 +60,21 @@ def shown(page: QuestionsPage) -> str:
         ),
         ("SIMULATED: 3 sessions are simulated", found(WHOLE, simulated=3), found(WHOLE)),
         ("1 simulated session is excluded", found(WHOLE, simulated_left_out=1), found(WHOLE)),
-        ("4 not reported", found(replace(WHOLE, withheld=4)), found(replace(WHOLE, with_care=4))),
-        ("5 rated caution", found(replace(WHOLE, with_care=5)), found(replace(WHOLE, withheld=5))),
+        ("4 not reported", found(replace(WHOLE, not_reported=4)), found(replace(WHOLE, with_care=4))),
+        ("5 rated caution", found(replace(WHOLE, with_care=5)), found(replace(WHOLE, not_reported=5))),
         ("6 not measured", found(replace(WHOLE, not_measured=6)), found(WHOLE)),
     ],
 )
-def test_a_note_comes_where_it_is_so_and_not_where_it_is_not(said: str, so: GroupAnswer, not_so: GroupAnswer) -> None:
-    assert said in " ".join(notes(so))
-    assert said not in " ".join(notes(not_so))
+def test_a_note_comes_where_it_is_so_and_not_where_it_is_not(stated: str, so: GroupAnswer, not_so: GroupAnswer) -> None:
+    assert stated in " ".join(notes(so))
+    assert stated not in " ".join(notes(not_so))
 
 
 def test_where_all_counts_there_is_nothing_to_note() -> None:
     assert notes(found(WHOLE)) == []
 
 
-def test_the_sentence_says_what_is_shown_and_how_many_stand_behind_it() -> None:
+def test_the_sentence_states_what_is_shown_and_how_many_stand_behind_it() -> None:
     assert sentence(found(WHOLE, FEW)) == "Knee range of motion: means of 14 sessions, by condition."
     assert sentence(found(WHOLE, grouping=Grouping.ALL)) == "Knee range of motion: mean of 12 sessions."
     none = replace(WHOLE, sessions=0, mean=math.nan, half_interval=math.nan)
@@ -104,7 +104,7 @@ def test_the_chart_and_the_table_have_the_same_groups(page: QuestionsPage) -> No
     assert "barefoot: 58.4 °, plus or minus 3.9, 12 sessions" in page.plot.accessibleDescription()
 
 
-def test_of_many_groups_the_largest_are_drawn_and_the_rest_is_told(page: QuestionsPage) -> None:
+def test_of_many_groups_the_largest_are_drawn_and_the_rest_is_reported(page: QuestionsPage) -> None:
     rows = [replace(WHOLE, group=f"g{k:03d}", sessions=3 + k) for k in range(MOST_ROWS + 20)]
     page.show_answer(found(*rows))
     assert [line.label for line in page.plot.lines] == [row.group for row in rows[-MOST_DRAWN:]]
@@ -138,15 +138,15 @@ def test_what_was_chosen_stays_when_another_table_has_it_too(page: QuestionsPage
     assert page.question == GroupQuestion(MEASURE, Grouping.AGE)
 
 
-def test_every_change_of_a_control_asks_anew(page: QuestionsPage) -> None:
-    heard: list[object] = []
-    page.question_changed.connect(heard.append)
+def test_every_change_of_a_control_asks_again(page: QuestionsPage) -> None:
+    received: list[object] = []
+    page.question_changed.connect(received.append)
     page.included.choose("care")
     page.simulated.click()
     page.grouping.setCurrentIndex(page.grouping.findData("speed"))
     page.measure.setCurrentIndex(page.measure.findData(MEASURE))
     stance = "stance_percent"
-    assert heard == [
+    assert received == [
         GroupQuestion(stance, Grouping.CONDITION, has_care=True),
         GroupQuestion(stance, Grouping.CONDITION, has_care=True, has_simulated=True),
         GroupQuestion(stance, Grouping.SPEED, has_care=True, has_simulated=True),
@@ -154,12 +154,12 @@ def test_every_change_of_a_control_asks_anew(page: QuestionsPage) -> None:
     ]
 
 
-def test_without_a_table_it_is_said_how_one_comes_to_be(qtbot: QtBot, page: QuestionsPage) -> None:
+def test_without_a_table_it_is_stated_how_one_comes_to_be(qtbot: QtBot, page: QuestionsPage) -> None:
     assert "gaitwright batch" not in shown(page)
     page.forget_table()
     assert "gaitwright batch" in shown(page)
     assert not page.measure.isVisible()
-    with qtbot.waitSignal(page.table_wished):
+    with qtbot.waitSignal(page.table_requested):
         page.first_table.click()
 
 

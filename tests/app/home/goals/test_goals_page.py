@@ -1,4 +1,4 @@
-"""Goals are typed by keys alone; what is wrong is said at its field, and nothing is proposed."""
+"""Goals are typed by keys alone; what is wrong is stated at its field, and nothing is proposed."""
 
 import datetime
 
@@ -55,9 +55,9 @@ def test_a_goal_is_typed_by_keys_and_enter_agrees_on_it(qtbot: QtBot, page: Goal
     QTest.keyClicks(page.value.line_edit, "57,5")
     QTest.keyClicks(page.weeks.line_edit, "12")
     QTest.keyClicks(page.note.line_edit, " stairs ")
-    with qtbot.waitSignal(page.agreed) as told:
+    with qtbot.waitSignal(page.agreed) as reported:
         QTest.keyClick(page.note.line_edit, Qt.Key.Key_Return)
-    assert told.args == [GoalDraft(KNEE, GoalOf.RIGHT, 57.5, is_at_most=False, weeks=12, note="stairs")]
+    assert reported.args == [GoalDraft(KNEE, GoalOf.RIGHT, 57.5, is_at_most=False, weeks=12, note="stairs")]
 
 
 def test_nothing_is_proposed_and_an_empty_value_is_asked_for(qtbot: QtBot, page: GoalsPage) -> None:
@@ -95,9 +95,9 @@ def test_between_the_legs_only_how_far_they_are_apart_is_asked(qtbot: QtBot, pag
     assert page.sense.isHidden()
     assert not page.apart.isHidden()
     QTest.keyClicks(page.value.line_edit, "0")
-    with qtbot.waitSignal(page.agreed) as told:
+    with qtbot.waitSignal(page.agreed) as reported:
         page.submit()
-    assert told.args == [GoalDraft(STANCE, GoalOf.BETWEEN, 0.0, is_at_most=True, weeks=None, note="")]
+    assert reported.args == [GoalDraft(STANCE, GoalOf.BETWEEN, 0.0, is_at_most=True, weeks=None, note="")]
 
 
 def test_each_measure_offers_whose_it_can_be(page: GoalsPage) -> None:
@@ -119,19 +119,19 @@ def test_a_value_of_another_measure_does_not_stay(page: GoalsPage) -> None:
     assert page.value.text == ""
 
 
-def test_what_holds_stands_first_and_what_ended_cannot_be_taken_back(qtbot: QtBot, page: GoalsPage) -> None:
+def test_what_holds_is_first_and_what_ended_cannot_be_taken_back(qtbot: QtBot, page: GoalsPage) -> None:
     page.show_goals(GOALS)
     assert [row.key for row in page.rows] == [(SPEED, GoalOf.WALK), (KNEE, GoalOf.LEFT), (SPEED, GoalOf.WALK)]
     assert [row.take_back is not None for row in page.rows] == [True, True, False]
     knee = page.rows[1].take_back
     assert knee is not None
-    with qtbot.waitSignal(page.taken_back) as told:
+    with qtbot.waitSignal(page.taken_back) as reported:
         QTest.keyClick(knee, Qt.Key.Key_Return)
-    assert told.args == [(KNEE, GoalOf.LEFT)]
+    assert reported.args == [(KNEE, GoalOf.LEFT)]
     assert not page.none_yet.isVisible()
 
 
-def test_who_agreed_and_when_stands_beneath() -> None:
+def test_who_agreed_and_when_is_beneath() -> None:
     speed, ended = (next(goal for goal in GOALS if goal.value == value) for value in (1.2, 1.1))
     assert about(speed) == "agreed 24 Nov 2026, B. Berger"
     assert about(ended) == "agreed 30 Sep 2026, H. Keller · by 24 Nov 2026 · ended 24 Nov 2026, B. Berger"
@@ -155,12 +155,14 @@ def test_no_word_is_cut_in_a_longer_language(qtbot: QtBot, look: ThemeNotifier, 
     assert words_cut(page) == []
 
 
-def test_a_time_is_wanted_to_be_at_most_so_long_unless_somebody_says_otherwise(qtbot: QtBot, page: GoalsPage) -> None:
+def test_a_time_is_required_to_be_at_most_so_long_unless_somebody_states_otherwise(
+    qtbot: QtBot, page: GoalsPage
+) -> None:
     choose(page, SIT_TO_STAND)
     assert not page.whose.isVisible()
     QTest.keyClicks(page.value.line_edit, "15")
-    with qtbot.waitSignal(page.agreed) as told:
+    with qtbot.waitSignal(page.agreed) as reported:
         QTest.keyClick(page.value.line_edit, Qt.Key.Key_Return)
-    assert told.args == [GoalDraft(SIT_TO_STAND, GoalOf.WALK, 15.0, is_at_most=True, weeks=None, note="")]
+    assert reported.args == [GoalDraft(SIT_TO_STAND, GoalOf.WALK, 15.0, is_at_most=True, weeks=None, note="")]
     choose(page, SPEED)
     assert page.sense.choice == AT_LEAST

@@ -52,16 +52,16 @@ def choices(page: ImportPage) -> dict[str, QComboBox]:
 def test_what_was_understood_is_shown_before_anything_is_stored(qtbot: QtBot, home: Home, tmp_path: Path) -> None:
     path = monitors(tmp_path / "walk.csv", ("Left Thigh", "Left Shank", "Lumbar"))
     page = read(qtbot, home, path)
-    said = shown(page)
-    assert "1 recording of APDM" in said
-    assert "3 sensors · 3.0 s · 128 Hz · gravity 9.8 m/s² · no gaps" in said
-    assert said.count("from its name") == 2
+    stated = shown(page)
+    assert "1 recording of APDM" in stated
+    assert "3 sensors · 3.0 s · 128 Hz · gravity 9.8 m/s² · no gaps" in stated
+    assert stated.count("from its name") == 2
     by_name = choices(page)
     assert by_name["Position of Left Thigh (100)"].currentText() == "Left thigh"
     assert by_name["Position of Lumbar (102)"].currentText() == "Not recorded"
     assert by_name["Type of walk"].currentText() == "Walk"
     by_name["Position of Left Thigh (100)"].setCurrentIndex(4)
-    assert shown(page).count("from its name") == 1  # what a person says is no proposal
+    assert shown(page).count("from its name") == 1  # what a person states is no proposal
     assert len(home.page.patients.lines) == 2
 
 
@@ -72,11 +72,11 @@ def test_what_was_made_of_the_orientation_is_shown(qtbot: QtBot, home: Home, tmp
     lines += [f"{k},{16667 * k},{30 * np.sin(k / 20):.4f},0,0,0.1,0,0" for k in range(180)]
     path = tmp_path / "LFemur_20230101_101112_831.csv"
     path.write_text("\n".join([*lines, ""]))
-    said = shown(read(qtbot, home, path))
-    assert "1 recording of Movella DOT (files of its app)" in said
-    told = "1 sensor · 3.0 s · 60 Hz · gravity 9.8 m/s² · gravity added from orientation · no gaps"
-    assert f"{told} · angular rates derived from orientation" in said
-    assert "from its name" in said
+    stated = shown(read(qtbot, home, path))
+    assert "1 recording of Movella DOT (files of its app)" in stated
+    reported = "1 sensor · 3.0 s · 60 Hz · gravity 9.8 m/s² · gravity added from orientation · no gaps"
+    assert f"{reported} · angular rates derived from orientation" in stated
+    assert "from its name" in stated
 
 
 def test_a_recording_of_another_program_comes_into_the_library(
@@ -135,15 +135,15 @@ def test_one_session_after_the_other_is_asked_for(qtbot: QtBot, home: Home, tmp_
     assert home.current is home.page
 
 
-def test_what_could_not_be_read_is_said_beside_what_was(qtbot: QtBot, home: Home, tmp_path: Path) -> None:
+def test_what_could_not_be_read_is_stated_beside_what_was(qtbot: QtBot, home: Home, tmp_path: Path) -> None:
     good = monitors(tmp_path / "walk.csv", ("Left Thigh", "Left Shank"))
     head = "// Firmware Version: 4.0.2\nPacketCounter\tAcc_X\tAcc_Y\tAcc_Z\tGyr_X\tGyr_Y\tGyr_Z\n"
     (tmp_path / "mt.txt").write_text(head + "".join(f"{k}\t0\t0\t9.81\t0\t0\t{k % 2}\n" for k in range(300)))
     (tmp_path / "notes.txt").write_text("to be left out\n")
     page = read(qtbot, home, good, tmp_path / "mt.txt", tmp_path / "notes.txt")
-    said = shown(page)
-    assert "notes.txt: this file format is not supported. Leave it out." in said
-    assert "mt.txt: its update rate is missing." in said
+    stated = shown(page)
+    assert "notes.txt: this file format is not supported. Leave it out." in stated
+    assert "mt.txt: its update rate is missing." in stated
     page.rate.set_value(100.0)
     page.read_again.click()
     qtbot.waitUntil(lambda: "1 recording of Xsens MT Manager" in shown(page), timeout=WAIT_MS)
@@ -173,7 +173,7 @@ def test_the_motion_places_the_sensors_of_a_real_walk(qtbot: QtBot, home: Home, 
     assert shown(page).count("from movement") == 6
 
 
-def test_a_site_that_was_said_tells_the_side(qtbot: QtBot, home: Home, test_data: FindData) -> None:
+def test_a_site_that_was_stated_shows_the_side(qtbot: QtBot, home: Home, test_data: FindData) -> None:
     folder = test_data("vendor_exports/xsens_mtmanager")
     page = read(qtbot, home, *sorted(folder.glob("OpenSenseExample_*.txt")))
     for torso in ("00B42268", "00B42279"):
@@ -205,6 +205,6 @@ def test_nothing_is_filled_in_but_what_the_files_say(qtbot: QtBot, home: Home, t
     """Not the code of the patient who is in sight."""
     home.page.patients.choose_line(home.page.patients.lines[0].id)
     qtbot.waitUntil(lambda: home.patients.patient is not None, timeout=WAIT_MS)
-    home.page.import_wished.emit()
+    home.page.import_requested.emit()
     page = read(qtbot, home, monitors(tmp_path / "walk.csv", ("Left Thigh", "Left Shank")))
     assert (page.code.text, home.bar.primary.isEnabled()) == ("", False)

@@ -1,4 +1,5 @@
-"""Joining a clinic's library: what has to be typed, where trouble is said, and what the environment does by itself."""
+"""Joining a clinic's library: what has to be typed, where trouble is stated, and what the environment does by
+itself."""
 
 from PySide6.QtCore import Qt
 from PySide6.QtTest import QTest
@@ -23,7 +24,7 @@ def shown(qtbot: QtBot, look: ThemeNotifier) -> JoinPage:
 def test_the_first_start_offers_to_join_unless_a_library_is_missing(qtbot: QtBot, look: ThemeNotifier) -> None:
     page = FirstStartPage(look, 12, lambda _typed, _key: False)
     qtbot.addWidget(page)
-    with qtbot.waitSignal(page.join_wished):
+    with qtbot.waitSignal(page.join_requested):
         page.join.click()
     page.show_missing("/a/folder")
     assert page.join.isHidden()
@@ -50,7 +51,7 @@ def test_enter_joins_with_what_was_typed_once(qtbot: QtBot, look: ThemeNotifier)
         page.join.click()
 
 
-def test_a_refusal_stands_at_the_field_it_is_about_and_what_was_typed_stays(qtbot: QtBot, look: ThemeNotifier) -> None:
+def test_a_refusal_is_at_the_field_it_is_about_and_what_was_typed_stays(qtbot: QtBot, look: ThemeNotifier) -> None:
     page = shown(qtbot, look)
     page.server.address.set_text(ADDRESS)
     page.show_busy(True)
@@ -67,18 +68,18 @@ def test_a_server_that_the_environment_names_is_tried_again_and_never_typed(qtbo
     page.show_trouble("The clinic's server does not answer. Try again when it is back.")
     assert not any(field.isVisible() for field in page.server.fields)
     assert "does not respond" in page.lead.text()
-    with qtbot.waitSignal(page.again_wished):
+    with qtbot.waitSignal(page.again_requested):
         page.again.click()
 
 
-def test_asking_anew_keeps_no_password(qtbot: QtBot, look: ThemeNotifier) -> None:
+def test_asking_again_keeps_no_password(qtbot: QtBot, look: ThemeNotifier) -> None:
     page = shown(qtbot, look)
     page.server.password.set_text("secret")
     page.ask()
-    assert page.server.told == ("", "", "")
+    assert page.server.reported == ("", "", "")
 
 
-def test_the_log_in_says_which_library_it_is(qtbot: QtBot, look: ThemeNotifier) -> None:
+def test_the_log_in_states_which_library_it_is(qtbot: QtBot, look: ThemeNotifier) -> None:
     page = LogInPage(look, 12)
     qtbot.addWidget(page)
     with qtbot.waitExposed(page):

@@ -48,7 +48,7 @@ def test_the_printers_properties_open_without_a_complaint_of_qt(qapp: QApplicati
     dialog.reject()
 
 
-def test_the_saved_sheet_says_whose_key_it_is_and_since_when(
+def test_the_saved_sheet_states_whose_key_it_is_and_since_when(
     qtbot: QtBot, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     window, file = QWidget(), tmp_path / "key.txt"

@@ -21,9 +21,9 @@ def test_work_without_the_server_is_offered_only_where_it_does_not_answer(qtbot:
     page.refuse("The clinic's server does not answer. Try again when it is back.")
     page.offer_away()
     assert page.work_away.isVisible()
-    with qtbot.waitSignal(page.away_wished) as wished:
+    with qtbot.waitSignal(page.away_requested) as requested:
         page.work_away.click()
-    assert wished.args == ["ab", "four short words here"]
+    assert requested.args == ["ab", "four short words here"]
     page.forget_typed()
     assert not page.work_away.isVisible()
 
@@ -32,7 +32,7 @@ def test_while_it_is_tried_it_is_not_tried_twice(qtbot: QtBot, look: ThemeNotifi
     page = page_of(qtbot, look)
     page.offer_away()
     page.show_busy(True)
-    with qtbot.assertNotEmitted(page.away_wished):
+    with qtbot.assertNotEmitted(page.away_requested):
         page.work_away.click()
 
 

@@ -1,4 +1,4 @@
-"""A patient is deleted by somebody who was told what goes, is missed at other stations with a word, and comes back."""
+"""A patient is deleted by somebody who was given what goes, is missed at other stations with a word, and comes back."""
 
 from collections.abc import Iterator
 from contextlib import contextmanager
@@ -35,7 +35,7 @@ def another_operator(folder: Path) -> Iterator[Library]:
         yield library
 
 
-def test_before_a_patient_is_deleted_it_is_said_what_goes_and_until_when_it_can_be_restored(
+def test_before_a_patient_is_deleted_it_is_stated_what_goes_and_until_when_it_can_be_restored(
     qtbot: QtBot, home: Home
 ) -> None:
     dialog = deletion_dialog(qtbot, home)
@@ -62,10 +62,10 @@ def test_a_patient_whom_another_opened_today_is_deleted_with_a_warning_and_not_u
         dialog = deletion_dialog(qtbot, home)
         assert dialog.others.text.startswith("Opened by another user: ab, today ")
         elsewhere.sessions.create(elsewhere.sessions.get(visits[0]).patient_id, Session(()))
-        with qtbot.waitSignal(home.deleting.refused, timeout=WAIT_MS) as told:
+        with qtbot.waitSignal(home.deleting.refused, timeout=WAIT_MS) as reported:
             dialog.delete.click()
-        assert told.args is not None
-        assert told.args[0] == "Someone else has changed this in the meantime."
+        assert reported.args is not None
+        assert reported.args[0] == "Someone else has changed this in the meantime."
     assert codes(home) == ["P-0163", "P-0147"]
 
 
@@ -88,9 +88,9 @@ def test_a_patient_in_sight_whom_another_deletes_is_missed_with_a_word(qtbot: Qt
     with another_operator(folder) as elsewhere:
         (patient,) = elsewhere.patients.search("0163")
         elsewhere.patients.delete(patient)
-    with qtbot.waitSignal(home.patients.refused, timeout=WAIT_MS) as told:
+    with qtbot.waitSignal(home.patients.refused, timeout=WAIT_MS) as reported:
         home.patients.read()  # as the watch has it done
-    assert told.args == [
+    assert reported.args == [
         "ab deleted P-0163 at another workstation.",
         "To continue, restore it in Settings within 30 days.",
     ]
@@ -110,10 +110,10 @@ def test_a_viewer_is_refused_before_anything_is_asked(qtbot: QtBot, home: Home, 
         library.log_in("ab")
         own = next(one for one in library.operators.list() if one.code == "hk")
         library.operators.change(replace(own, role=Role.VIEWER))
-    with qtbot.waitSignal(home.deleting.refused, timeout=WAIT_MS) as told:
+    with qtbot.waitSignal(home.deleting.refused, timeout=WAIT_MS) as reported:
         home.page.panel.delete_patient.trigger()
-    assert told.args is not None
-    assert told.args[0] == "This requires the role clinician."
+    assert reported.args is not None
+    assert reported.args[0] == "This requires the role clinician."
     assert home.deleting.dialog is None
 
 

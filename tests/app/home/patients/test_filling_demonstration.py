@@ -10,7 +10,7 @@ import pytest
 from PySide6.QtWidgets import QApplication
 from pytestqt.qtbot import QtBot
 
-from app.demonstration.patients import SimulatedPatient, SimulatedVisit, ToldOfWalk
+from app.demonstration.patients import ReportedOfWalk, SimulatedPatient, SimulatedVisit
 from app.home.home import Home
 from app.storage.opened import OpenedLibrary
 from app.system.settings import Settings
@@ -26,7 +26,9 @@ WALKED = WalkerSettings(recordings=(Standing(), Walk(strides=5)))
 
 
 def visit(code: str, days_ago: int = 0) -> SimulatedVisit:
-    return SimulatedVisit(code, STARTED - datetime.timedelta(days=days_ago), WALKED, {"walk 1": ToldOfWalk("Shoes")})
+    return SimulatedVisit(
+        code, STARTED - datetime.timedelta(days=days_ago), WALKED, {"walk 1": ReportedOfWalk("Shoes")}
+    )
 
 
 PATIENTS = (
@@ -36,7 +38,7 @@ PATIENTS = (
 
 
 class Held(Executor):
-    """Does what it is given when it is told to, here; in the place of the processes."""
+    """Does what it is given when it is given to, here; in the place of the processes."""
 
     def __init__(self, _count: int, _preloaded: tuple[str, ...]) -> None:
         self.waiting: list[tuple[Future[Any], Callable[[], Any]]] = []
@@ -92,16 +94,16 @@ def home(
     monkeypatch.setattr("app.demonstration.patients.simulated_patients", lambda _now: PATIENTS)
     monkeypatch.setattr(
         "app.demonstration.recording.record_beside",
-        lambda wanted: replace(session, started=wanted.started.isoformat(timespec="seconds")),
+        lambda required: replace(session, started=required.started.isoformat(timespec="seconds")),
     )
     load_fonts()
     home = Home(ThemeNotifier(), controller, settings)
     home.resize(1280, 800)
     qtbot.addWidget(home)
     home.show()
-    with qtbot.waitSignal(controller.opened, timeout=WAIT_MS) as told:
+    with qtbot.waitSignal(controller.opened, timeout=WAIT_MS) as reported:
         controller.open_demonstration()
-    home.show_library((told.args or [])[0])
+    home.show_library((reported.args or [])[0])
     qtbot.waitUntil(lambda: home.page.patients.line is not None, timeout=WAIT_MS)
     yield home
     home.finish()
@@ -145,7 +147,7 @@ def test_patients_are_there_at_once_and_each_visit_once_it_is_ready(qtbot: QtBot
 
 
 @pytest.mark.endurance
-def test_what_fails_is_said_and_the_others_are_made(qtbot: QtBot, home: Home) -> None:
+def test_what_fails_is_stated_and_the_others_are_made(qtbot: QtBot, home: Home) -> None:
     (held,) = HELD
     held.go_on(RuntimeError("a process was ended"))
     qtbot.waitUntil(lambda: len(held.waiting) == 2, timeout=WAIT_MS)
@@ -179,9 +181,9 @@ def test_who_leaves_the_demonstration_ends_what_goes_on_for_it(
     assert not home.filling.is_busy
     late[0].set_result(late[1]())  # what comes too late is nobody's
     asked: list[object] = []
-    with qtbot.waitSignal(controller.opened, timeout=WAIT_MS) as told:
+    with qtbot.waitSignal(controller.opened, timeout=WAIT_MS) as reported:
         controller.open_demonstration()
-    home.show_library((told.args or [])[0])
+    home.show_library((reported.args or [])[0])
     qtbot.waitUntil(lambda: home.page.patients.line is not None, timeout=WAIT_MS)
     assert len(HELD) == 2
     assert home.page.sessions.lines == ()

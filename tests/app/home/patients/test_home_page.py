@@ -53,7 +53,7 @@ def test_thousands_of_patients_are_shown_and_searched_in_no_time(page: HomePage,
     assert searched_s < 2 * MOST_S
 
 
-def test_the_chosen_patient_stays_chosen_when_the_list_is_read_anew(page: HomePage) -> None:
+def test_the_chosen_patient_stays_chosen_when_the_list_is_read_again(page: HomePage) -> None:
     page.show_patients([patient(1), patient(2), patient(3)], UUID(int=2))
     assert page.patient_id == UUID(int=2)
     page.show_patients([patient(3), patient(2), patient(1)])
@@ -66,12 +66,12 @@ def test_an_empty_library_offers_a_patient_and_the_demonstration(qtbot: QtBot, p
     page.show_patients(())
     assert page.empty.isVisible()
     assert not page.search.isVisible()
-    for button, wished in (
-        (page.empty.new_patient, page.new_patient_wished),
-        (page.empty.demonstration, page.demonstration_wished),
-        (page.empty.importing, page.import_wished),
+    for button, requested in (
+        (page.empty.new_patient, page.new_patient_requested),
+        (page.empty.demonstration, page.demonstration_requested),
+        (page.empty.importing, page.import_requested),
     ):
-        with qtbot.waitSignal(wished):
+        with qtbot.waitSignal(requested):
             QTest.mouseClick(button, Qt.MouseButton.LeftButton)
     page.show_patients([patient(1)])
     assert not page.empty.isVisible()
@@ -92,13 +92,13 @@ def test_the_first_patient_puts_the_focus_into_the_search(qtbot: QtBot, page: Ho
     assert page.search.hasFocus()
 
 
-def test_a_line_says_all_of_itself_to_a_reader_of_screens(page: HomePage) -> None:
+def test_a_line_states_all_of_itself_to_a_reader_of_screens(page: HomePage) -> None:
     page.show_patients([patient(147)])
-    said = page.patients.cells.data(page.patients.cells.index(0, 0), Qt.ItemDataRole.AccessibleTextRole)
-    assert said == "P-0147, 1968, male · left prosthetic, 24 Oct 2026, 5 sessions"
+    stated = page.patients.cells.data(page.patients.cells.index(0, 0), Qt.ItemDataRole.AccessibleTextRole)
+    assert stated == "P-0147, 1968, male · left prosthetic, 24 Oct 2026, 5 sessions"
     page.show_sessions([session(1, "Alignment A", "recovered, needs review")])
-    said = page.sessions.cells.data(page.sessions.cells.index(0, 0), Qt.ItemDataRole.AccessibleTextRole)
-    assert said == "24 Oct 2026, Alignment A, 3 recordings, recovered, needs review"
+    stated = page.sessions.cells.data(page.sessions.cells.index(0, 0), Qt.ItemDataRole.AccessibleTextRole)
+    assert stated == "24 Oct 2026, Alignment A, 3 recordings, recovered, needs review"
 
 
 @pytest.mark.parametrize(("width", "scale"), [(1064, 1.0), (736, 1.0), (736, 0.8), (1216, 2.0)])
@@ -129,7 +129,7 @@ def test_no_word_of_a_line_is_cut_or_lies_on_another(
             )
 
 
-def test_nothing_is_said_of_patients_and_sessions_that_are_still_to_be_read(page: HomePage) -> None:
+def test_nothing_is_stated_of_patients_and_sessions_that_are_still_to_be_read(page: HomePage) -> None:
     assert not page.empty.isVisible()
     page.show_patients(())
     assert page.empty.isVisible()
@@ -146,7 +146,7 @@ def test_nothing_is_said_of_patients_and_sessions_that_are_still_to_be_read(page
     assert not page.empty.isVisible()
 
 
-def test_a_list_that_is_read_anew_keeps_choice_and_scroll(page: HomePage, qapp: QApplication) -> None:
+def test_a_list_that_is_read_again_keeps_choice_and_scroll(page: HomePage, qapp: QApplication) -> None:
     page.show_patients([patient(number) for number in range(1, 60)], UUID(int=30))
     qapp.processEvents()
     page.patients.verticalScrollBar().setValue(0)  # somebody looks elsewhere than at who is chosen
@@ -157,7 +157,7 @@ def test_a_list_that_is_read_anew_keeps_choice_and_scroll(page: HomePage, qapp: 
     assert len(page.patients.lines) == 60
 
 
-def test_sessions_that_are_read_anew_keep_the_one_that_is_chosen(page: HomePage) -> None:
+def test_sessions_that_are_read_again_keep_the_one_that_is_chosen(page: HomePage) -> None:
     page.show_patients([patient(1)], UUID(int=1))
     page.show_patient("P-0001", "")
     page.show_sessions([session(2, "Barefoot"), session(1, "Barefoot")])

@@ -29,7 +29,7 @@ def wait_for_answers(qtbot: QtBot, controller: LibraryController) -> None:
     qtbot.waitUntil(lambda: laters[1].is_answered, timeout=WAIT_MS)
 
 
-def test_who_is_wished_for_is_chosen_though_the_patients_are_read_again_meanwhile(
+def test_who_is_requested_for_is_chosen_though_the_patients_are_read_again_meanwhile(
     qtbot: QtBot, home: Home, controller: LibraryController
 ) -> None:
     patients = [line.id for line in home.page.patients.lines if isinstance(line, PatientLine)]

@@ -1,4 +1,4 @@
-"""What is said of recordings that nobody stopped is what their journals hold."""
+"""What is stated about recordings that nobody stopped is what their journals hold."""
 
 from dataclasses import replace
 from pathlib import Path
@@ -7,7 +7,7 @@ from uuid import uuid4
 
 import pytest
 
-from app.home.patients.recovering import _heard_messages
+from app.home.patients.recovering import _received_messages
 from app.storage.journal.payloads import Footer
 from app.storage.journal.reader import ReadReport
 from app.storage.recovery import Recovered
@@ -20,20 +20,20 @@ WHOLE = replace(CUT, footer=Footer("stopped", 0, 0))
 
 
 class Row:
-    """A recording's row, as far as it is said."""
+    """A recording's row, as far as it is stated."""
 
     id = uuid4()
     details = Recording("walk 3", RecordingKind.WALKING, str(Path("walk_3")), {})
 
 
-def said(*reports: ReadReport) -> str:
-    heard = [Recovered(cast(StoredRecording, Row()), 74.2, (report,)) for report in reports]
-    ((what, then, _),) = _heard_messages(heard)
+def stated(*reports: ReadReport) -> str:
+    received = [Recovered(cast(StoredRecording, Row()), 74.2, (report,)) for report in reports]
+    ((what, then, _),) = _received_messages(received)
     return f"{what} {then}"
 
 
-def test_a_recording_that_was_cut_short_tells_its_length_and_what_its_end_may_have_cost() -> None:
-    assert said(CUT) == (
+def test_a_recording_that_was_cut_short_shows_its_length_and_what_its_end_may_have_cost() -> None:
+    assert stated(CUT) == (
         "The program closed during recording. 01:14 of walk 3 was recovered. It is complete up to the last record on "
         f"disk. Review it, then include or exclude it. {recovery_costs()}"
     )
@@ -44,22 +44,22 @@ def test_a_recording_that_was_cut_short_tells_its_length_and_what_its_end_may_ha
 
 
 def test_it_is_called_as_in_its_session_and_by_its_own_name_where_that_cannot_be_read() -> None:
-    heard = [Recovered(cast(StoredRecording, Row()), 74.2, (CUT,))]
+    received = [Recovered(cast(StoredRecording, Row()), 74.2, (CUT,))]
     for names, name in (({Row.id: "A2 Barefoot"}, "A2 Barefoot"), ({uuid4(): "A2 Barefoot"}, "walk 3")):
-        ((what, _, _),) = _heard_messages(heard, names)
+        ((what, _, _),) = _received_messages(received, names)
         assert what == f"The program closed during recording. 01:14 of {name} was recovered."
 
 
 def test_one_of_which_only_the_row_was_left_open_is_whole() -> None:
-    assert "It is complete. Review it" in said(WHOLE)
-    assert recovery_costs() not in said(WHOLE)
-    assert "complete." not in said(WHOLE, CUT)
-    assert "They are complete" in said(WHOLE, WHOLE)
+    assert "It is complete. Review it" in stated(WHOLE)
+    assert recovery_costs() not in stated(WHOLE)
+    assert "complete." not in stated(WHOLE, CUT)
+    assert "They are complete" in stated(WHOLE, WHOLE)
 
 
-@pytest.mark.parametrize(("missing", "is_said"), [(0, False), (1, True), (4, True)])
-def test_records_that_are_missing_before_the_end_are_counted(missing: int, is_said: bool) -> None:
-    words = said(CUT, replace(CUT, missing_records=missing))
-    assert ("missing" in words) is is_said
+@pytest.mark.parametrize(("missing", "is_stated"), [(0, False), (1, True), (4, True)])
+def test_records_that_are_missing_before_the_end_are_counted(missing: int, is_stated: bool) -> None:
+    words = stated(CUT, replace(CUT, missing_records=missing))
+    assert ("missing" in words) is is_stated
     assert ("4 records before it are missing and leave gaps." in words) is (missing == 4)
     assert "2 recordings, 02:28 in total, were recovered." in words

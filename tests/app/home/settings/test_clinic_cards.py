@@ -25,32 +25,32 @@ def station(qtbot: QtBot, look: ThemeNotifier) -> StationCard:
         (2, "2 recordings here are waiting to be transferred."),
     ],
 )
-def test_it_says_what_waits_here(station: StationCard, waiting: int, words: str) -> None:
+def test_it_states_what_waits_here(station: StationCard, waiting: int, words: str) -> None:
     station.show_station(StationView("postgresql://station@server/clinic", "/shared", waiting))
     assert station.waiting.text() == words
 
 
-def test_what_is_not_known_to_wait_is_not_said_to_be_handed_over(station: StationCard) -> None:
+def test_what_is_not_known_to_wait_is_not_stated_to_be_handed_over(station: StationCard) -> None:
     station.show_station(StationView("postgresql://station@server/clinic", "/shared"))
     assert not station.waiting.isVisible()
 
 
 def test_the_button_of_a_copy_stops_it_while_it_is_made(qtbot: QtBot, station: StationCard) -> None:
-    with qtbot.waitSignal(station.copy_wished):
+    with qtbot.waitSignal(station.copy_requested):
         station.copy.click()
     station.show_copy("Copying, 10 %", is_running=True)
-    with qtbot.waitSignal(station.stop_wished), qtbot.assertNotEmitted(station.copy_wished):
+    with qtbot.waitSignal(station.stop_requested), qtbot.assertNotEmitted(station.copy_requested):
         station.copy.click()
 
 
 def test_nothing_is_brought_back_by_one_press(qtbot: QtBot, station: StationCard) -> None:
-    with qtbot.assertNotEmitted(station.back_wished):
+    with qtbot.assertNotEmitted(station.back_requested):
         station.back.click()
     assert not station.back.isVisible()
     station.keep.click()
     assert station.back.isVisible()
     station.back.click()
-    with qtbot.waitSignal(station.back_wished):
+    with qtbot.waitSignal(station.back_requested):
         station.sure.click()
 
 
@@ -63,13 +63,13 @@ def test_who_may_not_bring_it_back_is_not_offered_it(station: StationCard) -> No
 def test_a_move_needs_an_address_and_a_place(qtbot: QtBot, look: ThemeNotifier) -> None:
     card = MoreStationsCard(look)
     qtbot.addWidget(card)
-    with qtbot.assertNotEmitted(card.move_wished):
+    with qtbot.assertNotEmitted(card.move_requested):
         card.move_there.click()
     assert card.server.address.is_wrong
     assert card.server.place.is_wrong
     card.server.address.set_text("postgresql://owner@server/clinic")
     card.server.password.set_text("secret")
     card.show_place("/shared")
-    with qtbot.waitSignal(card.move_wished) as wished:
+    with qtbot.waitSignal(card.move_requested) as requested:
         card.move_there.click()
-    assert wished.args == ["postgresql://owner@server/clinic", "secret", "/shared"]
+    assert requested.args == ["postgresql://owner@server/clinic", "secret", "/shared"]

@@ -1,4 +1,4 @@
-"""An error report is saved where it is asked to be, holds what is known and no name, and says where it went."""
+"""An error report is saved where it is asked to be, holds what is known and no name, and states where it went."""
 
 from pathlib import Path
 
@@ -33,15 +33,15 @@ def test_it_holds_versions_and_the_logs_end(qtbot: QtBot, report: ErrorReport, t
     assert text.endswith("first line\nthe program ended early\n")
 
 
-def test_a_place_that_cannot_be_written_is_said(qtbot: QtBot, report: ErrorReport, tmp_path: Path) -> None:
-    said: list[tuple[str, str]] = []
-    report.told.connect(lambda what, remedy: said.append((what, remedy)))
+def test_a_place_that_cannot_be_written_is_stated(qtbot: QtBot, report: ErrorReport, tmp_path: Path) -> None:
+    stated: list[tuple[str, str]] = []
+    report.reported.connect(lambda what, remedy: stated.append((what, remedy)))
     with qtbot.assertNotEmitted(report.written):
         report.write(str(tmp_path / "not there" / FILE_NAME))
-    assert said == [("The error report was not saved (No such file or directory).", "Choose another place.")]
+    assert stated == [("The error report was not saved (No such file or directory).", "Choose another place.")]
 
 
-def test_the_dialog_asks_and_writes_where_it_was_told(qtbot: QtBot, report: ErrorReport, tmp_path: Path) -> None:
+def test_the_dialog_asks_and_writes_where_it_was_reported(qtbot: QtBot, report: ErrorReport, tmp_path: Path) -> None:
     report.save()
     window = report.parent()
     assert isinstance(window, QWidget)
@@ -56,8 +56,8 @@ def test_the_dialog_asks_and_writes_where_it_was_told(qtbot: QtBot, report: Erro
 def test_the_settings_offer_it_and_say_where_it_went(qtbot: QtBot) -> None:
     page = SettingsPage(ThemeNotifier(), 12, [])
     qtbot.addWidget(page)
-    with qtbot.waitSignal(page.error_report_wished):
+    with qtbot.waitSignal(page.error_report_requested):
         page.report_error.click()
-    assert page.trouble_said == ""
+    assert page.trouble_stated == ""
     page.show_error_report("/a/b.txt")
-    assert page.trouble_said == "Saved as /a/b.txt."
+    assert page.trouble_stated == "Saved as /a/b.txt."

@@ -29,11 +29,11 @@ def rows_of(
     hz: float = 120.0,
 ) -> list[str]:
     """Times and angles in degrees as an optical system would have them, whose clock is late and runs fast."""
-    told = truth.recordings[walk].joints
-    own_s = told[joints[0]].time_s
+    reported = truth.recordings[walk].joints
+    own_s = reported[joints[0]].time_s
     at_s = np.arange(own_s[0] + 0.2, own_s[-1] - 0.2, 1 / hz)
     columns = [
-        np.rad2deg(np.interp(at_s, told[joint].time_s, told[joint].angle_rad)) * (-1 if joint in turned else 1)
+        np.rad2deg(np.interp(at_s, reported[joint].time_s, reported[joint].angle_rad)) * (-1 if joint in turned else 1)
         for joint in joints
     ]
     rows = zip(at_s * (1 + PPM) + later_s, *columns, strict=True)

@@ -51,9 +51,9 @@ def test_the_figures_are_those_of_the_truth(
     for walk in study.walks:
         (own,) = [one for one in analysis.recordings if one.name == walk.recording.name]
         for joint in LEG_JOINTS:
-            told = truth.recordings[walk.recording.name].joints[joint]
-            inside = (own.time_s > told.time_s[0] + 0.21) & (own.time_s < told.time_s[-1] - 0.21)
-            error = own.joints[joint].angle_rad - np.interp(own.time_s, told.time_s, told.angle_rad)
+            reported = truth.recordings[walk.recording.name].joints[joint]
+            inside = (own.time_s > reported.time_s[0] + 0.21) & (own.time_s < reported.time_s[-1] - 0.21)
+            error = own.joints[joint].angle_rad - np.interp(own.time_s, reported.time_s, reported.angle_rad)
             error = np.where(inside, error, np.nan)
             found = walk.figures[joint, AngleKind.RESULT]
             # half a millisecond of clock is 0.2 degrees where a knee swings
@@ -105,7 +105,7 @@ def test_one_long_trial_holds_both_walks(simulated: tuple[Session, SessionTruth,
 def test_a_walk_of_another_name_is_not_compared(
     simulated: tuple[Session, SessionTruth, Analysis], tmp_path: Path
 ) -> None:
-    """Its name says which walk it is, so a better fit elsewhere is no reason to take it for another."""
+    """Its name states which walk it is, so a better fit elsewhere is no reason to take it for another."""
     _, truth, analysis = simulated
     path = write_reference(
         tmp_path / "ref.csv", [f"walk 1,{row}" for row in rows_of(truth, "walk 1")], first="recording,"
@@ -115,7 +115,7 @@ def test_a_walk_of_another_name_is_not_compared(
 
 
 @pytest.mark.parametrize(
-    ("what", "said"),
+    ("what", "stated"),
     [
         ("standing", "the joints hardly move in it"),
         ("short", "not two seconds of motion without gaps that both systems saw"),
@@ -124,7 +124,7 @@ def test_a_walk_of_another_name_is_not_compared(
     ],
 )
 def test_what_cannot_be_compared_is_refused_with_its_reason(
-    simulated: tuple[Session, SessionTruth, Analysis], what: str, said: str
+    simulated: tuple[Session, SessionTruth, Analysis], what: str, stated: str
 ) -> None:
     time_s = np.arange(0.0, 1.2 if what == "short" else 12.0, 0.01)
     rng = np.random.default_rng(1)
@@ -132,7 +132,7 @@ def test_what_cannot_be_compared_is_refused_with_its_reason(
     angle = np.deg2rad({"standing": 0.2, "other": 60.0}.get(what, 20.0)) * smooth
     angles = {} if what == "none" else {Joint.LEFT_KNEE: (time_s, angle)}
     reference = ReferenceFile("csv", "angles", (ReferenceTrial(angles=angles),))
-    with pytest.raises(FileRefusedError, match=said) as refused:
+    with pytest.raises(FileRefusedError, match=stated) as refused:
         study_of(simulated[2], [("ref.csv", reference)])
     assert str(refused.value).startswith("ref.csv: ")
 
@@ -154,7 +154,7 @@ def test_without_a_zero_there_is_no_z(simulated: tuple[Session, SessionTruth, An
     assert found.m_rad == pytest.approx(walk.figures[Joint.LEFT_KNEE, AngleKind.RESULT].m_rad, rel=0.05)
 
 
-def test_left_and_right_exchanged_is_said_and_where_they_are_not_it_is_not(
+def test_left_and_right_exchanged_is_stated_and_where_they_are_not_it_is_not(
     simulated: tuple[Session, SessionTruth, Analysis], study: AgreementStudy
 ) -> None:
     _, _, analysis = simulated
@@ -177,7 +177,7 @@ def test_our_own_exports_agree_with_us(
 ) -> None:
     _, _, analysis = simulated
     (walk,) = [one for one in analysis.recordings if one.name == "walk 2"]
-    path = tmp_path / "export.c3d"  # the name that its library insists on; it says nothing to the reader
+    path = tmp_path / "export.c3d"  # the name that its library insists on; it gives nothing to the reader
     write(walk, True, path)
     (found,) = study_of(analysis, [("export", read_reference(path))]).walks
     assert found.recording is walk
@@ -224,8 +224,8 @@ def test_the_table_has_a_row_for_each_walk_joint_and_angle_and_one_over_walks(st
     each = [float(r["m_rmse_deg"]) for r in table if r["joint"] == "left_knee" and r["angle"] == "result"][:2]
     assert float(over["m_rmse_deg"]) == pytest.approx(np.mean(each), abs=1e-5)
     assert float(over["m_rmse_sd_deg"]) == pytest.approx(np.std(each, ddof=1), abs=1e-5)
-    told = summary_of(study)
-    agreement = told["agreement"]
+    reported = summary_of(study)
+    agreement = reported["agreement"]
     assert isinstance(agreement, list)
     assert [row["m_rmse_deg"] for row in agreement][:3] == [*each, float(over["m_rmse_deg"])]
 
@@ -257,22 +257,26 @@ def test_table_1_is_printed_with_the_prosthesis_first(study: AgreementStudy) -> 
     assert any("Optical models applied to one walk differ by 2 to 4° at the knee" in line for line in lines)
     published = study.over_walks(Joint.LEFT_KNEE, AngleKind.PUBLISHED)
     assert published is not None
-    (said,) = [line for line in lines if "Published fusion" in line]
-    assert f"left knee {np.rad2deg(published.whole.m_rad):.2f}°" in said
+    (stated,) = [line for line in lines if "Published fusion" in line]
+    assert f"left knee {np.rad2deg(published.whole.m_rad):.2f}°" in stated
     assert not any("eq 10" in line for line in lines)  # no magnetometer was there
     plain = list(printed(study, Patient()))
     assert not any("prosthesis" in line for line in plain)
 
 
-def test_a_joint_that_is_withheld_is_named_and_another_is_not(study: AgreementStudy) -> None:
+def test_a_joint_that_is_not_reported_is_named_and_another_is_not(study: AgreementStudy) -> None:
     assert not any("not reported" in line for line in printed(study, Patient()))
-    withheld = JointVerdicts(Assessment(Verdict.WITHHELD), Assessment(Verdict.WITHHELD), Assessment(Verdict.READ))
+    not_reported = JointVerdicts(
+        Assessment(Verdict.NOT_REPORTED), Assessment(Verdict.NOT_REPORTED), Assessment(Verdict.READ)
+    )
     walks = [
         replace(
             walk,
             recording=replace(
                 walk.recording,
-                verdicts=replace(walk.recording.verdicts, joints={**walk.recording.verdicts.joints, joint: withheld}),
+                verdicts=replace(
+                    walk.recording.verdicts, joints={**walk.recording.verdicts.joints, joint: not_reported}
+                ),
             ),
         )
         for walk, joint in zip(study.walks, (Joint.LEFT_KNEE, Joint.LEFT_ANKLE), strict=True)
@@ -298,7 +302,7 @@ def passes(rows: list[str], *parts: tuple[float, float]) -> list[list[str]]:
     return [rows[round(first * len(rows)) : round(last * len(rows))] for first, last in parts]
 
 
-def test_every_pass_of_a_walk_is_compared_and_the_samples_used_are_said(
+def test_every_pass_of_a_walk_is_compared_and_the_samples_used_are_stated(
     simulated: tuple[Session, SessionTruth, Analysis], tmp_path: Path
 ) -> None:
     _, truth, analysis = simulated
@@ -316,9 +320,9 @@ def test_every_pass_of_a_walk_is_compared_and_the_samples_used_are_said(
         assert used.used + used.outside + used.in_gaps + used.after_slip == used.recorded == len(walk.recording.time_s)
         assert np.rad2deg(walk.figures[joint, AngleKind.RESULT].m_rad) < 0.6
     used = walk.used[Joint.LEFT_KNEE]
-    said = list(printed(found, Patient()))
+    stated = list(printed(found, Patient()))
     line = f"  Left knee: {used.used} of {used.recorded} samples are used; {used.outside} beyond the reference"
-    assert any(one.startswith(line) for one in said)
+    assert any(one.startswith(line) for one in stated)
     header, table = agreement_table(found)
     row = dict(zip(header, next(table), strict=True))
     assert [int(row[name]) for name in ("samples", "recorded", "outside_reference", "in_gaps", "after_slip")] == [
@@ -326,7 +330,7 @@ def test_every_pass_of_a_walk_is_compared_and_the_samples_used_are_said(
     ]
 
 
-def test_a_trial_of_times_that_another_tells_is_left_over(
+def test_a_trial_of_times_that_another_shows_is_left_over(
     simulated: tuple[Session, SessionTruth, Analysis], tmp_path: Path
 ) -> None:
     _, truth, analysis = simulated

@@ -23,12 +23,12 @@ def demonstration() -> AnalysedVisit:
 @pytest.fixture(scope="session")
 def one_leg() -> AnalysedVisit:
     """The demonstration's left leg; the right one wears no sensor."""
-    told = simulate(DEMONSTRATION).session
+    reported = simulate(DEMONSTRATION).session
     recordings = tuple(
         replace(r, imu={site: block for site, block in r.imu.items() if site.side is Side.LEFT})
-        for r in told.recordings
+        for r in reported.recordings
     )
-    session = replace(told, recordings=recordings)
+    session = replace(reported, recordings=recordings)
     return AnalysedVisit(session, analyse(session))
 
 
@@ -36,13 +36,13 @@ def one_leg() -> AnalysedVisit:
 def alignments() -> AnalysedVisit:
     walks = tuple(Walk(name=f"walk {k}", strides=13, speed_m_s=speed) for k, speed in ((1, 1.05), (2, 1.15), (3, 1.2)))
     settings = replace(DEMONSTRATION, seed=7, prosthetic_side=Side.RIGHT)
-    told = simulate(replace(settings, recordings=(Standing(), FreeMotion(), *walks))).session
+    reported = simulate(replace(settings, recordings=(Standing(), FreeMotion(), *walks))).session
     letters = iter("ABC")
     recorded = tuple(
         replace(r, condition=f"alignment {next(letters)}") if r.kind is RecordingKind.WALKING else r
-        for r in told.recordings
+        for r in reported.recordings
     )
-    session = replace(told, recordings=recorded, started="2026-11-20T09:42:00+01:00")
+    session = replace(reported, recordings=recorded, started="2026-11-20T09:42:00+01:00")
     return AnalysedVisit(session, analyse(session))
 
 

@@ -12,7 +12,7 @@ from core.body import LEG_JOINTS, Joint, Side
 from core.goals import Goal, GoalOf
 from core.results import Analysis
 from tests.app.changed_analysis import recalibrated, rewalked, walk_of, with_few_strides
-from tests.app.reports.patient.test_what_stands_out import said, with_more
+from tests.app.reports.patient.test_what_stands_out import stated, with_more
 
 
 @pytest.fixture
@@ -24,7 +24,7 @@ def answer(request: ReportRequest, analysis: Analysis) -> Answer:
     return answer_of(Facts(AnalysedVisit(request.visit.session, analysis), walk_of(analysis)))
 
 
-def test_what_differs_most_is_the_answer_and_its_error_stands_beside_it(
+def test_what_differs_most_is_the_answer_and_its_error_is_beside_it(
     request_of_demonstration: ReportRequest, analysis: Analysis
 ) -> None:
     found = answer(request_of_demonstration, with_more(analysis, Side.LEFT, "knee_range_rad", -20.0))
@@ -43,7 +43,7 @@ def test_where_nothing_exceeds_its_error_the_answer_is_that(
     assert "within 2\u00a0SD of the reference" in found.then
 
 
-def test_a_difference_that_is_told_in_the_table_alone_is_not_called_none(
+def test_a_difference_that_is_reported_in_the_table_alone_is_not_called_none(
     request_of_demonstration: ReportRequest, analysis: Analysis
 ) -> None:
     ankle = with_more(analysis, Side.LEFT, "ankle_range_rad", -20.0)  # of which no error has been published
@@ -67,7 +67,7 @@ def test_of_a_walk_without_strides_nothing_is_read(request_of_demonstration: Rep
     assert found.first.startswith("No results for this walk")
 
 
-def test_what_is_withheld_is_no_answer_but_the_caveat_beside_it(
+def test_what_is_not_reported_is_no_answer_but_the_caveat_beside_it(
     request_of_demonstration: ReportRequest, analysis: Analysis
 ) -> None:
     shortened = with_more(analysis, Side.LEFT, "knee_range_rad", -20.0)
@@ -82,11 +82,11 @@ def test_the_screen_and_the_report_say_the_same(request_of_demonstration: Report
     for name, side, more in (("knee_range_rad", Side.RIGHT, -20.0), ("step_time_s", Side.LEFT, 0.2)):
         changed = with_more(analysis, side, name, more)
         first = answer(request_of_demonstration, changed).first.replace("\u00a0", " ")
-        assert any(sentence.startswith(first) for sentence in said(request_of_demonstration, changed))
+        assert any(sentence.startswith(first) for sentence in stated(request_of_demonstration, changed))
 
 
 @pytest.mark.parametrize("joints", [LEG_JOINTS, (Joint.LEFT_KNEE, Joint.LEFT_ANKLE), (Joint.LEFT_KNEE,)])
-def test_where_no_angle_can_be_compared_it_is_said_before_what_times_tell(
+def test_where_no_angle_can_be_compared_it_is_stated_before_what_times_show(
     request_of_demonstration: ReportRequest, analysis: Analysis, joints: tuple[Joint, ...]
 ) -> None:
     found = answer(request_of_demonstration, recalibrated(analysis, joints, is_same_joint=False, sign_margin=1.05))
@@ -103,8 +103,8 @@ def test_a_goal_agreed_before_is_answered_and_one_agreed_on_the_day_is_not(
 
     def then(agreed: str) -> str:
         goal = Goal("speed_m_s", GoalOf.WALK, 3.0, datetime.date.fromisoformat(agreed))
-        told = replace(session, started="2026-11-20", patient=replace(session.patient, goals=(goal,)))
-        return answer_of(Facts(AnalysedVisit(told, analysis), walk_of(analysis))).then
+        reported = replace(session, started="2026-11-20", patient=replace(session.patient, goals=(goal,)))
+        return answer_of(Facts(AnalysedVisit(reported, analysis), walk_of(analysis))).then
 
     assert "Goal: Walking speed: at least 3.00\u00a0m/s; measured 1.18\u00a0m/s, not reached, beyond" in then(
         "2026-11-19"

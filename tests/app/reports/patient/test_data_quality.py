@@ -30,7 +30,7 @@ def quality_of(visit: AnalysedVisit, analysis: Analysis) -> DataQuality:
     return data_quality(facts(visit, analysis))
 
 
-def test_where_all_can_be_read_nothing_stands_against_it(visit: AnalysedVisit) -> None:
+def test_where_all_can_be_read_nothing_is_against_it(visit: AnalysedVisit) -> None:
     found = quality_of(visit, visit.analysis)
     assert found.first == "All four joints are reported."
     assert found.lines == ()
@@ -39,13 +39,13 @@ def test_where_all_can_be_read_nothing_stands_against_it(visit: AnalysedVisit) -
     assert not door_words(found).is_caution
 
 
-def test_a_withheld_joint_comes_first_with_why_what_to_do_and_whose_motion_mends_it(visit: AnalysedVisit) -> None:
+def test_a_not_reported_joint_comes_first_with_why_what_to_do_and_whose_motion_mends_it(visit: AnalysedVisit) -> None:
     slanted = recalibrated(visit.analysis, [Joint.RIGHT_KNEE], axis_sd_rad=np.deg2rad(8.0))
     gated = recalibrated(slanted, [Joint.LEFT_ANKLE], axis_sd_rad=np.deg2rad(11.0))
     found = quality_of(visit, gated)
     assert found.first == "2 of 4 joints: Good. Caution: right knee. Not reported: left ankle."
     first, second, *_ = found.lines
-    assert (first.where, first.verdict, first.side) == ("Left ankle", Verdict.WITHHELD, Side.LEFT)
+    assert (first.where, first.verdict, first.side) == ("Left ankle", Verdict.NOT_REPORTED, Side.LEFT)
     assert first.why == "Calibration certainty is only ±11.0° (limit ±9.0°)."
     assert first.to_do.startswith("Record free motion")
     assert (second.where, second.verdict, second.side) == ("Right knee", Verdict.CARE, Side.RIGHT)
@@ -71,7 +71,7 @@ def test_a_withheld_joint_comes_first_with_why_what_to_do_and_whose_motion_mends
         ((), LEG_JOINTS, "No joint is reported for this walk."),
     ],
 )
-def test_what_is_said_of_the_joints_follows_their_verdicts(
+def test_what_is_stated_of_the_joints_follows_their_verdicts(
     visit: AnalysedVisit, care: tuple[Joint, ...], out: tuple[Joint, ...], words: str
 ) -> None:
     found = recalibrated(visit.analysis, care, axis_sd_rad=np.deg2rad(8.0)) if care else visit.analysis
@@ -89,7 +89,7 @@ def test_without_a_zero_the_shape_is_read_and_the_heights_are_not(visit: Analyse
 
 def test_legs_whose_clocks_are_not_known_to_agree_can_each_be_read(visit: AnalysedVisit) -> None:
     walk = walk_of(visit.analysis)
-    between = Assessment(Verdict.WITHHELD, (GateReason("clocks", Verdict.WITHHELD),))
+    between = Assessment(Verdict.NOT_REPORTED, (GateReason("clocks", Verdict.NOT_REPORTED),))
     apart = replace(walk, verdicts=replace(walk.verdicts, between=between))
     recordings = tuple(apart if one is walk else one for one in visit.analysis.recordings)
     found = data_quality(Facts(replace(visit, analysis=replace(visit.analysis, recordings=recordings)), apart))
@@ -108,7 +108,7 @@ def test_too_few_strides_withhold_a_leg(visit: AnalysedVisit) -> None:
     assert "2 of 4 joints: Good." in found.first
 
 
-def test_what_was_noticed_is_said_where_no_verdict_says_it_already(visit: AnalysedVisit) -> None:
+def test_what_was_noticed_is_stated_where_no_verdict_states_it_already(visit: AnalysedVisit) -> None:
     silent = Finding(
         "gaps", Severity.WARNING, "walk 1, right_foot", {"missing_percent": 2.0, "gaps": 1, "longest_s": 3.1}
     )
@@ -117,13 +117,13 @@ def test_what_was_noticed_is_said_where_no_verdict_says_it_already(visit: Analys
     gated = recalibrated(visit.analysis, [Joint.LEFT_ANKLE], axis_sd_rad=np.deg2rad(11.0))
     noticed = replace(gated, findings=(*gated.findings, silent, slanted, elsewhere))
     found = quality_of(visit, noticed)
-    said = [f"{line.where}: {line.why}" for line in found.lines]
-    assert len([text for text in said if "R foot" in text]) == 1
-    assert len([text for text in said if "11.0°" in text]) == 1
-    assert all(line.verdict is not Verdict.WITHHELD or "ankle" in line.where for line in found.lines)
+    stated = [f"{line.where}: {line.why}" for line in found.lines]
+    assert len([text for text in stated if "R foot" in text]) == 1
+    assert len([text for text in stated if "11.0°" in text]) == 1
+    assert all(line.verdict is not Verdict.NOT_REPORTED or "ankle" in line.where for line in found.lines)
 
 
-def test_of_what_is_no_walk_only_what_was_noticed_is_said(visit: AnalysedVisit) -> None:
+def test_of_what_is_no_walk_only_what_was_noticed_is_stated(visit: AnalysedVisit) -> None:
     assert quality_without_walk(visit, "free motion").first == "No data quality findings."
     grave = Finding("no_joint", Severity.GRAVE, "")
     noticed = replace(visit, analysis=replace(visit.analysis, findings=(grave,)))

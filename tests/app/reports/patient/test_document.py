@@ -45,7 +45,7 @@ def report(alignments: AnalysedVisit) -> bytes:
     return make_report(ReportRequest(alignments, default_walks(alignments), made_at, "1.2.3"))
 
 
-def test_it_is_tagged_titled_and_tells_its_language(report: bytes) -> None:
+def test_it_is_tagged_titled_and_shows_its_language(report: bytes) -> None:
     with pikepdf.open(io.BytesIO(report)) as pdf:
         assert pdf.Root.MarkInfo.Marked
         assert "/StructTreeRoot" in pdf.Root
@@ -105,14 +105,14 @@ def test_page_one_stays_one_page(
     visit = request_of_alignments.visit
     patient = replace(visit.session.patient, device="W" * 200, aids="two crutches", code="W" * 60)
     session = replace(visit.session, patient=patient, surface="corridor " * 40)
-    wanted = replace(
+    required = replace(
         request_of_alignments,
         visit=AnalysedVisit(session, visit.analysis),
         paper=paper,
         operator="W" * 200,
         clinic="W " * 200,
     )
-    reader = pypdf.PdfReader(io.BytesIO(make_report(wanted)))
+    reader = pypdf.PdfReader(io.BytesIO(make_report(required)))
     pages = [reader.get_destination_page_number(entry) for entry in reader.outline if not isinstance(entry, list)]
     assert pages[:5] == [0, 0, 0, 0, 1]  # in short, what may be read, curves, key numbers; then all curves
 
@@ -152,8 +152,8 @@ def test_nothing_of_a_page_is_left_for_the_next(
     """Every page holds its heading and all that belongs to it: conditions or visits compared, peaks with windows."""
     before = walked_under(request_of_alignments.visit, request_of_demonstration)
     two_visits = replace(request_of_demonstration, earlier=before, paper=paper)
-    for wanted in (replace(request_of_alignments, paper=paper), two_visits):
-        pages = texts(make_report(wanted))
+    for required in (replace(request_of_alignments, paper=paper), two_visits):
+        pages = texts(make_report(required))
         assert len(pages) == 5
         assert "Where values are measured" in pages[1]
         assert "the first is thin and pale" in " ".join(pages[4].split())
@@ -170,18 +170,18 @@ def test_a_walk_is_called_as_on_the_screen(request_of_alignments: ReportRequest)
     two = replace(request_of_alignments, walks=("walk 2", "walk 3"))
     assert "Compared (C shown here): B alignment B · C alignment C" in first_page(two)
     visit = request_of_alignments.visit
-    told = visit.session.recordings
-    alike = tuple(replace(one, condition="shoes" if one.name.startswith("walk") else "") for one in told)
+    reported = visit.session.recordings
+    alike = tuple(replace(one, condition="shoes" if one.name.startswith("walk") else "") for one in reported)
     same = AnalysedVisit(replace(visit.session, recordings=alike), visit.analysis)
     first = first_page(replace(two, visit=same))
     assert "walk: A3 shoes" in first
     assert "Compared (A3 shown here): A2 shoes · A3 shoes" in first
-    unnamed = tuple(replace(one, condition="") for one in told)
+    unnamed = tuple(replace(one, condition="") for one in reported)
     bare = AnalysedVisit(replace(visit.session, recordings=unnamed), visit.analysis)
     assert "walk: walk 3" in first_page(replace(two, visit=bare, walks=("walk 3",)))
 
 
-def test_page_one_alone_says_what_was_measured_and_what_differs(
+def test_page_one_alone_states_what_was_measured_and_what_differs(
     request_of_alignments: ReportRequest, request_of_one_leg: ReportRequest
 ) -> None:
     first = first_page(request_of_alignments)
@@ -209,10 +209,10 @@ def test_two_visits_are_compared_by_the_error_of_a_new_attachment(
     assert "9.2" in page
 
 
-def test_a_visit_of_another_alignment_is_not_compared_and_the_report_says_so(
+def test_a_visit_of_another_alignment_is_not_compared_and_the_report_states_so(
     request_of_alignments: ReportRequest, alignments: AnalysedVisit
 ) -> None:
-    """C of this visit is told against C of the earlier one; where that has only A, against nothing."""
+    """C of this visit is reported against C of the earlier one; where that has only A, against nothing."""
     recordings = alignments.session.recordings[:-2]  # up to alignment A
     before = AnalysedVisit(
         replace(alignments.session, recordings=recordings),
@@ -221,8 +221,8 @@ def test_a_visit_of_another_alignment_is_not_compared_and_the_report_says_so(
     request = replace(request_of_alignments, earlier=before)
     assert comparison_of(request) is None
     pages = texts(make_report(request))
-    said = "has no walk in this condition (alignment C), so it is not compared. It has: alignment A."
-    assert sum(said in " ".join(page.split()) for page in pages) == 1
+    stated = "has no walk in this condition (alignment C), so it is not compared. It has: alignment A."
+    assert sum(stated in " ".join(page.split()) for page in pages) == 1
     assert not any("Two visits, sensors reattached" in page for page in pages)
     same = comparison_of(replace(request, earlier=alignments))
     assert same is not None
@@ -267,19 +267,19 @@ def test_a_look_again_is_as_if_it_were_the_first(alignments: AnalysedVisit) -> N
         before = pages
 
 
-def test_the_page_of_conditions_says_what_was_turned_and_against_which(request_of_alignments: ReportRequest) -> None:
+def test_the_page_of_conditions_states_what_was_turned_and_against_which(request_of_alignments: ReportRequest) -> None:
     visit = request_of_alignments.visit
     changes = {
         "walk 2": AlignmentChange("alignment A", (PartChange(ProsthesisPart.FOOT_FRONT_SCREW, turns=0.5),)),
         "walk 3": AlignmentChange("alignment B", (PartChange(ProsthesisPart.PYLON, height_mm=3.0),)),
     }
     turned = tuple(replace(one, alignment=changes.get(one.name)) for one in visit.session.recordings)
-    told = replace(
+    reported = replace(
         request_of_alignments, visit=AnalysedVisit(replace(visit.session, recordings=turned), visit.analysis)
     )
     without, page = (
         re.sub("[\u2066-\u2069]", "", " ".join(texts(make_report(one))[-1].split()))
-        for one in (request_of_alignments, told)
+        for one in (request_of_alignments, reported)
     )
     assert "Foot, anterior screw ½ turn out" in page
     assert "Pylon +3 mm" in page

@@ -18,8 +18,8 @@ def report(request_of_demonstration: ReportRequest) -> bytes:
     visit = request_of_demonstration.visit
     patient = replace(visit.session.patient, code="P-0815")
     session = replace(visit.session, patient=patient, started="2026-03-04T10:00:00+01:00")
-    wanted = replace(request_of_demonstration, visit=AnalysedVisit(session, visit.analysis), patient_language="de")
-    return make_report(wanted)
+    required = replace(request_of_demonstration, visit=AnalysedVisit(session, visit.analysis), patient_language="de")
+    return make_report(required)
 
 
 def test_every_page_names_its_patient_and_the_day(report: bytes) -> None:
@@ -28,8 +28,8 @@ def test_every_page_names_its_patient_and_the_day(report: bytes) -> None:
     assert len(pages) == 4 + 1
     for number, page in enumerate(pages, start=1):
         text = re.sub("[\u2066-\u2069]", "", page.extract_text())
-        for said in ("P-0815", "2026", "Research use. Not a medical device.", "SIMULATED DATA, not a person"):
-            assert said in text, (number, said)
+        for stated in ("P-0815", "2026", "Research use. Not a medical device.", "SIMULATED DATA, not a person"):
+            assert stated in text, (number, stated)
 
 
 def test_a_report_is_tagged_titled_and_has_its_fonts(report: bytes) -> None:

@@ -32,13 +32,13 @@ from tests.core.hip.hip_sessions import rewalked, with_hip
 BOTH = (Joint.LEFT_HIP, Joint.RIGHT_HIP)
 
 
-def said(blocks: object) -> str:
+def stated(blocks: object) -> str:
     """Every word of some blocks."""
     if isinstance(blocks, str):
         return blocks
     if isinstance(blocks, dict):
-        return " ".join(said(one) for one in blocks.values())
-    return " ".join(said(one) for one in blocks) if isinstance(blocks, list | tuple) else ""
+        return " ".join(stated(one) for one in blocks.values())
+    return " ".join(stated(one) for one in blocks) if isinstance(blocks, list | tuple) else ""
 
 
 def rows(blocks: list[Block]) -> dict[str, list[str]]:
@@ -62,7 +62,7 @@ def with_clock(offset_s: float, sd_s: float, status: ClockStatus, tie: ClockTie 
 
 
 @pytest.mark.endurance
-def test_six_joints_are_counted_and_the_late_clock_is_told() -> None:
+def test_six_joints_are_counted_and_the_late_clock_is_reported() -> None:
     found = data_quality(hip_facts())
     assert found.first == "All six joints are reported."
     assert (
@@ -71,15 +71,15 @@ def test_six_joints_are_counted_and_the_late_clock_is_told() -> None:
     assert found.lines == ()
 
 
-def test_a_withheld_hip_is_told_once_with_what_to_do() -> None:
+def test_a_not_reported_hip_is_reported_once_with_what_to_do() -> None:
     found = data_quality(hip_facts(with_hip(hip_analysis(), Joint.LEFT_HIP, margin=1.2, is_3d=False)))
     assert found.first == "5 of 6 joints: Good. Not reported: left hip."
     (line,) = found.lines  # its abduction goes with it
     assert line.where == "Left hip"
-    assert line.verdict is Verdict.WITHHELD
+    assert line.verdict is Verdict.NOT_REPORTED
 
 
-def test_withheld_abduction_leaves_the_joints_to_be_read() -> None:
+def test_not_reported_abduction_leaves_the_joints_to_be_read() -> None:
     facts = hip_facts(with_hip(hip_analysis(), *BOTH, heading_sd_rad=math.radians(7.0), is_3d=False))
     found = data_quality(facts)
     assert found.first == "All six joints are reported."
@@ -89,7 +89,7 @@ def test_withheld_abduction_leaves_the_joints_to_be_read() -> None:
 
 
 @pytest.mark.parametrize(
-    ("offset_s", "sd_s", "status", "tie", "wanted"),
+    ("offset_s", "sd_s", "status", "tie", "required"),
     [
         (0.04, 0.005, ClockStatus.FOUND, ClockTie.PELVIS, "from hip movement: the right leg was 40 ms late, ± 5 ms"),
         (-0.04, 0.002, ClockStatus.FOUND, ClockTie.PELVIS, "from hip movement: the left leg was 40 ms late, ± 2 ms"),
@@ -97,15 +97,15 @@ def test_withheld_abduction_leaves_the_joints_to_be_read() -> None:
         (0.001, 0.005, ClockStatus.PROVEN, ClockTie.ONE_CLOCK, "left and right sensors synchronised"),
     ],
 )
-def test_how_the_legs_have_one_time_is_said(
-    offset_s: float, sd_s: float, status: ClockStatus, tie: ClockTie, wanted: str
+def test_how_the_legs_have_one_time_is_stated(
+    offset_s: float, sd_s: float, status: ClockStatus, tie: ClockTie, required: str
 ) -> None:
     found = one_time_in_words(hip_facts(with_clock(offset_s, sd_s, status, tie)).walk)
-    assert found.endswith(wanted)
+    assert found.endswith(required)
 
 
 @pytest.mark.parametrize(
-    ("offset_s", "sd_s", "status", "wanted"),
+    ("offset_s", "sd_s", "status", "required"),
     [
         (
             0.04,
@@ -118,18 +118,18 @@ def test_how_the_legs_have_one_time_is_said(
         (
             math.nan,
             math.nan,
-            ClockStatus.WITHHELD,
+            ClockStatus.NOT_REPORTED,
             "hip movement does not show their time offset.",
         ),
     ],
 )
-def test_page_four_says_how_both_clocks_are_tied(
-    offset_s: float, sd_s: float, status: ClockStatus, wanted: str
+def test_page_four_states_how_both_clocks_are_tied(
+    offset_s: float, sd_s: float, status: ClockStatus, required: str
 ) -> None:
-    assert clocks_in_words(hip_facts(with_clock(offset_s, sd_s, status))) == f"Left and right sensors: {wanted}"
+    assert clocks_in_words(hip_facts(with_clock(offset_s, sd_s, status))) == f"Left and right sensors: {required}"
 
 
-def test_the_gates_of_a_hip_stand_with_their_limits_and_what_failed_is_withheld() -> None:
+def test_the_gates_of_a_hip_stand_with_their_limits_and_what_failed_is_not_reported() -> None:
     table = rows(hips_table(hip_facts(with_hip(hip_analysis(), Joint.LEFT_HIP, margin=1.21))))
     assert table["Adjacent segments, margin"][0] == "1.21"
     assert table["Adjacent segments, margin"][2] == "at least 1.5"
@@ -147,10 +147,10 @@ def test_no_difference_of_hips_is_judged_and_rotation_is_named_as_unreadable() -
     assert (difference != "–", error, judged) == (True, "–", "not judged")
     assert (
         "For hips and pelvis the measurement error of a difference is not known: differences are given but not judged"
-    ) in said(peaks_table(facts))
+    ) in stated(peaks_table(facts))
 
 
-def test_no_sentence_tells_how_hips_or_pelvis_differ_however_much() -> None:
+def test_no_sentence_shows_how_hips_or_pelvis_differ_however_much() -> None:
     def stiffened(walk: RecordingAnalysis) -> RecordingAnalysis:
         left = walk.gait[Side.LEFT]
         halved = {
@@ -161,7 +161,7 @@ def test_no_sentence_tells_how_hips_or_pelvis_differ_however_much() -> None:
 
     facts = hip_facts(rewalked(hip_analysis(), stiffened))
     assert rows(peaks_table(facts))["Abduction range of motion"][4] == "not judged"
-    words = said(list(asdict(answer_of(facts)).values())).casefold()
+    words = stated(list(asdict(answer_of(facts)).values())).casefold()
     assert words
     assert not [word for word in ("hip", "pelvis") if word in words]
 
@@ -171,22 +171,22 @@ def test_the_pelvis_has_its_table_and_the_tilt_its_reason() -> None:
     table = rows(blocks)
     assert set(table) == {"Obliquity, range", "Drop in swing", "Rotation, range", "Mean tilt, forward +", "Tilt, range"}
     assert table["Tilt, range"] == ["not reported", "not reported"]
-    assert "Up to 5.0° it cannot be separated from measurement error" in said(blocks)
-    assert "1 turn." in said(blocks)
+    assert "Up to 5.0° it cannot be separated from measurement error" in stated(blocks)
+    assert "1 turn." in stated(blocks)
 
 
 def test_without_a_pelvis_nothing_of_it_is_printed(request_of_demonstration: ReportRequest) -> None:
     visit = request_of_demonstration.visit
     facts = Facts(visit, walk_of(visit.analysis))
     assert hips_table(facts) == pelvis_table(facts) == []
-    assert "hip" not in said(peaks_table(facts)).casefold()
-    assert "hip" not in said(first_page(request_of_demonstration, facts, None)).casefold()
+    assert "hip" not in stated(peaks_table(facts)).casefold()
+    assert "hip" not in stated(first_page(request_of_demonstration, facts, None)).casefold()
 
 
-def test_the_first_page_has_six_panels_and_a_withheld_hip_says_why() -> None:
+def test_the_first_page_has_six_panels_and_a_not_reported_hip_states_why() -> None:
     request = hip_request(with_hip(hip_analysis(), Joint.LEFT_HIP, margin=1.2))
     page = first_page(request, hip_facts(request.visit.analysis), None)
-    assert "Hip, knee and ankle over the gait cycle" in said(page)
+    assert "Hip, knee and ankle over the gait cycle" in stated(page)
     pictures = [panel["picture"] for panel in page["curves"]["panels"]]  # type: ignore[index]  # a block is plain JSON
     assert len(pictures) == 6
     assert "Not reported" in pictures[0]["alt"]
@@ -195,7 +195,7 @@ def test_the_first_page_has_six_panels_and_a_withheld_hip_says_why() -> None:
 
 def test_page_two_has_no_band_at_the_hip() -> None:
     blocks = curves_page(hip_facts())
-    assert "For the hip it has a different zero and is shown on page 1 only." in said(blocks)
+    assert "For the hip it has a different zero and is shown on page 1 only." in stated(blocks)
     assert hip_facts().has_joint(JointKind.HIP)
 
 

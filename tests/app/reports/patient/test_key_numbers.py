@@ -1,4 +1,4 @@
-"""Which rows stand among the key numbers? What the findings tell, then the same for everybody, never the unknown."""
+"""Which rows stand among the key numbers? What the findings report, then the same for everybody, never the unknown."""
 
 from dataclasses import replace
 
@@ -37,21 +37,21 @@ def test_without_a_finding_the_same_measures_stand_for_everybody(request_of_demo
 
 
 @pytest.mark.parametrize("name", ["knee_while_loading", "knee_straightening"])
-def test_the_measure_of_a_finding_stands_first(request_of_demonstration: ReportRequest, name: str) -> None:
+def test_the_measure_of_a_finding_is_first(request_of_demonstration: ReportRequest, name: str) -> None:
     analysis = with_more(request_of_demonstration.visit.analysis, Side.LEFT, f"{name}_rad", -20.0)
     found = columns(facts(request_of_demonstration, analysis))
     assert found == [f"{name}_deg", *ALWAYS][:MOST_ROWS]
 
 
-def test_a_row_tells_both_legs_their_difference_its_error_and_whether_it_exceeds(
+def test_a_row_shows_both_legs_their_difference_its_error_and_whether_it_exceeds(
     request_of_demonstration: ReportRequest,
 ) -> None:
     analysis = with_more(request_of_demonstration.visit.analysis, Side.LEFT, "knee_stance_to_swing_rad", -20.0)
-    said = cells(facts(request_of_demonstration, analysis), 0)
-    assert said[:4] == ["Knee flexion, stance to swing, °", "40.7 ± 0.8", "62.0 ± 1.0", "\u221221.3"]
-    assert said[4].endswith("\u2020")
-    assert 9.2 < float(said[4][:-1]) < 9.6
-    assert said[5:] == ["no reference", ""]
+    stated = cells(facts(request_of_demonstration, analysis), 0)
+    assert stated[:4] == ["Knee flexion, stance to swing, °", "40.7 ± 0.8", "62.0 ± 1.0", "\u221221.3"]
+    assert stated[4].endswith("\u2020")
+    assert 9.2 < float(stated[4][:-1]) < 9.6
+    assert stated[5:] == ["no reference", ""]
     assert is_bold(facts(request_of_demonstration, analysis), 0)
     assert not is_bold(facts(request_of_demonstration), 0)
 
@@ -83,7 +83,9 @@ def test_the_band_of_stance_is_that_of_the_table_of_time(request_of_demonstratio
     assert cells(facts(request_of_demonstration), place)[-2] == "60.3 ± 1.1"
 
 
-def test_a_measure_withheld_on_one_leg_says_so_and_on_both_is_left_out(request_of_demonstration: ReportRequest) -> None:
+def test_a_measure_not_reported_on_one_leg_states_so_and_on_both_is_left_out(
+    request_of_demonstration: ReportRequest,
+) -> None:
     analysis = request_of_demonstration.visit.analysis
     one = recalibrated(analysis, [Joint.LEFT_KNEE], is_same_joint=False, sign_margin=1.05)
     assert cells(facts(request_of_demonstration, one), 0)[1:4:2] == ["not reported", "–"]

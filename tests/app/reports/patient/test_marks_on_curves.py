@@ -1,4 +1,4 @@
-"""What is marked on a walk's curves: only what a sentence may tell, and only gaps that no height explains."""
+"""What is marked on a walk's curves: only what a sentence may report, and only gaps that no height explains."""
 
 from dataclasses import replace
 
@@ -34,7 +34,7 @@ def moved(analysis: Analysis, joint: Joint, by_rad: FloatArray | float) -> Analy
     return rewalked(analysis, gait=gait)
 
 
-def test_the_range_that_a_sentence_tells_is_marked_between_its_extremes(
+def test_the_range_that_a_sentence_shows_is_marked_between_its_extremes(
     request_of_demonstration: ReportRequest, analysis: Analysis
 ) -> None:
     assert deviations_of(facts(request_of_demonstration, analysis)) == []
@@ -45,7 +45,7 @@ def test_the_range_that_a_sentence_tells_is_marked_between_its_extremes(
     assert mark.is_larger_than_error
 
 
-def test_what_is_withheld_is_not_marked(request_of_demonstration: ReportRequest, analysis: Analysis) -> None:
+def test_what_is_not_reported_is_not_marked(request_of_demonstration: ReportRequest, analysis: Analysis) -> None:
     shortened = with_more(analysis, Side.LEFT, "knee_range_rad", -20.0)
     gated = recalibrated(shortened, [Joint.LEFT_KNEE], is_same_joint=False, sign_margin=1.05)
     assert deviations_of(facts(request_of_demonstration, gated)) == []

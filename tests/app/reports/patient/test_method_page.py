@@ -18,7 +18,7 @@ ROOT = Path(__file__).parents[4]
 MTI = SensorInfo("0123", "MTi", "4.2", 100.0, RateKind.INSTANTANEOUS)
 
 
-def said(request: ReportRequest) -> dict[str, str]:
+def stated(request: ReportRequest) -> dict[str, str]:
     """The words under each title, without marks of direction."""
     done, rest = how_measured(facts_of(request), "9.8.7")
     return {title: re.sub("[\u2066-\u2069]", "", words) for title, words in (*done, *rest)}
@@ -35,8 +35,8 @@ def with_finding(request: ReportRequest, finding: Finding) -> ReportRequest:
     return replace(request, visit=AnalysedVisit(visit.session, replace(visit.analysis, findings=findings)))
 
 
-def test_the_page_of_the_method_says_how_it_was_measured(request_of_demonstration: ReportRequest) -> None:
-    told = said(with_sensors(request_of_demonstration, dict.fromkeys(Site, MTI)))
+def test_the_page_of_the_method_states_how_it_was_measured(request_of_demonstration: ReportRequest) -> None:
+    reported = stated(with_sensors(request_of_demonstration, dict.fromkeys(Site, MTI)))
     for title, words in {
         "Sensors": "6 × MTi, firmware 4.2, set to 100 Hz, 100.0 Hz by time stamps, on thigh, shank and foot of both",
         "Calibration": "from the patient's own free motion, for the ankle also from the walks. No set posture",
@@ -49,39 +49,39 @@ def test_the_page_of_the_method_says_how_it_was_measured(request_of_demonstratio
         "Accuracy": "Not tested on patients, after knee replacement or on real prostheses",
         "Software": "Gaitwright 9.8.7, the robust method",
     }.items():
-        assert words in told[title], title
+        assert words in reported[title], title
     assert (
         "Standing reference: this patient's posture on this day, or the goniometer value entered."
-        in told["Calibration"]
+        in reported["Calibration"]
     )
-    assert "gaps up to 0.05 s are bridged" in told["Angles"]
+    assert "gaps up to 0.05 s are bridged" in reported["Angles"]
 
 
-def test_what_no_sensor_told_is_said_to_be_unknown(request_of_demonstration: ReportRequest) -> None:
-    told = said(with_sensors(request_of_demonstration, {}))
-    assert told["Sensors"].startswith("6 × sensor of unknown model, 100.0 Hz by time stamps, on ")
-    assert "The measuring range is not in the recording" in told["Sensors"]
-    assert "from angular rates of unknown kind" in told["Angles"]
+def test_what_no_sensor_reported_is_stated_to_be_unknown(request_of_demonstration: ReportRequest) -> None:
+    reported = stated(with_sensors(request_of_demonstration, {}))
+    assert reported["Sensors"].startswith("6 × sensor of unknown model, 100.0 Hz by time stamps, on ")
+    assert "The measuring range is not in the recording" in reported["Sensors"]
+    assert "from angular rates of unknown kind" in reported["Angles"]
     differing = {site: replace(MTI, model=f"model {k}") for k, site in enumerate(Site)}
-    assert said(with_sensors(request_of_demonstration, differing))["Sensors"].startswith("6 sensors of 6 models, ")
+    assert stated(with_sensors(request_of_demonstration, differing))["Sensors"].startswith("6 sensors of 6 models, ")
     unlike = {site: replace(MTI, rate_hz=60.0 if site.side is Side.LEFT else 120.0) for site in Site}
-    assert "set to 60–120 Hz" in said(with_sensors(request_of_demonstration, unlike))["Sensors"]
+    assert "set to 60–120 Hz" in stated(with_sensors(request_of_demonstration, unlike))["Sensors"]
 
 
-def test_what_a_sensor_says_of_itself_is_one_short_line(request_of_demonstration: ReportRequest) -> None:
-    told = said(
+def test_what_a_sensor_states_of_itself_is_one_short_line(request_of_demonstration: ReportRequest) -> None:
+    reported = stated(
         with_sensors(request_of_demonstration, dict.fromkeys(Site, replace(MTI, model="W\n" * 300, firmware="")))
     )
-    words = told["Sensors"].replace("\u200b", "")
+    words = reported["Sensors"].replace("\u200b", "")
     assert words.startswith("6 × W W W")
     assert 20 < words.index("…") < 45
 
 
-def test_what_was_noticed_changes_what_is_said(request_of_demonstration: ReportRequest) -> None:
-    """The end of a range, averaged rates, feet without a sensor: each said where it was noticed of this walk only."""
+def test_what_was_noticed_changes_what_is_stated(request_of_demonstration: ReportRequest) -> None:
+    """The end of a range, averaged rates, feet without a sensor: each stated where it was noticed of this walk only."""
     request = with_sensors(request_of_demonstration, {})
     walk = request.shown
-    plain = said(request)
+    plain = stated(request)
     assert "no samples reach its limit" in plain["Sensors"]
     cases = [
         (
@@ -101,10 +101,10 @@ def test_what_was_noticed_changes_what_is_said(request_of_demonstration: ReportR
         ),
     ]
     for finding, title, words in cases:
-        assert words in said(with_finding(request, finding))[title]
+        assert words in stated(with_finding(request, finding))[title]
         assert words not in plain[title]
     elsewhere = Finding("clipped", Severity.WARNING, "left_foot, another walk", {"percent": 1.0})
-    assert said(with_finding(request, elsewhere)) == plain
+    assert stated(with_finding(request, elsewhere)) == plain
 
 
 def test_the_calibration_is_that_of_the_walk(request_of_demonstration: ReportRequest) -> None:
@@ -116,17 +116,19 @@ def test_the_calibration_is_that_of_the_walk(request_of_demonstration: ReportReq
             for one in visit.analysis.calibrations
         )
         analysis = replace(visit.analysis, calibrations=calibrations)
-        return said(replace(request_of_demonstration, visit=AnalysedVisit(visit.session, analysis)))
+        return stated(replace(request_of_demonstration, visit=AnalysedVisit(visit.session, analysis)))
 
-    assert "Gyroscope offsets: from standing or other moments at rest." in said(request_of_demonstration)["Calibration"]
+    assert (
+        "Gyroscope offsets: from standing or other moments at rest." in stated(request_of_demonstration)["Calibration"]
+    )
     assert (
         "come from the walks, as no free motion was recorded" in changed(axis_source=AxisSource.WALKING)["Calibration"]
     )
     assert "Gyroscope offsets: unknown" in changed(gyro_bias_distal_rad_s=None)["Calibration"]
     published = replace(visit.analysis, method=Method.PUBLISHED)
-    told = said(replace(request_of_demonstration, visit=AnalysedVisit(visit.session, published)))
-    assert "equation 15 of the published method" in told["Angles"]
-    assert "the published method (after Seel" in told["Software"]
+    reported = stated(replace(request_of_demonstration, visit=AnalysedVisit(visit.session, published)))
+    assert "equation 15 of the published method" in reported["Angles"]
+    assert "the published method (after Seel" in reported["Software"]
 
 
 def test_only_what_was_worn_is_named(request_of_demonstration: ReportRequest) -> None:
@@ -138,7 +140,7 @@ def test_only_what_was_worn_is_named(request_of_demonstration: ReportRequest) ->
             for one in visit.session.recordings
         )
         session = replace(visit.session, recordings=recordings)
-        return said(replace(request_of_demonstration, visit=AnalysedVisit(session, visit.analysis)))["Sensors"]
+        return stated(replace(request_of_demonstration, visit=AnalysedVisit(session, visit.analysis)))["Sensors"]
 
     assert "2 × simulated, " in worn(Site.LEFT_THIGH, Site.LEFT_SHANK)
     assert ", on thigh and shank of the left leg, strapped" in worn(Site.LEFT_THIGH, Site.LEFT_SHANK)
@@ -148,7 +150,7 @@ def test_only_what_was_worn_is_named(request_of_demonstration: ReportRequest) ->
 
 def test_the_accuracy_is_what_was_measured(request_of_demonstration: ReportRequest) -> None:
     """Each figure is on the manual's page Accuracy."""
-    words = said(request_of_demonstration)["Accuracy"]
+    words = stated(request_of_demonstration)["Accuracy"]
     table = (ROOT / "resources" / "help" / "accuracy.md").read_text(encoding="utf-8")
     hinges = re.findall(r"\| hinge 1D_0\d \| angle [^|]*\| ([\d.]+)° ", table)
     assert "two mechanical hinges {}° and {}°".format(*hinges) in words

@@ -1,4 +1,4 @@
-"""What does the report say where something is missing? Every case is said in words, and no number is invented."""
+"""What does the report say where something is missing? Every case is stated in words, and no number is invented."""
 
 import io
 import re
@@ -54,13 +54,13 @@ def without_zero(request: ReportRequest) -> ReportRequest:
 
 
 def readable(request: ReportRequest) -> dict[str, list[str]]:
-    """What page one's table says: shape, height and timing of each joint, then of both legs and of distance."""
-    told = report_data(request)["first_page"]["readable"]
-    rows = {row[0]["said"]: [cell["said"] for cell in row[1:]] for row in told["rows"]}
-    return rows | {label: [said] for label, _, said in told["wide"]}
+    """What page one's table states: shape, height and timing of each joint, then of both legs and of distance."""
+    reported = report_data(request)["first_page"]["readable"]
+    rows = {row[0]["said"]: [cell["said"] for cell in row[1:]] for row in reported["rows"]}
+    return rows | {label: [stated] for label, _, stated in reported["wide"]}
 
 
-READ, CARE, WITHHELD = "Good", "Caution", "Not reported"
+READ, CARE, NOT_REPORTED = "Good", "Caution", "Not reported"
 
 
 def beside(request: ReportRequest, joint: str) -> list[str]:
@@ -70,10 +70,10 @@ def beside(request: ReportRequest, joint: str) -> list[str]:
     return [line["said"] for line in panel["lines"]]
 
 
-def test_without_a_zero_no_height_is_told(request_of_demonstration: ReportRequest) -> None:
+def test_without_a_zero_no_height_is_reported(request_of_demonstration: ReportRequest) -> None:
     request = without_zero(request_of_demonstration)
     pages = shown(request)
-    assert readable(request)["Left knee"] == [READ, WITHHELD, READ]
+    assert readable(request)["Left knee"] == [READ, NOT_REPORTED, READ]
     assert (
         "Absolute angle of all joints: There is no standing reference, so absolute angles are not reported." in pages[0]
     )
@@ -100,7 +100,7 @@ def test_one_leg_alone_is_not_compared(request_of_demonstration: ReportRequest) 
     assert not re.search(r"similar|\bvs\b|\bright\b", pages[0].split("Summary")[1].split("Data quality")[0])
 
 
-def test_without_a_foot_sensor_a_line_stands_in_place_of_the_ankle(request_of_demonstration: ReportRequest) -> None:
+def test_without_a_foot_sensor_a_line_is_in_place_of_the_ankle(request_of_demonstration: ReportRequest) -> None:
     def knees_only(gait: SideGait) -> SideGait:
         return replace(gait, cycles={joint: cycles for joint, cycles in gait.cycles.items() if joint.is_knee})
 
@@ -121,7 +121,7 @@ def test_without_a_foot_sensor_a_line_stands_in_place_of_the_ankle(request_of_de
 def test_two_strides_make_no_mean_and_no_number(request_of_demonstration: ReportRequest) -> None:
     request = with_strides(request_of_demonstration, 2)
     pages = shown(request)
-    assert readable(request)["Right knee"] == [WITHHELD] * 3
+    assert readable(request)["Right knee"] == [NOT_REPORTED] * 3
     assert "Both legs: Few strides (2 used, 3 required). Let the patient walk longer." in pages[0]
     assert "±" not in pages[1].split("Range of motion")[1].split("Windows in brackets")[0]
     assert "Range of motion not reported not reported – – – " in pages[1]
@@ -152,7 +152,7 @@ def test_five_strides_make_a_mean_without_a_spread(request_of_demonstration: Rep
 def test_one_short_leg_does_not_hide_the_other(request_of_demonstration: ReportRequest) -> None:
     request = with_analysis(request_of_demonstration, with_few_strides(request_of_demonstration.visit.analysis, left=2))
     pages = shown(request)
-    assert readable(request)["Left knee"] == [WITHHELD] * 3
+    assert readable(request)["Left knee"] == [NOT_REPORTED] * 3
     assert readable(request)["Right knee"] == [READ] * 3
     assert "Left leg: Few strides (2 used, 3 required)." in pages[0]
     assert re.search(r"Range of motion not reported \d+\.\d ± \d\.\d – – –", pages[1])
@@ -166,7 +166,9 @@ def test_no_stride_at_all_still_makes_a_report_of_one_page(request_of_demonstrat
     assert "Signature" in pages[0]
 
 
-def test_an_axis_beyond_its_limit_is_marked_and_a_worse_one_withheld(request_of_demonstration: ReportRequest) -> None:
+def test_an_axis_beyond_its_limit_is_marked_and_a_worse_one_not_reported(
+    request_of_demonstration: ReportRequest,
+) -> None:
     request = with_joints(request_of_demonstration, axis_sd_rad=np.deg2rad(8.0))
     pages = shown(request)
     assert readable(request)["Left knee"] == readable(request)["Right ankle"] == [CARE, CARE, READ]
@@ -175,7 +177,7 @@ def test_an_axis_beyond_its_limit_is_marked_and_a_worse_one_withheld(request_of_
     assert "*: caution; reason on page 1." in pages[1]
     request = with_joints(request_of_demonstration, Joint.LEFT_ANKLE, axis_sd_rad=np.deg2rad(9.5))
     pages = shown(request)
-    assert readable(request)["Left ankle"] == [WITHHELD, WITHHELD, READ]
+    assert readable(request)["Left ankle"] == [NOT_REPORTED, NOT_REPORTED, READ]
     assert readable(request)["Left knee"] == [READ] * 3
     assert "Left ankle: Calibration certainty is only ±9.5° (limit ±9.0°)." in pages[0]
     assert beside(request, "Left ankle")[0].startswith("Record free motion")
@@ -192,22 +194,22 @@ def test_an_uncertain_sign_leaves_the_range_alone(request_of_demonstration: Repo
     assert re.search(r"Range of motion 61\.7 ± 0\.8 63\.0", pages[1])
 
 
-def test_sensors_that_are_no_neighbours_leave_no_number_of_their_joint(
+def test_sensors_that_are_no_adjacent_leave_no_number_of_their_joint(
     request_of_demonstration: ReportRequest,
 ) -> None:
     usual = shown(request_of_demonstration)
     request = with_joints(request_of_demonstration, Joint.RIGHT_ANKLE, is_same_joint=False, sign_margin=1.05)
     pages = shown(request)
     assert len(pages) == len(usual)
-    told = readable(request)
-    assert told["Right knee"] == [READ, READ, CARE]  # its foot's sensor may not be on this foot
-    assert told["Right ankle"] == [WITHHELD, WITHHELD, CARE]
-    assert told["Left knee"] == told["Left ankle"] == [READ] * 3
-    assert (told["Left vs right"], told["Distance"]) == ([READ], [CARE])
-    said = "Right ankle: Sensor positions could not be confirmed (margin 1.05, required 1.50)."
-    assert said in pages[0].split("Key values")[0]
-    assert said in pages[0].split("Summary")[1].split("Data quality")[0]  # the caveat
-    assert said in pages[1]
+    reported = readable(request)
+    assert reported["Right knee"] == [READ, READ, CARE]  # its foot's sensor may not be on this foot
+    assert reported["Right ankle"] == [NOT_REPORTED, NOT_REPORTED, CARE]
+    assert reported["Left knee"] == reported["Left ankle"] == [READ] * 3
+    assert (reported["Left vs right"], reported["Distance"]) == ([READ], [CARE])
+    stated = "Right ankle: Sensor positions could not be confirmed (margin 1.05, required 1.50)."
+    assert stated in pages[0].split("Key values")[0]
+    assert stated in pages[0].split("Summary")[1].split("Data quality")[0]  # the caveat
+    assert stated in pages[1]
     assert re.search(r"Ankle plantarflexion, push-off, ° \d+\.\d ± \d\.\d not reported – – no reference", pages[0])
     ankle = pages[1].split("Ankle: movement ranges")[1].split("Windows in brackets")[0]
     assert ankle.count("not reported") == 10  # four movements, the range, five angles
@@ -243,7 +245,7 @@ def test_visits_with_different_zeros_are_compared_in_shape_and_range_only(
     assert "degrees (flexion +" in shown(replace(request_of_demonstration, earlier=visit))[4]
 
 
-def test_gaps_and_slips_are_said(request_of_demonstration: ReportRequest) -> None:
+def test_gaps_and_slips_are_stated(request_of_demonstration: ReportRequest) -> None:
     analysis = request_of_demonstration.visit.analysis
     slip = Finding("strap_slipped", Severity.WARNING, "walk 1, right_shank", {"from_s": 2.0, "turn_deg": 9})
     changed = rewalked(
@@ -262,11 +264,11 @@ def test_gaps_and_slips_are_said(request_of_demonstration: ReportRequest) -> Non
     assert "more finding on page 4" in pages[0] or "more findings on page 4" in pages[0]
 
 
-def test_clocks_that_cannot_be_compared_are_said(request_of_demonstration: ReportRequest) -> None:
+def test_clocks_that_cannot_be_compared_are_stated(request_of_demonstration: ReportRequest) -> None:
     request = with_joints(request_of_demonstration, lag_sd_s=None, is_clock_shared=False)
     pages, usual = shown(request), shown(request_of_demonstration)
     assert len(pages) == len(usual)
-    assert readable(request)["Left knee"][:2] == [WITHHELD, WITHHELD]
+    assert readable(request)["Left knee"][:2] == [NOT_REPORTED, NOT_REPORTED]
     assert "All joints: The two sensors could not be synchronised from the movement." in pages[0]
     assert "not resolvable" in pages[0]
     assert "not resolvable" not in usual[0]

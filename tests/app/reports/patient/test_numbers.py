@@ -1,4 +1,4 @@
-"""Is every number on paper in a file of the results, too? Told from the files alone, as a reader of them would."""
+"""Is every number on paper in a file of the results, too? Reported from the files alone, as a reader of them would."""
 
 import csv
 import json
@@ -86,15 +86,15 @@ def known(results: Path, walk: str = "walk_1") -> set[str]:
 
 
 def in_parts(strides: list[dict[str, str]]) -> list[float]:
-    """What the pages tell of a leg's strides that stands in no file as it is: phases, lift in cm, halves and thirds."""
+    """What the pages report of a leg's strides that is in no file as it is: phases, lift in cm, halves and thirds."""
     values = [100 * number for name in ("clearance_m",) for number in both(column(strides, name))]
     phases = [
         [
             100 * (float(row[name]) - float(row["start_s"])) / (float(row["end_s"]) - float(row["start_s"]))
-            for row in told
+            for row in reported
         ]
         for name in ("full_contact_s", "heel_rise_s", "toe_off_s")
-        if (told := [row for row in strides if row[name]])
+        if (reported := [row for row in strides if row[name]])
     ]
     if len(phases) == 3:
         flat, rise, off = map(fmean, phases)
@@ -234,6 +234,6 @@ def test_words_against_a_band_state_the_size_of_a_distance_only() -> None:
 
 
 def test_no_word_of_the_report_judges(request_of_alignments: ReportRequest) -> None:
-    said = json.dumps(report_data(replace(request_of_alignments, comment="")), ensure_ascii=False).lower()
+    stated = json.dumps(report_data(replace(request_of_alignments, comment="")), ensure_ascii=False).lower()
     for word in ("better", "worse", "improve", "normal", "significant", "abnormal", "patholog"):
-        assert not re.search(rf"\b{word}", said), word
+        assert not re.search(rf"\b{word}", stated), word

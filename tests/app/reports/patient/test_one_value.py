@@ -1,4 +1,4 @@
-"""One measure has one value and one judgement, wherever a patient's knee is told of."""
+"""One measure has one value and one judgement, wherever a patient's knee is given of."""
 
 import datetime
 import json
@@ -72,9 +72,9 @@ def now() -> AnalysedVisit:
 def test_the_walk_shown_is_the_one_with_most_usable_strides_of_the_latest_condition(now: AnalysedVisit) -> None:
     assert default_walks(now) == ("walk 1",)
     stick = walked("walk 3", strides=20), "stick"
-    told = [*((now.walk(name), SHOES) for name in ("walk 1", "walk 2")), stick]
-    session = replace(now.session, recordings=tuple(recordings(*told)))
-    assert default_walks(AnalysedVisit(session, analysis(*(one for one, _ in told)))) == ("walk 1", "walk 3")
+    reported = [*((now.walk(name), SHOES) for name in ("walk 1", "walk 2")), stick]
+    session = replace(now.session, recordings=tuple(recordings(*reported)))
+    assert default_walks(AnalysedVisit(session, analysis(*(one for one, _ in reported)))) == ("walk 1", "walk 3")
 
 
 def test_a_knee_has_one_value_on_screen_report_course_and_in_files(now: AnalysedVisit, tmp_path: Path) -> None:
@@ -94,15 +94,15 @@ def test_a_knee_has_one_value_on_screen_report_course_and_in_files(now: Analysed
         line.values[-1].value,
     ]
     write_summary(now.analysis, tmp_path / "summary.json", now.session.recordings)
-    told = json.loads((tmp_path / "summary.json").read_text(encoding="utf-8"))["conditions"]
-    values += [one["left"][f"{KNEE}_mean"] for one in told if one["condition"] == SHOES]
+    reported = json.loads((tmp_path / "summary.json").read_text(encoding="utf-8"))["conditions"]
+    values += [one["left"][f"{KNEE}_mean"] for one in reported if one["condition"] == SHOES]
     write_spreadsheet(now.session, now.analysis, tmp_path / "results.xlsx")
     rows = openpyxl.load_workbook(tmp_path / "results.xlsx")["Conditions"].iter_rows(values_only=True)
     values += [float(str(row[4])) for row in rows if (row[0], row[2], row[3]) == (SHOES, "left", KNEE)]
     assert values == pytest.approx([52.4] * 8, abs=0.02)
     assert "52.4" in str(answer(shown, comparison))
-    said = "Your left knee now bends 52 degrees. At your first visit it was 34."
-    assert patient_page(request, shown)["answer"] == said
+    stated = "Your left knee now bends 52 degrees. At your first visit it was 34."
+    assert patient_page(request, shown)["answer"] == stated
 
 
 def test_two_walks_of_one_condition_that_are_laid_side_by_side_stand_alone(now: AnalysedVisit) -> None:
@@ -124,7 +124,7 @@ def test_page_one_and_the_patients_page_judge_the_knee_alike(
 
 
 @pytest.mark.parametrize("first_deg", [34.0, 50.0])
-def test_the_screen_says_first_what_page_one_says_first(qtbot: QtBot, now: AnalysedVisit, first_deg: float) -> None:
+def test_the_screen_states_first_what_page_one_states_first(qtbot: QtBot, now: AnalysedVisit, first_deg: float) -> None:
     request = request_of(visit_on(FIRST, (first_deg, 12)), now)
     facts = facts_of(request)
     sentences = answer(facts, comparison_of(request))["sentences"]

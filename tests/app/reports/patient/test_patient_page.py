@@ -28,12 +28,12 @@ NO_WORDS_OF = ("better", "worse", "normal", "improve", "besser", "schlechter", "
 
 
 def with_course(
-    request: ReportRequest, knee_deg: float, analysis: Analysis | None = None, *, is_withheld: bool = False
+    request: ReportRequest, knee_deg: float, analysis: Analysis | None = None, *, is_not_reported: bool = False
 ) -> ReportRequest:
     """With an earlier visit whose left knee bent so far, and this one."""
     found = analysis or request.visit.analysis
-    told = unsure(Joint.LEFT_KNEE) if is_withheld else None
-    before = course((walked(knee_deg=knee_deg, speed_m_s=0.8, told=told), ""), told=told)
+    reported = unsure(Joint.LEFT_KNEE) if is_not_reported else None
+    before = course((walked(knee_deg=knee_deg, speed_m_s=0.8, reported=reported), ""), reported=reported)
     now = course_of(found, request.visit.session.recordings)
     days = datetime.date(2026, 9, 2), datetime.date(2026, 11, 23)
     seen = tuple(
@@ -43,7 +43,7 @@ def with_course(
     return replace(request, visit=visit, course=seen, patient_language=request.patient_language or "en")
 
 
-def said(request: ReportRequest) -> str:
+def stated(request: ReportRequest) -> str:
     page = patient_page(request, facts_of(request))
     texts, figures = page["texts"], page["figures"]
     assert isinstance(texts, list)
@@ -58,7 +58,7 @@ def english(request: ReportRequest) -> ReportRequest:
 
 
 def test_a_real_change_is_called_one_and_the_numbers_subtract(request_of_demonstration: ReportRequest) -> None:
-    found = said(with_course(request_of_demonstration, 31.0))
+    found = stated(with_course(request_of_demonstration, 31.0))
     match = re.search(r"Your left knee now bends (\d+) degrees\. At your first visit it was 31\.", found)
     assert match
     assert f"Your knee now bends {int(match[1]) - 31}° more than at the first visit." in found
@@ -69,24 +69,27 @@ def test_a_real_change_is_called_one_and_the_numbers_subtract(request_of_demonst
 
 
 def test_a_change_inside_the_error_is_not(request_of_demonstration: ReportRequest) -> None:
-    found = said(with_course(request_of_demonstration, 57.0))
+    found = stated(with_course(request_of_demonstration, 57.0))
     assert "So we cannot say that it has changed." in found
     assert "real change" not in found
 
 
-def test_without_an_earlier_visit_nothing_is_said_of_one(request_of_demonstration: ReportRequest) -> None:
-    for request in (english(request_of_demonstration), with_course(request_of_demonstration, 31.0, is_withheld=True)):
-        found = said(request)
+def test_without_an_earlier_visit_nothing_is_stated_of_one(request_of_demonstration: ReportRequest) -> None:
+    for request in (
+        english(request_of_demonstration),
+        with_course(request_of_demonstration, 31.0, is_not_reported=True),
+    ):
+        found = stated(request)
         assert "first visit" not in found.lower()
         assert re.search(r"Your left knee bends \d+ degrees\.", found)
         assert "You walk 1.2 metres in a second." in found
 
 
 def test_the_knees_differ_only_beyond_the_error(request_of_demonstration: ReportRequest) -> None:
-    assert "So we cannot say that your knees differ." in said(english(request_of_demonstration))
+    assert "So we cannot say that your knees differ." in stated(english(request_of_demonstration))
     analysis = with_more(request_of_demonstration.visit.analysis, Side.LEFT, "knee_stance_to_swing_rad", -25.0)
     visit = AnalysedVisit(request_of_demonstration.visit.session, analysis)
-    assert "So your knees clearly differ." in said(english(replace(request_of_demonstration, visit=visit)))
+    assert "So your knees clearly differ." in stated(english(replace(request_of_demonstration, visit=visit)))
 
 
 @pytest.mark.parametrize("sd_deg", [8.0, 11.0])
@@ -95,14 +98,14 @@ def test_what_is_not_read_without_care_is_no_number(request_of_demonstration: Re
         request_of_demonstration.visit.analysis, [Joint.LEFT_KNEE], axis_sd_rad=float(np.deg2rad(sd_deg))
     )
     visit = AnalysedVisit(request_of_demonstration.visit.session, analysis)
-    found = said(english(replace(request_of_demonstration, visit=visit)))
+    found = stated(english(replace(request_of_demonstration, visit=visit)))
     assert "Today's measurement was not good enough for a number. It does not reflect how you walk." in found
     assert not re.search(r"\d+ degrees", found)
 
 
-def test_german_is_said_in_german_and_with_its_comma(request_of_demonstration: ReportRequest) -> None:
+def test_german_is_stated_in_german_and_with_its_comma(request_of_demonstration: ReportRequest) -> None:
     request = with_course(replace(request_of_demonstration, patient_language="de"), 31.0)
-    found = said(request)
+    found = stated(request)
     assert re.search(r"Ihr linkes Knie beugt sich jetzt um \d+ Grad\. Beim ersten Besuch waren es 31\.", found)
     assert "Sie gehen jetzt 1,2 Meter in einer Sekunde. Beim ersten Besuch waren es 0,8." in found
     assert "Erster Besuch, 2. September" in found
@@ -125,19 +128,19 @@ def test_the_page_is_added_where_a_language_was_chosen(request_of_demonstration:
     assert "patient" not in [page[0]["kind"] for page in report_data(request_of_demonstration)["pages"]]
 
 
-def goals_on_page(request: ReportRequest, *goals: Goal, is_withheld: bool = False) -> list[str]:
+def goals_on_page(request: ReportRequest, *goals: Goal, is_not_reported: bool = False) -> list[str]:
     session = replace(request.visit.session, started="2026-11-23T09:00:00+01:00")
-    told = replace(session, patient=replace(session.patient, goals=goals))
+    reported = replace(session, patient=replace(session.patient, goals=goals))
     found = request.visit.analysis
-    if is_withheld:
+    if is_not_reported:
         found = recalibrated(found, (Joint.LEFT_KNEE,), axis_sd_rad=None)
-    asked = replace(request, visit=AnalysedVisit(told, found))
+    asked = replace(request, visit=AnalysedVisit(reported, found))
     page = patient_page(asked, facts_of(asked))["goals"]
     assert isinstance(page, list)
     return [str(one) for one in page]
 
 
-def test_what_was_agreed_is_said_plainly_and_reached_only_where_it_is_by_more_than_the_error(
+def test_what_was_agreed_is_stated_plainly_and_reached_only_where_it_is_by_more_than_the_error(
     request_of_demonstration: ReportRequest,
 ) -> None:
     """The demonstration's left knee bends by 61 degrees."""
@@ -146,13 +149,13 @@ def test_what_was_agreed_is_said_plainly_and_reached_only_where_it_is_by_more_th
     words = "Bend of your left knee: at least 50 degrees. We agreed this on 30 September."
     request = english(request_of_demonstration)
     assert goals_on_page(request, low) == [f"{words} You have reached it."]
-    assert goals_on_page(request, low, is_withheld=True) == [words]
+    assert goals_on_page(request, low, is_not_reported=True) == [words]
     assert goals_on_page(request, replace(low, agreed=datetime.date(2026, 11, 23))) == [
         words.replace("30 September", "23 November")
     ]
     assert goals_on_page(request, near) == [words.replace("50", "60")]
     stance = Goal("stance_percent", GoalOf.LEFT, 60.0, day)
-    assert goals_on_page(request, stance) == []  # the page tells nothing of it
+    assert goals_on_page(request, stance) == []  # the page gives nothing of it
     german = replace(request_of_demonstration, patient_language="de")
     speed = Goal("speed_m_s", GoalOf.WALK, 1.5, day)
     assert goals_on_page(german, speed) == [

@@ -1,4 +1,4 @@
-"""Does the table of peaks tell each movement beside the heights, and nothing of one that has no extremes?"""
+"""Does the table of peaks report each movement beside the heights, and nothing of one that has no extremes?"""
 
 from dataclasses import replace
 
@@ -78,7 +78,7 @@ def test_a_movement_without_extremes_is_a_dash_and_its_peak_is_named(request_of_
     assert heights["Peak flexion, loading (5–30\u00a0%)"][0] == "no peak"
 
 
-def test_without_a_sign_the_range_alone_is_told(request_of_demonstration: ReportRequest) -> None:
+def test_without_a_sign_the_range_alone_is_reported(request_of_demonstration: ReportRequest) -> None:
     analysis = request_of_demonstration.visit.analysis
     unsure = recalibrated(analysis, [Joint.LEFT_KNEE], is_sign_certain=False, clinical_sign_margin=0.1)
     knee = groups(request_of_demonstration, unsure)["Knee: movement ranges"]

@@ -39,7 +39,7 @@ def test_the_subcommand_makes_a_report_with_the_clinicians_words(session: Path, 
 
 @pytest.mark.endurance
 @pytest.mark.parametrize(
-    ("arguments", "said"),
+    ("arguments", "stated"),
     [
         (["--walk", "walk 9"], "there is no kept walk named walk 9. Choose of: walk 1."),
         (["--walk", "walk 1"] * 4, "4 walks are too many for one report"),
@@ -47,10 +47,10 @@ def test_the_subcommand_makes_a_report_with_the_clinicians_words(session: Path, 
     ],
 )
 def test_what_cannot_be_reported_is_refused_in_one_line(
-    session: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str], arguments: list[str], said: str
+    session: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str], arguments: list[str], stated: str
 ) -> None:
     assert main(["report", str(session), "--out", str(tmp_path / "report.pdf"), *arguments]) == 2
-    assert said in capsys.readouterr().err.splitlines()[-1]
+    assert stated in capsys.readouterr().err.splitlines()[-1]
     assert not (tmp_path / "report.pdf").exists()
 
 

@@ -35,9 +35,11 @@ def visits(*courses: Course | None) -> list[CourseVisit]:
     ]
 
 
-def walk(knee_deg: float = 50.0, speed_m_s: float = 1.0, condition: str = "", *, is_withheld: bool = False) -> Course:
-    told = unsure(Joint.LEFT_KNEE) if is_withheld else None
-    return course((walked(knee_deg=knee_deg, speed_m_s=speed_m_s, told=told), condition), told=told)
+def walk(
+    knee_deg: float = 50.0, speed_m_s: float = 1.0, condition: str = "", *, is_not_reported: bool = False
+) -> Course:
+    reported = unsure(Joint.LEFT_KNEE) if is_not_reported else None
+    return course((walked(knee_deg=knee_deg, speed_m_s=speed_m_s, reported=reported), condition), reported=reported)
 
 
 def page(request: ReportRequest, seen: Sequence[CourseVisit], condition: str = "") -> list[Block]:
@@ -78,10 +80,10 @@ def test_a_change_inside_the_error_is_none(request_of_demonstration: ReportReque
     assert found == ["All judged changes are within measurement error."]
 
 
-def test_a_withheld_visit_is_a_gap_and_the_change_counts_from_the_first_that_can_be_read(
+def test_a_not_reported_visit_is_a_gap_and_the_change_counts_from_the_first_that_can_be_read(
     request_of_demonstration: ReportRequest,
 ) -> None:
-    seen = visits(walk(20, is_withheld=True), walk(31), walk(33), walk(35, is_withheld=True), walk(52))
+    seen = visits(walk(20, is_not_reported=True), walk(31), walk(33), walk(35, is_not_reported=True), walk(52))
     blocks = page(request_of_demonstration, seen)
     knee = rows(blocks)["Knee flexion, stance to swing, °", "L"]
     assert knee[:5] == ["not reported", "31.0", "33.0", "not reported", "52.0"]
@@ -89,8 +91,10 @@ def test_a_withheld_visit_is_a_gap_and_the_change_counts_from_the_first_that_can
     assert "more than at visit 2 (31.0°)" in sentences(blocks)[0]
 
 
-def test_where_the_last_visit_is_withheld_nothing_is_said_of_a_change(request_of_demonstration: ReportRequest) -> None:
-    blocks = page(request_of_demonstration, visits(walk(31), walk(52), walk(52, is_withheld=True)))
+def test_where_the_last_visit_is_not_reported_nothing_is_stated_of_a_change(
+    request_of_demonstration: ReportRequest,
+) -> None:
+    blocks = page(request_of_demonstration, visits(walk(31), walk(52), walk(52, is_not_reported=True)))
     assert rows(blocks)["Knee flexion, stance to swing, °", "L"][3:] == ["–", "–", "–", "–"]
     assert not any("knee" in one for one in sentences(blocks))
 
@@ -112,7 +116,7 @@ def test_the_page_is_in_the_report_where_visits_were_given(request_of_demonstrat
 
 
 @pytest.mark.parametrize("value", [0.7, 31.0, 60.0])
-def test_a_chart_says_its_values_and_joins_none_over_a_gap(value: float) -> None:
+def test_a_chart_states_its_values_and_joins_none_over_a_gap(value: float) -> None:
     days = [datetime.date(2026, 9, 1), datetime.date(2026, 9, 8), datetime.date(2026, 9, 15)]
     whole = [TrendValue(k, value * (1 + 0.1 * k), 0.05 * value) for k in range(3)]
     gap = [whole[0], TrendValue(1, math.nan, math.nan), whole[2]]
@@ -127,15 +131,15 @@ def test_a_chart_says_its_values_and_joins_none_over_a_gap(value: float) -> None
 def with_goals(request: ReportRequest, *goals: Goal) -> ReportRequest:
     """Of a visit on the last of the days."""
     session = replace(request.visit.session, started=DAYS[-1])
-    told = replace(session, patient=replace(session.patient, goals=goals))
-    return replace(request, visit=AnalysedVisit(told, request.visit.analysis))
+    reported = replace(session, patient=replace(session.patient, goals=goals))
+    return replace(request, visit=AnalysedVisit(reported, request.visit.analysis))
 
 
 def knee_goal(value: float, agreed: str = DAYS[1]) -> Goal:
     return Goal(KNEE, GoalOf.LEFT, value, datetime.date.fromisoformat(agreed), "H. Keller")
 
 
-def test_a_goal_is_dotted_with_who_and_when_and_a_sentence_says_how_the_last_visit_stands(
+def test_a_goal_is_dotted_with_who_and_when_and_a_sentence_states_how_the_last_visit_is(
     request_of_demonstration: ReportRequest,
 ) -> None:
     seen = visits(*(walk(knee_deg=knee_deg) for knee_deg in (31.0, 36.0, 39.0, 45.0, 52.0)))
@@ -151,15 +155,15 @@ def test_a_goal_is_dotted_with_who_and_when_and_a_sentence_says_how_the_last_vis
     assert inside.endswith("not reached, but within measurement error (±9.3°).")
 
 
-def test_a_goal_agreed_on_the_day_of_the_visit_is_drawn_and_said_to_be_nothing(
+def test_a_goal_agreed_on_the_day_of_the_visit_is_drawn_and_stated_to_be_nothing(
     request_of_demonstration: ReportRequest,
 ) -> None:
     seen = visits(*(walk(knee_deg=knee_deg) for knee_deg in (31.0, 36.0, 39.0, 45.0, 52.0)))
     blocks = page(with_goals(request_of_demonstration, knee_goal(41.0, DAYS[-1])), seen)
     assert not any(one.startswith("Goal") for one in sentences(blocks))
     assert "goal L 41°" in str(blocks)
-    withheld = visits(*(walk(knee_deg=52.0, is_withheld=number == 4) for number in range(5)))
-    blocks = page(with_goals(request_of_demonstration, knee_goal(41.0)), withheld)
+    not_reported = visits(*(walk(knee_deg=52.0, is_not_reported=number == 4) for number in range(5)))
+    blocks = page(with_goals(request_of_demonstration, knee_goal(41.0)), not_reported)
     assert not any(one.startswith("Goal") for one in sentences(blocks))
 
 
@@ -179,7 +183,7 @@ def test_a_measure_with_a_goal_has_a_chart_of_its_own_and_no_more_than_four_are_
     assert "Stride length" not in str(page(request_of_demonstration, seen))
 
 
-def test_two_goals_of_one_chart_have_a_line_each_and_of_many_five_are_said(
+def test_two_goals_of_one_chart_have_a_line_each_and_of_many_five_are_stated(
     request_of_demonstration: ReportRequest,
 ) -> None:
     seen = visits(walk(), walk(), walk())
@@ -196,12 +200,12 @@ def with_test(time_s: float, speed_m_s: float = 1.0, protocol: TimedProtocol = T
     return course((walked(speed_m_s=speed_m_s), ""), (timed(protocol, time_s=time_s), ""))
 
 
-def test_timed_tests_stand_in_the_table_and_speed_is_told_once(request_of_demonstration: ReportRequest) -> None:
+def test_timed_tests_stand_in_the_table_and_speed_is_reported_once(request_of_demonstration: ReportRequest) -> None:
     blocks = page(request_of_demonstration, visits(with_test(20.0, 0.6), with_test(8.0, 1.0)))
     assert rows(blocks)["10-metre walk, m/s", ""] == ["0.50", "1.25", "–", "+0.75", "0.20†", "beyond"]
-    told = [one for one in sentences(blocks) if "m/s" in one]
-    assert len(told) == 1
-    assert told[0].startswith(
+    reported = [one for one in sentences(blocks) if "m/s" in one]
+    assert len(reported) == 1
+    assert reported[0].startswith(
         "10-metre walk is 1.25 m/s at visit 2, 0.75 m/s more than at visit 1 (0.50 m/s). Error between"
     )
     chair = visits(*(with_test(time_s, protocol=TimedProtocol.SIT_TO_STAND) for time_s in (30.0, 12.0)))

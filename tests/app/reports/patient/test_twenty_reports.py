@@ -19,9 +19,9 @@ def test_reports_are_whole_and_their_sentences_hold(monkeypatch: pytest.MonkeyPa
 
 
 def test_a_number_that_no_file_holds_is_found() -> None:
-    said = "The knee bends 20.3° less: 41.7° vs 62.0°, on 23 November 2026."
-    assert unknown_numbers(said, {20.31, 41.68, 62.04}) == []
-    assert unknown_numbers(said, {20.31, 41.68}) == ["62.0"]
+    stated = "The knee bends 20.3° less: 41.7° vs 62.0°, on 23 November 2026."
+    assert unknown_numbers(stated, {20.31, 41.68, 62.04}) == []
+    assert unknown_numbers(stated, {20.31, 41.68}) == ["62.0"]
     assert unknown_numbers("Sie gehen 1,2 Meter.", {1.18}) == []
     assert unknown_numbers("Sie gehen 1,2 Meter.", {1.3}) == ["1,2"]
 

@@ -37,12 +37,12 @@ SIMILAR = "Left and right are similar: "
 ZERO = "Angles start from the patient's standing posture"
 
 
-def said(request: ReportRequest, analysis: Analysis | None = None) -> list[str]:
+def stated(request: ReportRequest, analysis: Analysis | None = None) -> list[str]:
     """The sentences of a report, of another analysis where one is given."""
     if analysis is not None:
         request = replace(request, visit=AnalysedVisit(request.visit.session, analysis))
-    told = answer(facts_of(request), comparison_of(request))
-    numbered, caveats = told["sentences"], told["caveats"]
+    reported = answer(facts_of(request), comparison_of(request))
+    numbered, caveats = reported["sentences"], reported["caveats"]
     assert isinstance(numbered, list)
     assert isinstance(caveats, list)
     sentences = [" ".join(filter(None, words)) for _, *words in numbered] + caveats
@@ -50,7 +50,7 @@ def said(request: ReportRequest, analysis: Analysis | None = None) -> list[str]:
 
 
 def findings(facts: Facts, comparison: Comparison | None) -> list[str]:
-    return [" ".join(filter(None, (one.said, one.evidence))) for one in printed_findings(facts, comparison)]
+    return [" ".join(filter(None, (one.stated, one.evidence))) for one in printed_findings(facts, comparison)]
 
 
 def of_a_child(request: ReportRequest, analysis: Analysis) -> ReportRequest:
@@ -90,68 +90,70 @@ def raised(analysis: Analysis, joint: Joint, by_deg: float) -> Analysis:
     return rewalked(analysis, gait={**walk.gait, joint.side: replace(found, parameters=parameters, cycles=cycles)})
 
 
-def test_where_nothing_differs_that_is_said_and_the_caveat_of_the_zero(
+def test_where_nothing_differs_that_is_stated_and_the_caveat_of_the_zero(
     request_of_demonstration: ReportRequest,
 ) -> None:
-    first, last = said(request_of_demonstration)
+    first, last = stated(request_of_demonstration)
     assert first.startswith(SIMILAR)
     assert "° and " in first
     assert f"{NO_DIFFERENCE} {ALL_INSIDE}" in first
     assert last.startswith(ZERO)
 
 
-def test_without_a_standing_zero_its_caveat_is_not_said(request_of_demonstration: ReportRequest) -> None:
+def test_without_a_standing_zero_its_caveat_is_not_stated(request_of_demonstration: ReportRequest) -> None:
     analysis = recalibrated(request_of_demonstration.visit.analysis, zero=ZeroKind.GONIOMETER)
-    assert not any(ZERO in sentence for sentence in said(request_of_demonstration, analysis))
+    assert not any(ZERO in sentence for sentence in stated(request_of_demonstration, analysis))
 
 
-@pytest.mark.parametrize(("more_deg", "is_told"), [(-3.0, False), (-20.0, True)])
+@pytest.mark.parametrize(("more_deg", "is_reported"), [(-3.0, False), (-20.0, True)])
 def test_a_knee_that_moves_less_than_the_other_by_more_than_its_error(
-    request_of_demonstration: ReportRequest, more_deg: float, is_told: bool
+    request_of_demonstration: ReportRequest, more_deg: float, is_reported: bool
 ) -> None:
     analysis = with_more(request_of_demonstration.visit.analysis, Side.LEFT, "knee_range_rad", more_deg)
-    told = [sentence for sentence in said(request_of_demonstration, analysis) if "range of motion than" in sentence]
-    assert bool(told) is is_told
-    if is_told:
-        first, second = told[0].split(". ")
+    reported = [
+        sentence for sentence in stated(request_of_demonstration, analysis) if "range of motion than" in sentence
+    ]
+    assert bool(reported) is is_reported
+    if is_reported:
+        first, second = reported[0].split(". ")
         assert first == "The left knee has 21.3° less range of motion than the right: 41.7° against 63.0°"
         assert second.startswith("Measurement error between the legs: 9.")
-    assert any(NO_DIFFERENCE in sentence for sentence in said(request_of_demonstration, analysis)) is not is_told
+    assert any(NO_DIFFERENCE in sentence for sentence in stated(request_of_demonstration, analysis)) is not is_reported
 
 
 def test_with_the_legs_exchanged_the_sentence_is_mirrored(request_of_demonstration: ReportRequest) -> None:
     for side, words in ((Side.LEFT, "less"), (Side.RIGHT, "more")):
         analysis = with_more(request_of_demonstration.visit.analysis, side, "knee_range_rad", -20.0)
-        assert f"° {words} range of motion than the right" in said(request_of_demonstration, analysis)[0]
+        assert f"° {words} range of motion than the right" in stated(request_of_demonstration, analysis)[0]
 
 
 def test_an_ankle_between_legs_is_in_the_table_and_in_no_sentence(request_of_demonstration: ReportRequest) -> None:
     analysis = with_more(request_of_demonstration.visit.analysis, Side.LEFT, "ankle_range_rad", -20.0)
-    sentences = said(request_of_demonstration, analysis)
+    sentences = stated(request_of_demonstration, analysis)
     assert not any("nkle range" in sentence for sentence in sentences)
     assert not any(NO_DIFFERENCE in sentence for sentence in sentences)  # it would be untrue
     assert "The tables mark every difference beyond error." in sentences[0]
 
 
-@pytest.mark.parametrize(("more", "is_told"), [(2.0, False), (6.0, True)])
+@pytest.mark.parametrize(("more", "is_reported"), [(2.0, False), (6.0, True)])
 def test_stance_that_lasts_longer_on_one_leg(
-    request_of_demonstration: ReportRequest, more: float, is_told: bool
+    request_of_demonstration: ReportRequest, more: float, is_reported: bool
 ) -> None:
     analysis = with_more(request_of_demonstration.visit.analysis, Side.LEFT, "stance_percent", more)
     request = of_a_child(request_of_demonstration, analysis)  # who has no band
-    told = [one for one in said(request) if one.startswith("Stance is ")]
-    assert bool(told) is is_told
+    reported = [one for one in stated(request) if one.startswith("Stance is ")]
+    assert bool(reported) is is_reported
 
 
 def with_goal_of(request: ReportRequest, day: str, of: GoalOf = GoalOf.BETWEEN) -> ReportRequest:
     """With a goal of stance that was agreed on a day."""
     session = request.visit.session
     goal = Goal("stance_percent", of, 60.0, datetime.date.fromisoformat(day), is_at_most=True)
-    told = replace(session, patient=replace(session.patient, goals=(goal,)))
-    return replace(request, visit=AnalysedVisit(told, request.visit.analysis))
+    reported = replace(session, patient=replace(session.patient, goals=(goal,)))
+    return replace(request, visit=AnalysedVisit(reported, request.visit.analysis))
 
 
-def test_a_measure_chosen_before_the_walk_is_told_from_one_error_on_and_never_one_chosen_after(
+def test_a_measure_chosen_before_the_walk_is_reported_from_one_error_on_and_never_one_chosen_after(
     request_of_demonstration: ReportRequest,
 ) -> None:
     """3.2 points of stance lie between the error, 2.6, and what a sentence needs otherwise, 3.9."""
@@ -159,33 +161,33 @@ def test_a_measure_chosen_before_the_walk_is_told_from_one_error_on_and_never_on
     request = of_a_child(request_of_demonstration, analysis)  # who has no band; measured on 20 November
     less = with_more(request_of_demonstration.visit.analysis, Side.LEFT, "stance_percent", 2.0)
 
-    def is_told(one: ReportRequest) -> bool:
-        return any(sentence.startswith("Stance is ") for sentence in said(one))
+    def is_reported(one: ReportRequest) -> bool:
+        return any(sentence.startswith("Stance is ") for sentence in stated(one))
 
-    assert not is_told(request)
-    assert is_told(with_goal_of(request, "2026-11-19"))
-    assert is_told(with_goal_of(request, "2026-11-19", GoalOf.LEFT))
-    assert not is_told(with_goal_of(request, "2026-11-20"))
-    assert not is_told(with_goal_of(request, "2026-11-21"))
-    assert not is_told(with_goal_of(of_a_child(request_of_demonstration, less), "2026-11-19"))
+    assert not is_reported(request)
+    assert is_reported(with_goal_of(request, "2026-11-19"))
+    assert is_reported(with_goal_of(request, "2026-11-19", GoalOf.LEFT))
+    assert not is_reported(with_goal_of(request, "2026-11-20"))
+    assert not is_reported(with_goal_of(request, "2026-11-21"))
+    assert not is_reported(with_goal_of(of_a_child(request_of_demonstration, less), "2026-11-19"))
 
 
-@pytest.mark.parametrize(("more_m", "is_told"), [(0.0, False), (0.5, True)])
+@pytest.mark.parametrize(("more_m", "is_reported"), [(0.0, False), (0.5, True)])
 def test_a_stride_length_beyond_two_sd_of_its_band(
-    request_of_demonstration: ReportRequest, more_m: float, is_told: bool
+    request_of_demonstration: ReportRequest, more_m: float, is_reported: bool
 ) -> None:
     analysis = request_of_demonstration.visit.analysis
     for side in Side:
         analysis = with_more(analysis, side, "stride_length_m", more_m)
-    told = [one for one in said(request_of_demonstration, analysis) if one.startswith("Stride length, ")]
-    assert bool(told) is is_told
-    if is_told:
-        assert "reference [2]" in told[0]
-        assert told[0].endswith("more than 2 SD above.")
+    reported = [one for one in stated(request_of_demonstration, analysis) if one.startswith("Stride length, ")]
+    assert bool(reported) is is_reported
+    if is_reported:
+        assert "reference [2]" in reported[0]
+        assert reported[0].endswith("more than 2 SD above.")
 
 
 @pytest.mark.parametrize("more", [-8.0, 4.0, 8.0])
-def test_of_stance_no_word_says_how_far_from_the_band_it_lies(
+def test_of_stance_no_word_states_how_far_from_the_band_it_lies(
     request_of_demonstration: ReportRequest, more: float
 ) -> None:
     """Neither on page one, nor on the screen, nor in the table of time and distance, whose other rows have words."""
@@ -193,8 +195,8 @@ def test_of_stance_no_word_says_how_far_from_the_band_it_lies(
     for side in Side:
         analysis = with_more(analysis, side, "stance_percent", more)
     facts = Facts(AnalysedVisit(request_of_demonstration.visit.session, analysis), walk_of(analysis))
-    told = [*findings(facts, None), answer_of(facts).first, answer_of(facts).then]
-    assert not any("tance" in one and "SD" in one for one in told)
+    reported = [*findings(facts, None), answer_of(facts).first, answer_of(facts).then]
+    assert not any("tance" in one and "SD" in one for one in reported)
     table: Any = time_distance_table(facts)[0]
     rows = [[cell["said"] for cell in row["cells"]] for row in table["rows"]]
     words = {row[0]: row[-1] for row in rows}
@@ -202,68 +204,68 @@ def test_of_stance_no_word_says_how_far_from_the_band_it_lies(
     assert "SD" in words["Stride length, m"]
 
 
-def test_stance_of_a_foot_that_rolls_on_is_told_in_no_sentence(request_of_demonstration: ReportRequest) -> None:
+def test_stance_of_a_foot_that_rolls_on_is_reported_in_no_sentence(request_of_demonstration: ReportRequest) -> None:
     analysis = with_more(request_of_demonstration.visit.analysis, Side.LEFT, "stance_percent", 8.0)
     gait = walk_of(analysis).gait
-    assert any("Stance" in sentence for sentence in said(request_of_demonstration, analysis))
+    assert any("Stance" in sentence for sentence in stated(request_of_demonstration, analysis))
     rolls_on = replace(gait[Side.LEFT], is_toe_off_biased=True)
     biased = rewalked(analysis, gait={**gait, Side.LEFT: rolls_on})
-    assert not any("Stance, " in sentence for sentence in said(request_of_demonstration, biased))
+    assert not any("Stance, " in sentence for sentence in stated(request_of_demonstration, biased))
 
 
 def test_a_zero_in_another_posture_changes_no_sentence_up_to_seven_degrees(
     request_of_demonstration: ReportRequest,
 ) -> None:
     analysis = request_of_demonstration.visit.analysis
-    usual = said(request_of_demonstration)
+    usual = stated(request_of_demonstration)
     for joint, by_deg in ((Joint.LEFT_KNEE, 7.0), (Joint.RIGHT_ANKLE, -3.0), (Joint.LEFT_ANKLE, 7.0)):
-        assert said(request_of_demonstration, raised(analysis, joint, by_deg)) == usual, joint
+        assert stated(request_of_demonstration, raised(analysis, joint, by_deg)) == usual, joint
 
 
 def test_a_curve_that_lies_ten_degrees_off_sends_to_the_zero_first(request_of_demonstration: ReportRequest) -> None:
     analysis = request_of_demonstration.visit.analysis
-    told = said(request_of_demonstration, raised(analysis, Joint.RIGHT_ANKLE, 20.0))
+    reported = stated(request_of_demonstration, raised(analysis, Joint.RIGHT_ANKLE, 20.0))
     assert any(
         one.startswith("Right ankle: the whole curve is +1")
         and one.endswith("° from the reference. Check the standing reference first.")
-        for one in told
+        for one in reported
     )
-    assert not any("the whole curve is" in one for one in said(request_of_demonstration))
+    assert not any("the whole curve is" in one for one in stated(request_of_demonstration))
     unset = recalibrated(raised(analysis, Joint.RIGHT_ANKLE, 20.0), zero=ZeroKind.NONE)
-    assert not any("the whole curve is" in one for one in said(request_of_demonstration, unset))
+    assert not any("the whole curve is" in one for one in stated(request_of_demonstration, unset))
 
 
-@pytest.mark.parametrize(("more_deg", "is_told"), [(-4.0, False), (-14.0, True)])
+@pytest.mark.parametrize(("more_deg", "is_reported"), [(-4.0, False), (-14.0, True)])
 def test_a_peak_beyond_two_sd_of_the_band_at_the_curves_height(
-    request_of_demonstration: ReportRequest, more_deg: float, is_told: bool
+    request_of_demonstration: ReportRequest, more_deg: float, is_reported: bool
 ) -> None:
     analysis = with_more(request_of_demonstration.visit.analysis, Side.LEFT, "knee_swing_peak_rad", more_deg)
-    told = [one for one in said(request_of_demonstration, analysis) if "Left knee peak flexion, swing" in one]
-    assert bool(told) is is_told
-    if is_told:
-        assert "reference [1] at the level of the curve" in told[0]
-        assert told[0].endswith("more than 2 SD below.")
-    assert not any("reference [" in sentence for sentence in said(of_a_child(request_of_demonstration, analysis)))
+    reported = [one for one in stated(request_of_demonstration, analysis) if "Left knee peak flexion, swing" in one]
+    assert bool(reported) is is_reported
+    if is_reported:
+        assert "reference [1] at the level of the curve" in reported[0]
+        assert reported[0].endswith("more than 2 SD below.")
+    assert not any("reference [" in sentence for sentence in stated(of_a_child(request_of_demonstration, analysis)))
 
 
-def test_what_is_withheld_is_told_in_the_caveat_alone(request_of_demonstration: ReportRequest) -> None:
+def test_what_is_not_reported_is_reported_in_the_caveat_alone(request_of_demonstration: ReportRequest) -> None:
     shortened = with_more(request_of_demonstration.visit.analysis, Side.LEFT, "knee_range_rad", -20.0)
     analysis = recalibrated(shortened, [Joint.LEFT_KNEE], is_same_joint=False, sign_margin=1.05)
-    sentences = said(request_of_demonstration, analysis)
+    sentences = stated(request_of_demonstration, analysis)
     assert not any("knee has" in sentence for sentence in sentences)
     assert sentences[-1].startswith("Left knee: Sensor positions could not be confirmed (margin 1.05, required 1.50).")
-    assert not any("could not be confirmed" in sentence for sentence in said(request_of_demonstration, shortened))
+    assert not any("could not be confirmed" in sentence for sentence in stated(request_of_demonstration, shortened))
 
 
-def test_of_too_few_strides_nothing_is_told(request_of_demonstration: ReportRequest) -> None:
+def test_of_too_few_strides_nothing_is_reported(request_of_demonstration: ReportRequest) -> None:
     shortened = with_more(request_of_demonstration.visit.analysis, Side.LEFT, "knee_range_rad", -30.0)
-    assert any("knee has" in one for one in said(request_of_demonstration, shortened))
+    assert any("knee has" in one for one in stated(request_of_demonstration, shortened))
     for count in (2, 9):
         analysis = with_few_strides(shortened, left=count)
-        assert not any("knee has" in one for one in said(request_of_demonstration, analysis)), count
+        assert not any("knee has" in one for one in stated(request_of_demonstration, analysis)), count
 
 
-def test_at_most_three_findings_are_told_one_of_each_joint_and_direction(
+def test_at_most_three_findings_are_reported_one_of_each_joint_and_direction(
     request_of_demonstration: ReportRequest,
 ) -> None:
     analysis = request_of_demonstration.visit.analysis
@@ -277,39 +279,39 @@ def test_at_most_three_findings_are_told_one_of_each_joint_and_direction(
     ):
         analysis = with_more(analysis, Side.LEFT, name, more)
     request = replace(request_of_demonstration, visit=AnalysedVisit(request_of_demonstration.visit.session, analysis))
-    told = findings(facts_of(request), None)
-    assert len(told) == MAX_FINDINGS
-    below = [one for one in told if "knee" in one.lower() and ("below" in one or "difference \u2212" in one)]
+    reported = findings(facts_of(request), None)
+    assert len(reported) == MAX_FINDINGS
+    below = [one for one in reported if "knee" in one.lower() and ("below" in one or "difference \u2212" in one)]
     assert len(below) == 1
-    assert not any("tance" in one and "share" in one for one in told)  # shapes come first
+    assert not any("tance" in one and "share" in one for one in reported)  # shapes come first
 
 
-def test_a_change_between_conditions_is_told_only_beyond_its_error(request_of_alignments: ReportRequest) -> None:
+def test_a_change_between_conditions_is_reported_only_beyond_its_error(request_of_alignments: ReportRequest) -> None:
     analysis = request_of_alignments.visit.analysis
-    usual = said(request_of_alignments)
+    usual = stated(request_of_alignments)
     assert not any("range of motion in" in sentence for sentence in usual)
     last = analysis.recordings[-1]
     changed = with_more(replace(analysis, recordings=(last,)), Side.LEFT, "knee_range_rad", -25.0).recordings[-1]
-    loud = said(request_of_alignments, judged(replace(analysis, recordings=(*analysis.recordings[:-1], changed))))
+    loud = stated(request_of_alignments, judged(replace(analysis, recordings=(*analysis.recordings[:-1], changed))))
     assert any(
         "knee has" in one and "range of motion in" in one and "less than in \u2068alignment A\u2069" in one
         for one in loud
     )
 
 
-def test_speeds_apart_are_the_caveat_where_nothing_is_withheld(request_of_alignments: ReportRequest) -> None:
-    assert said(request_of_alignments)[-1].startswith("Speed A: 1.05, B: ")
+def test_speeds_apart_are_the_caveat_where_nothing_is_not_reported(request_of_alignments: ReportRequest) -> None:
+    assert stated(request_of_alignments)[-1].startswith("Speed A: 1.05, B: ")
     alone = replace(request_of_alignments, walks=request_of_alignments.walks[-1:])
-    assert not any(one.startswith("Speed ") for one in said(alone))
-    withheld = recalibrated(
+    assert not any(one.startswith("Speed ") for one in stated(alone))
+    not_reported = recalibrated(
         request_of_alignments.visit.analysis, [Joint.LEFT_KNEE], is_same_joint=False, sign_margin=1.05
     )
-    assert not any(one.startswith("Speed ") for one in said(request_of_alignments, withheld))
+    assert not any(one.startswith("Speed ") for one in stated(request_of_alignments, not_reported))
 
 
 def test_no_sentence_judges(request_of_demonstration: ReportRequest) -> None:
     analysis = with_more(request_of_demonstration.visit.analysis, Side.LEFT, "knee_range_rad", -25.0)
-    words = " ".join([*said(request_of_demonstration), *said(request_of_demonstration, analysis)]).lower()
+    words = " ".join([*stated(request_of_demonstration), *stated(request_of_demonstration, analysis)]).lower()
     for word in ("better", "worse", "normal", "significant", "improved", "mostly"):
         assert word not in words
 
@@ -327,15 +329,15 @@ def test_every_quantity_has_its_unit_and_what_is_compared_has_a_name() -> None:
         assert name_in_sentence(column)
 
 
-def test_a_range_and_the_movement_that_makes_it_are_told_once(request_of_demonstration: ReportRequest) -> None:
+def test_a_range_and_the_movement_that_makes_it_are_reported_once(request_of_demonstration: ReportRequest) -> None:
     analysis = request_of_demonstration.visit.analysis
     both = with_more(
         with_more(analysis, Side.LEFT, "knee_range_rad", -25.0), Side.LEFT, "knee_stance_to_swing_rad", -20.0
     )
-    said = " ".join(lines(request_of_demonstration, both))
-    assert "flexes" in said
-    assert "from stance to swing" in said
-    assert "has" not in said.split()
+    stated = " ".join(lines(request_of_demonstration, both))
+    assert "flexes" in stated
+    assert "from stance to swing" in stated
+    assert "has" not in stated.split()
     alone = " ".join(lines(request_of_demonstration, with_more(analysis, Side.LEFT, "knee_range_rad", -25.0)))
     assert "The left knee has" in alone
     loading = with_more(analysis, Side.LEFT, "knee_while_loading_rad", -20.0)
@@ -366,35 +368,37 @@ def test_each_measure_and_direction_has_a_sentence_that_comes_beyond_the_error_o
     request_of_demonstration: ReportRequest, name: str, more: float, words: str
 ) -> None:
     analysis = request_of_demonstration.visit.analysis
-    told = lines(request_of_demonstration, with_more(analysis, Side.LEFT, name, more))
-    assert sum(words in sentence for sentence in told) == 1
+    reported = lines(request_of_demonstration, with_more(analysis, Side.LEFT, name, more))
+    assert sum(words in sentence for sentence in reported) == 1
     within = lines(request_of_demonstration, with_more(analysis, Side.LEFT, name, 0.15 * more))
     assert not any(words in sentence for sentence in within)
 
 
-def test_an_excursion_of_a_joint_without_a_sign_is_told_in_no_sentence(request_of_demonstration: ReportRequest) -> None:
+def test_an_excursion_of_a_joint_without_a_sign_is_reported_in_no_sentence(
+    request_of_demonstration: ReportRequest,
+) -> None:
     analysis = with_more(request_of_demonstration.visit.analysis, Side.LEFT, "knee_stance_to_swing_rad", -20.0)
     unsure = recalibrated(analysis, [Joint.LEFT_KNEE], is_sign_certain=False, clinical_sign_margin=0.1)
     assert any("from stance to swing" in one for one in lines(request_of_demonstration, analysis))
     assert not any("from stance to swing" in one for one in lines(request_of_demonstration, unsure))
 
 
-def test_of_excursions_as_large_against_their_errors_the_swing_is_told_first(
+def test_of_excursions_as_large_against_their_errors_the_swing_is_reported_first(
     request_of_demonstration: ReportRequest,
 ) -> None:
     analysis = request_of_demonstration.visit.analysis
     for name, more in (("knee_while_loading_rad", 20.0), ("knee_stance_to_swing_rad", -20.0)):
         analysis = with_more(analysis, Side.LEFT, name, more)
-    told = lines(request_of_demonstration, analysis)
-    assert "from stance to swing" in told[0]
-    assert "in loading response" in told[1]
+    reported = lines(request_of_demonstration, analysis)
+    assert "from stance to swing" in reported[0]
+    assert "in loading response" in reported[1]
 
 
-def forged(monkeypatch: pytest.MonkeyPatch, wanted: str) -> None:
+def forged(monkeypatch: pytest.MonkeyPatch, required: str) -> None:
     """Let one column differ by five times its error in every comparison, and no other by anything."""
 
     def compared(column: str, *_: object, **__: object) -> Difference:
-        size = -5.0 if column == wanted else 0.0
+        size = -5.0 if column == required else 0.0
         judgement = Judgement.EXCEEDS_ERROR if size else Judgement.INSIDE_ERROR
         return Difference(size, 1.0, judgement, is_worth_a_sentence=bool(size))
 
@@ -410,10 +414,10 @@ def test_every_compared_column_has_a_sentence_on_paper_and_screen_in_every_compa
     facts = hip_facts()
     pair = tuple(replace(facts.part, letter=letter, name=letter) for letter in "AB")
     found = Comparison(contrast, pair)
-    told = printed_findings(facts, found)
+    reported = printed_findings(facts, found)
     assert answer_beside(found).outcome is Outcome.DIFFERS
     has_other_zero = measure.needs_height and contrast is Contrast.VISITS
-    assert any(one.column == measure.column and one.said for one in told) is not has_other_zero
+    assert any(one.column == measure.column and one.stated for one in reported) is not has_other_zero
 
 
 @pytest.mark.parametrize("column", BETWEEN_LEGS)
@@ -421,8 +425,8 @@ def test_every_column_that_is_compared_between_the_legs_has_a_sentence(
     monkeypatch: pytest.MonkeyPatch, column: str
 ) -> None:
     forged(monkeypatch, column)
-    (told,) = [one for one in printed_findings(hip_facts(), None) if one.column == column]
-    assert {"less", "shorter", "lower"} & set(told.said.split())
+    (reported,) = [one for one in printed_findings(hip_facts(), None) if one.column == column]
+    assert {"less", "shorter", "lower"} & set(reported.stated.split())
 
 
 def test_between_the_legs_no_height_is_compared() -> None:

@@ -46,7 +46,7 @@ def database_url(postgres_url: str) -> Iterator[str]:
 
 @pytest.fixture(scope="session")
 def walked() -> Session:
-    """A simulated patient who stands, moves and walks."""
+    """A simulated patient who is, moves and walks."""
     return simulate(
         WalkerSettings(seed=5, recordings=(Standing(), FreeMotion(duration_s=4.0), Walk(strides=6)))
     ).session

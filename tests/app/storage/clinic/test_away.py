@@ -61,7 +61,7 @@ def test_a_session_that_was_made_without_the_server_is_read_at_the_other_station
     assert bring_away_home(first) == 0
 
 
-def test_a_patient_whom_the_clinic_knows_keeps_what_it_says(stations: Stations) -> None:
+def test_a_patient_whom_the_clinic_knows_keeps_what_it_states(stations: Stations) -> None:
     first, second = stations
     before = second.library.patients.find("DEMO-1")
     assert before is not None
@@ -146,9 +146,9 @@ def test_corrections_and_audit_go_on_the_clinics_own(stations: Stations) -> None
     before = len(second.library.audit.entries())
     bring_away_home(first)
     assert second.library.audit.verify().faults == ()
-    told = second.library.audit.entries()[before:]
-    assert len(told) == entries
-    assert all("was_away_at" in json.loads(entry.details) for entry in told)
+    reported = second.library.audit.entries()[before:]
+    assert len(reported) == entries
+    assert all("was_away_at" in json.loads(entry.details) for entry in reported)
     home = second.library.patients.find("DEMO-9")
     assert home is not None
     assert home.details.mass_kg == 70.0
@@ -236,8 +236,8 @@ def test_who_never_worked_here_cannot_begin_without_the_server(stations: Station
 
 def test_who_may_only_look_records_nothing_without_the_server(stations: Stations) -> None:
     first, _ = stations
-    told = next(one for one in first.library.operators.list() if one.code == "ab")
-    first.library.operators.change(replace(told, role=Role.VIEWER))
+    reported = next(one for one in first.library.operators.list() if one.code == "ab")
+    first.library.operators.change(replace(reported, role=Role.VIEWER))
     with begin_away(first, "ab") as opened, pytest.raises(NotAllowedError):
         opened.library.patients.create(Patient(code="DEMO-9"))
 
@@ -253,7 +253,7 @@ def test_a_closed_server_is_no_reason_to_work_without_it(stations: Stations) -> 
     assert not outcome.can_work_away
 
 
-def test_what_the_server_does_not_take_is_said_at_the_log_in_until_it_does(
+def test_what_the_server_does_not_take_is_stated_at_the_log_in_until_it_does(
     stations: Stations, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     first, _ = stations

@@ -34,8 +34,8 @@ def test_a_library_goes_to_the_server_a_station_joins_and_it_comes_back(
     assert main(["clinic", "join", second]) == 2
     assert "No library was found on the clinic's server" in capsys.readouterr().err
     assert main(["clinic", "move", str(folder), *key, "--journals", str(shared_place)]) == 0
-    said = capsys.readouterr().out
-    assert "1 patient, 1 session and 3 recordings are on postgresql://" in said
+    stated = capsys.readouterr().out
+    assert "1 patient, 1 session and 3 recordings are on postgresql://" in stated
     assert main(["clinic", "join", second]) == 2
     assert str(shared_place) in capsys.readouterr().err
     assert main(["clinic", "join", second, "--journals", str(shared_place)]) == 0
@@ -58,12 +58,12 @@ def test_a_library_goes_to_the_server_a_station_joins_and_it_comes_back(
 def test_a_password_on_the_command_line_is_refused(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     address = "postgresql://station:hunter2@clinic.example/gaitwright"
     assert main(["clinic", "join", str(tmp_path / "station"), "--database", address]) == 2
-    said = capsys.readouterr().err
-    assert "other programs" in said
-    assert "hunter2" not in said
+    stated = capsys.readouterr().err
+    assert "other programs" in stated
+    assert "hunter2" not in stated
 
 
-def test_without_an_address_it_is_said_how_to_give_one(
+def test_without_an_address_it_is_stated_how_to_give_one(
     tmp_path: Path, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.delenv(DATABASE_VARIABLE, raising=False)

@@ -85,7 +85,7 @@ def test_a_stations_login_cannot_take_numbers_out_of_turn(moved: Station, login:
         session.execute(text(f"INSERT INTO audit VALUES (2147483647, {ENTRY})"))
 
 
-def test_an_audit_with_strange_entries_is_repaired_as_the_page_for_clinics_tells(
+def test_an_audit_with_strange_entries_is_repaired_as_the_page_for_clinics_shows(
     moved: Station, folder: Path, open_at: OpenAt
 ) -> None:
     station = open_at(folder)
@@ -99,7 +99,7 @@ def test_an_audit_with_strange_entries_is_repaired_as_the_page_for_clinics_tells
     assert not station.library.audit.verify().faults
 
 
-def test_whatever_stands_in_a_row_no_file_outside_is_touched_and_every_refusal_is_a_sentence() -> None:
+def test_whatever_is_in_a_row_no_file_outside_is_touched_and_every_refusal_is_a_sentence() -> None:
     outcome = run(len(columns()), seed=3)
     assert outcome.faults == []
     assert outcome.changes - outcome.refused > 40

@@ -82,7 +82,7 @@ def test_a_place_that_is_not_there_takes_nothing(place: str, journal: Path) -> N
 
 
 @pytest.mark.endurance
-def test_a_bucket_that_does_not_answer_is_said_not_to(monkeypatch: pytest.MonkeyPatch, journal: Path) -> None:
+def test_a_bucket_that_does_not_answer_is_stated_not_to(monkeypatch: pytest.MonkeyPatch, journal: Path) -> None:
     pytest.importorskip("s3fs")
     monkeypatch.setenv("AWS_ENDPOINT_URL", "http://127.0.0.1:9")
     monkeypatch.setenv("AWS_ACCESS_KEY_ID", "testing")
@@ -91,7 +91,7 @@ def test_a_bucket_that_does_not_answer_is_said_not_to(monkeypatch: pytest.Monkey
         JournalStore("s3://bucket").put(journal)
 
 
-def test_a_place_that_lets_nobody_in_says_so(tmp_path: Path, journal: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_a_place_that_lets_nobody_in_states_so(tmp_path: Path, journal: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     (tmp_path / "place").mkdir()
     store = JournalStore(str(tmp_path / "place"))
 

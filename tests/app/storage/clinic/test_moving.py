@@ -149,8 +149,8 @@ def test_a_move_that_is_broken_off_anywhere_goes_on(
         move_to_server(open_at(folder), station, silent)
     with open_library(folder, PASSPHRASE, "hk") as opened:
         assert everything_of(opened) == before
-        told = [entry for entry in opened.library.audit.entries() if "is_moved_to_server" in entry.details]
-        assert len(told) == 1
+        reported = [entry for entry in opened.library.audit.entries() if "is_moved_to_server" in entry.details]
+        assert len(reported) == 1
 
 
 def test_a_move_that_is_given_up_leaves_the_folder_to_work_with(

@@ -20,15 +20,15 @@ WAIT_MS = 60_000
 
 
 class Listener(QObject):
-    """Notes what it is told."""
+    """Notes what it is reported."""
 
     def __init__(self) -> None:
         super().__init__()
-        self.told: list[object] = []
+        self.reported: list[object] = []
         self.refusals: list[str] = []
 
     def on_done(self, result: object) -> None:
-        self.told.append(result)
+        self.reported.append(result)
 
     def on_failed(self, what: str, _remedy: str) -> None:
         self.refusals.append(what)
@@ -53,14 +53,14 @@ def test_a_library_goes_to_the_server_and_comes_back_while_somebody_is_logged_in
     controller.move_to_server(
         database_url, "", str(shared_place), listener.on_done, listener.on_failed, listener.on_progressed, listener
     )
-    qtbot.waitUntil(lambda: bool(listener.told), timeout=WAIT_MS)
-    assert isinstance(listener.told[0], Moved)
+    qtbot.waitUntil(lambda: bool(listener.reported), timeout=WAIT_MS)
+    assert isinstance(listener.reported[0], Moved)
     assert controller.state is not None
     assert controller.state.library.shared is not None
     assert controller.state.operator.code == "hk"
     assert is_station(folder)
     controller.bring_back(listener.on_done, listener.on_failed, listener.on_progressed, listener)
-    qtbot.waitUntil(lambda: len(listener.told) == 2, timeout=WAIT_MS)
+    qtbot.waitUntil(lambda: len(listener.reported) == 2, timeout=WAIT_MS)
     assert controller.state is not None
     opened = controller.state.library
     assert opened.shared is None
@@ -88,14 +88,14 @@ def test_a_move_whose_place_is_missing_leaves_the_folder_to_work_with(
     assert not (folder / MOVING).exists()
 
 
-def test_a_station_joins_and_a_place_that_is_missing_here_is_told_as_such(
+def test_a_station_joins_and_a_place_that_is_missing_here_is_reported_as_such(
     qtbot: QtBot, controller: LibraryController, moved: Station, tmp_path: Path
 ) -> None:
     listener = Listener()
     for place in (str(tmp_path / "no"), "", moved.journals):
         controller.join(tmp_path / "new", moved.database, "", place, listener.on_done, listener.on_failed, listener)
-    qtbot.waitUntil(lambda: len(listener.told) == 3, timeout=WAIT_MS)
-    missing, unconfirmed, joined = listener.told
+    qtbot.waitUntil(lambda: len(listener.reported) == 3, timeout=WAIT_MS)
+    missing, unconfirmed, joined = listener.reported
     assert isinstance(missing, Joined)
     assert missing.is_place
     assert isinstance(unconfirmed, Joined)

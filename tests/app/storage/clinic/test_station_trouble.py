@@ -114,11 +114,11 @@ def test_a_copy_that_is_damaged_is_fetched_again(stations: Stations, session_id:
 
 
 @pytest.mark.parametrize(
-    ("number", "said"),
+    ("number", "stated"),
     [(errno.ENOSPC, "is full"), (errno.EFBIG, "is full"), (errno.EROFS, "The clinic's shared storage is read-only")],
 )
-def test_a_full_or_locked_place_says_so_and_leaves_nothing_half_there(
-    stations: Stations, session_id: UUID, shared_place: Path, monkeypatch: pytest.MonkeyPatch, number: int, said: str
+def test_a_full_or_locked_place_states_so_and_leaves_nothing_half_there(
+    stations: Stations, session_id: UUID, shared_place: Path, monkeypatch: pytest.MonkeyPatch, number: int, stated: str
 ) -> None:
     first, _ = stations
     walk = record(first, session_id, "walk 2")
@@ -129,7 +129,7 @@ def test_a_full_or_locked_place_says_so_and_leaves_nothing_half_there(
 
     with monkeypatch.context() as patched:
         patched.setattr("app.storage.clinic.journal_store.shutil.copyfileobj", refused)
-        with pytest.raises(LibraryError, match=said):
+        with pytest.raises(LibraryError, match=stated):
             hand_over(first)
     assert set(shared_place.iterdir()) == before
     assert count_waiting(first) == 1
@@ -184,7 +184,7 @@ def test_a_station_that_falls_silent_while_it_writes_holds_up_nobody_for_long(st
         holder.stdout.close()
 
 
-def test_a_save_whose_end_was_not_heard_is_said_to_be_uncertain(
+def test_a_save_whose_end_was_not_received_is_stated_to_be_uncertain(
     stations: Stations, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     first, second = stations
@@ -227,7 +227,7 @@ def test_text_that_no_server_takes_is_named_before_anything_is_moved(
     opened.library.patients.change(patient_of(opened), replace(patient_of(opened).details, aids="a b"))
 
 
-def test_a_station_says_what_is_wrong_with_text_that_the_server_does_not_take(stations: Stations) -> None:
+def test_a_station_states_what_is_wrong_with_text_that_the_server_does_not_take(stations: Stations) -> None:
     first, _ = stations
     with pytest.raises(LibraryError, match="the NUL character"):
         first.library.patients.change(patient_of(first), replace(patient_of(first).details, aids="a\0b"))
@@ -304,9 +304,9 @@ def test_nobody_logs_in_or_changes_a_passphrase_on_a_server_that_was_left(statio
         slots_of(second.folder).set_passphrase(second.data_key, "hk", "other words for then")
 
 
-def test_the_servers_own_trouble_in_tls_is_not_said_to_be_a_false_name() -> None:
-    said = psycopg.OperationalError("consuming input failed: SSL error: unexpected eof while reading")
-    cause = OperationalError("", {}, said, connection_invalidated=True)
+def test_the_servers_own_trouble_in_tls_is_not_stated_to_be_a_false_name() -> None:
+    stated = psycopg.OperationalError("consuming input failed: SSL error: unexpected eof while reading")
+    cause = OperationalError("", {}, stated, connection_invalidated=True)
     database = Database(postgres_engine("postgresql+psycopg://nobody@/nowhere"))
     with pytest.raises(LibraryFaultError, match="does not respond"), database.reading():
         raise cause

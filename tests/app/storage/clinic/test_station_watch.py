@@ -1,4 +1,4 @@
-"""What a station's window is told: of a server that goes and comes back, of the others, of what waits here."""
+"""What a station's window is reported: of a server that goes and comes back, of the others, of what waits here."""
 
 import shlex
 import shutil
@@ -96,42 +96,42 @@ def opened_of(controller: LibraryController) -> OpenedLibrary:
     return controller.state.library
 
 
-def test_a_server_that_goes_and_comes_back_is_said_and_nothing_freezes(
+def test_a_server_that_goes_and_comes_back_is_stated_and_nothing_freezes(
     qtbot: QtBot, controller: LibraryController, server: Server
 ) -> None:
-    with qtbot.waitSignal(controller.gone, timeout=WAIT_MS) as said:
+    with qtbot.waitSignal(controller.gone, timeout=WAIT_MS) as stated:
         server.stop()
-    what, then = said.args or ["", ""]
+    what, then = stated.args or ["", ""]
     assert what == "The clinic's server does not respond."
     assert "kept on this computer" in then
     assert controller.is_gone
-    with qtbot.waitSignal(controller.back, timeout=WAIT_MS) as said:
+    with qtbot.waitSignal(controller.back, timeout=WAIT_MS) as stated:
         server.start()
-    assert (said.args or [""])[0] == "The clinic's server responds again."
+    assert (stated.args or [""])[0] == "The clinic's server responds again."
     assert not controller.is_gone
 
 
-def test_what_another_station_does_is_heard_and_its_own_doing_is_not(
+def test_what_another_station_does_is_received_and_its_own_doing_is_not(
     qtbot: QtBot, controller: LibraryController, other: OpenedLibrary
 ) -> None:
     own = opened_of(controller)
-    qtbot.wait(2000)  # until it has heard how far the others are
+    qtbot.wait(2000)  # until it has received how far the others are
     with qtbot.assertNotEmitted(controller.changed_elsewhere, wait=1000):
         own.library.patients.create(Patient(code="P-7"))
     with qtbot.waitSignal(controller.changed_elsewhere, timeout=WAIT_MS):
         other.library.patients.create(Patient(code="P-8"))
 
 
-def test_what_was_recorded_is_handed_over_by_itself_and_trouble_is_said_once(
+def test_what_was_recorded_is_handed_over_by_itself_and_trouble_is_stated_once(
     qtbot: QtBot, controller: LibraryController, shared_place: Path, other: OpenedLibrary
 ) -> None:
     own = opened_of(controller)
     (line,) = own.library.sessions.list()
     elsewhere = shared_place.with_name("unmounted")
     shared_place.rename(elsewhere)
-    with qtbot.waitSignal(controller.refused, timeout=WAIT_MS) as said:
+    with qtbot.waitSignal(controller.refused, timeout=WAIT_MS) as stated:
         record(own, line.id, "walk 2")
-    what, then = said.args or ["", ""]
+    what, then = stated.args or ["", ""]
     assert what == "The place of the clinic's recordings is not there."
     assert ("Recordings made here stay on this computer and are transferred automatically as soon as possible") in then
     assert count_waiting(own) == 1
@@ -154,7 +154,7 @@ def test_without_the_server_a_station_opens_its_own_and_brings_it_home_later(
         patient = away.library.patients.create(Patient(code="DEMO-9"))
         visit = away.library.sessions.create(patient.id, Session(()))
         record(away, visit.id, "walk 1")
-        spy = _Heard(controller)
+        spy = _Received(controller)
         controller.lock()
         with qtbot.waitCallback(timeout=WAIT_MS) as unlocked:
             spy.unlock(controller, unlocked)
@@ -176,13 +176,13 @@ def test_without_the_server_a_station_opens_its_own_and_brings_it_home_later(
     assert other.library.patients.change(other.library.patients.get(patient.id), edited).details.height_m == 1.7
 
 
-class _Heard(QObject):
+class _Received(QObject):
     def __init__(self, controller: LibraryController) -> None:
         super().__init__()
         self.count = 0
-        controller.server_back.connect(self._on_heard)
+        controller.server_back.connect(self._on_received)
 
-    def _on_heard(self) -> None:
+    def _on_received(self) -> None:
         self.count += 1
 
     def unlock(self, controller: LibraryController, done: Callable[[], object]) -> None:

@@ -44,16 +44,16 @@ def samples(count: int = 300) -> ImuBlock:
 
 def record(opened: OpenedLibrary, session_id: UUID, name: str, *, has_row: bool = True, is_closed: bool = True) -> UUID:
     """A recording that was stopped; without a row the database did not answer while it was made."""
-    recording_id, told = uuid7(), Recording(name, RecordingKind.WALKING, name.replace(" ", "_"), {})
+    recording_id, reported = uuid7(), Recording(name, RecordingKind.WALKING, name.replace(" ", "_"), {})
     recordings = opened.library.recordings
     if has_row:
-        recordings.start(session_id, told, True, recording_id)
+        recordings.start(session_id, reported, True, recording_id)
     writer = JournalWriter.create(opened.recordings, recording_id, opened.data_key, room=ANY_ROOM)
     header, block = writer.header, samples()
     if has_row:
         recordings.add_journal(recording_id, StoredJournal(recording_id, 1, header.wrapped_key))
     else:
-        writer.mark(Belonging(session_id, told).text())
+        writer.mark(Belonging(session_id, reported).text())
     source = writer.source(SourceInfo("walker", "1", sensors=(SENSOR,), is_simulated=True), layout_of(block))
     writer.samples(source, 0, block, waits=True)
     summary = writer.stop()
@@ -69,7 +69,7 @@ def found(opened: OpenedLibrary, recording_id: UUID) -> StoredRecording:
 
 
 def read(opened: OpenedLibrary, recording_id: UUID) -> None:
-    """See that a recording can be read; where its sensor was worn nobody said."""
+    """See that a recording can be read; where its sensor was worn nobody stated."""
     recording_with_samples(opened, found(opened, recording_id), {})
 
 
@@ -117,7 +117,7 @@ def test_what_was_recorded_while_the_server_was_gone_is_handed_over_once(
     assert len(list(shared_place.iterdir())) == before + 1
 
 
-def test_killed_before_its_row_says_so_a_journal_is_not_put_twice(
+def test_killed_before_its_row_states_so_a_journal_is_not_put_twice(
     stations: Stations, session_id: UUID, shared_place: Path
 ) -> None:
     first, _ = stations
@@ -274,7 +274,7 @@ def test_two_stations_that_add_operators_at_once_lose_none(stations: Stations) -
     assert set(slots_of(stations[0].folder).codes) == {"hk", "ab", "x0", "x1", "x2", "y0", "y1", "y2"}
 
 
-def test_a_station_tells_no_password(moved: Station) -> None:
+def test_a_station_shows_no_password(moved: Station) -> None:
     station = replace(moved, database="postgresql://gait:hunter2@clinic.example/gait")
     assert "hunter2" not in repr(station)
     assert "hunter2" not in shown_address(station.database)
@@ -285,7 +285,7 @@ def test_the_file_that_names_the_server_is_its_owners_alone(moved: Station, fold
     assert (folder / "station.json").stat().st_mode & 0o077 == 0
 
 
-def test_a_damaged_station_file_is_said_to_be(moved: Station, folder: Path) -> None:
+def test_a_damaged_station_file_is_stated_to_be(moved: Station, folder: Path) -> None:
     (folder / "station.json").write_text("{")
     with pytest.raises(LibraryError, match="Connect to the clinic's library again"):
         station_of(folder)
@@ -317,12 +317,12 @@ def test_a_stations_login_works_and_cannot_touch_tables_or_audit(
     station.library.patients.change(patient, replace(patient.details, height_m=1.7))
     engine = postgres_engine(driver_url(address))
     database = Database(engine)
-    for said in ("UPDATE audit SET operator = 'x'", "DELETE FROM audit", "TRUNCATE audit", "DROP TABLE patients"):
+    for stated in ("UPDATE audit SET operator = 'x'", "DELETE FROM audit", "TRUNCATE audit", "DROP TABLE patients"):
         with (
             pytest.raises(LibraryError, match="The clinic's server does not permit this for this workstation"),
             database.writing() as session,
         ):
-            session.execute(text(said))
+            session.execute(text(stated))
     database.close()
 
 

@@ -1,6 +1,6 @@
 """A clinic's server in the network has to prove who it is, by a certificate of the clinic's own root.
 
-The PostgreSQL of the tests knows no TLS, so something stands before it that does: to what connects it is the server.
+The PostgreSQL of the tests knows no TLS, so something is before it that does: to what connects it is the server.
 """
 
 import datetime
@@ -82,7 +82,7 @@ class TlsFront:
         threading.Thread(target=self._listen, daemon=True).start()
 
     def cut_off(self) -> None:
-        """As when the server crashes: nobody says good-bye."""
+        """As when the server crashes: nobody states good-bye."""
         for one in self._open:
             with suppress(OSError):
                 one.shutdown(socket.SHUT_RDWR)
@@ -173,14 +173,14 @@ def test_a_server_without_tls_is_refused_over_the_network(connect: Connect) -> N
         answer_of(connect(NAME, "root"))
 
 
-def test_a_server_that_goes_away_amid_tls_is_not_said_to_be_another(connect: Connect, front: TlsFront) -> None:
+def test_a_server_that_goes_away_amid_tls_is_not_stated_to_be_another(connect: Connect, front: TlsFront) -> None:
     database = connect(NAME, "root").database_kept()
     try:
         with pytest.raises(LibraryFaultError, match="does not respond"), database.reading() as session:  # noqa: PT012 - it is cut off amid it
             session.scalar(text("SELECT 42"))
             front.cut_off()
             session.scalar(text("SELECT 43"))
-        with database.reading() as session:  # the connection that was lost is made anew
+        with database.reading() as session:  # the connection that was lost is made again
             assert session.scalar(text("SELECT 44")) == 44
     finally:
         database.close()

@@ -1,4 +1,4 @@
-"""The database file is sealed, locked, patient, and in trouble it says what to do."""
+"""The database file is sealed, locked, patient, and in trouble it states what to do."""
 
 import random
 import subprocess
@@ -47,7 +47,7 @@ def encrypted(file: Path) -> Iterator[Database]:
 
 @contextmanager
 def locked(file: Path) -> Iterator[Callable[[], None]]:
-    """Another process holds the write lock until it is told to let go."""
+    """Another process holds the write lock until it is given to let go."""
     with subprocess.Popen([sys.executable, "-c", HOLD, file], stdin=subprocess.PIPE, stdout=subprocess.PIPE) as holder:
         assert holder.stdin is not None
         assert holder.stdout is not None
@@ -136,7 +136,7 @@ def test_what_fails_midway_leaves_nothing(tables: Database) -> None:
     assert names(tables) == set()
 
 
-def test_whoever_holds_the_lock_for_too_long_is_told_of(encrypted: Database, file: Path) -> None:
+def test_whoever_holds_the_lock_for_too_long_is_reported_of(encrypted: Database, file: Path) -> None:
     with locked(file) as let_go:
         start = time.monotonic()
         with pytest.raises(LibraryBusyError):
@@ -184,7 +184,7 @@ def test_what_is_written_while_the_database_is_locked_waits_and_is_kept(file: Pa
     database.close()
 
 
-def test_a_full_disk_is_said_to_be_full_and_nothing_is_half_written(encrypted: Database) -> None:
+def test_a_full_disk_is_stated_to_be_full_and_nothing_is_half_written(encrypted: Database) -> None:
     with encrypted.reading() as session:
         pages = session.scalar(text("PRAGMA page_count"))
         session.execute(text(f"PRAGMA max_page_count = {pages}"))
@@ -206,7 +206,7 @@ def test_errors_do_not_quote_what_was_to_be_written(tables: Database, caplog: py
     assert tables.engine.hide_parameters
 
 
-def test_a_server_that_does_not_answer_is_said_not_to(tmp_path: Path) -> None:
+def test_a_server_that_does_not_answer_is_stated_not_to(tmp_path: Path) -> None:
     nowhere = Database(postgres_engine(f"postgresql+psycopg://gaitwright@/gaitwright?host={tmp_path}"))
     with pytest.raises(LibraryError, match="server does not respond"):
         names(nowhere)

@@ -1,4 +1,4 @@
-"""Keys tell when they were made and nothing else, and sort by it."""
+"""Keys report when they were made and nothing else, and sort by it."""
 
 from app.storage.database.ids import uuid7
 

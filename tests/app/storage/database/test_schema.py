@@ -1,4 +1,4 @@
-"""The chain of migrations makes the tables that the models tell of, on both databases."""
+"""The chain of migrations makes the tables that the models report of, on both databases."""
 
 import threading
 from pathlib import Path
@@ -38,7 +38,7 @@ def steps() -> list[str]:
     return [script.revision for script in ScriptDirectory.from_config(alembic_config()).walk_revisions()][::-1]
 
 
-def test_the_chain_has_no_branches_and_ends_where_the_code_says() -> None:
+def test_the_chain_has_no_branches_and_ends_where_the_code_states() -> None:
     assert ScriptDirectory.from_config(alembic_config()).get_heads() == [NEWEST]
     assert steps() == sorted(steps())
 

@@ -56,7 +56,7 @@ def test_every_flipped_bit_in_the_log_is_noticed(tmp_path: Path) -> None:
     assert unnoticed == []
 
 
-def test_a_library_says_that_its_end_is_lost_and_the_audit_says_so_too(tmp_path: Path) -> None:
+def test_a_library_states_that_its_end_is_lost_and_the_audit_states_so_too(tmp_path: Path) -> None:
     folder = crashed(tmp_path, 10)
     whole = (folder / LOG).read_bytes()
     (folder / LOG).write_bytes(whole[:-2000] + bytes([whole[-2000] ^ 1]) + whole[-1999:])

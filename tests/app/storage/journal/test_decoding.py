@@ -166,7 +166,7 @@ def test_received_lost_doubled_and_late_samples_are_counted(tmp_path: Path) -> N
     np.testing.assert_array_equal(got.sensors[NAMES[0]].block.time_s, np.array(expected) / RATE_HZ)
 
 
-def test_losses_are_told_by_the_usual_interval_where_no_rate_is_told(tmp_path: Path) -> None:
+def test_losses_are_reported_by_the_usual_interval_where_no_rate_is_reported(tmp_path: Path) -> None:
     with JournalWriter.create(tmp_path, ID, KEY, room=NO_ROOM_ASKED) as journal:
         walker = journal.source(WALKER, SampleLayout(LAYOUT.columns))
         for number in [*range(50), *range(57, 100)]:
@@ -304,7 +304,7 @@ def test_a_resumed_recording_has_one_gap_of_the_time_between(
     with clock.create(tmp_path) as journal:
         record_with(journal, clock, clock.host_ns, 0.5)
     got = decoded(tmp_path)
-    # after a restart only the wall clock tells, and one that was set back tells nothing but that it went on
+    # after a restart only the wall clock reports, and one that was set back gives nothing but that it went on
     between_s = max(60.0 + set_by_s, 0.0) if is_restarted else 60.0
     sensor = got.sensors[NAMES[0]]
     if between_s:
@@ -318,7 +318,7 @@ def test_a_resumed_recording_has_one_gap_of_the_time_between(
 
 def test_sensors_that_nobody_wore_are_left_out_of_the_recording(tmp_path: Path) -> None:
     record_some(tmp_path, KEY, rounds=3)
-    told = Recording("walk 1", RecordingKind.WALKING, "walk_1", {}, condition="barefoot")
-    recording = decoded(tmp_path).recording(told, {NAMES[0]: Site.LEFT_THIGH, "absent": Site.LEFT_FOOT})
+    reported = Recording("walk 1", RecordingKind.WALKING, "walk_1", {}, condition="barefoot")
+    recording = decoded(tmp_path).recording(reported, {NAMES[0]: Site.LEFT_THIGH, "absent": Site.LEFT_FOOT})
     assert list(recording.imu) == [Site.LEFT_THIGH]
     assert recording.condition == "barefoot"

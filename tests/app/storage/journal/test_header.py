@@ -1,4 +1,4 @@
-"""A journal says whose it is and nothing else, and its key opens it or nothing does."""
+"""A journal states whose it is and nothing else, and its key opens it or nothing does."""
 
 import os
 from dataclasses import replace
@@ -73,7 +73,7 @@ def test_what_is_no_journal_is_refused(tmp_path: Path, content: bytes) -> None:
         read_header(tmp_path / "a.journal")
 
 
-def test_a_later_format_is_told() -> None:
+def test_a_later_format_is_reported() -> None:
     content = bytearray(HEADER.packed())
     content[8] = 2
     with pytest.raises(JournalRefusedError, match="format 2"):

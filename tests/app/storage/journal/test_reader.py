@@ -1,4 +1,4 @@
-"""A journal is read in bounded memory, over damage and to the end, and the reader says what it met."""
+"""A journal is read in bounded memory, over damage and to the end, and the reader states what it met."""
 
 import tracemalloc
 from dataclasses import replace
@@ -78,7 +78,7 @@ def with_checksum(content: bytearray, header: JournalHeader) -> memoryview:
 
 
 @pytest.mark.parametrize("key", [KEY, None], ids=["sealed", "open"])
-def test_what_follows_damage_is_found_and_the_damage_is_told(tmp_path: Path, key: bytes | None) -> None:
+def test_what_follows_damage_is_found_and_the_damage_is_reported(tmp_path: Path, key: bytes | None) -> None:
     original = Original.recorded(tmp_path, key)
     begin, end = original.ends[10], original.ends[13]
     content = bytearray(original.content)
@@ -92,7 +92,7 @@ def test_what_follows_damage_is_found_and_the_damage_is_told(tmp_path: Path, key
     assert not report.is_whole
 
 
-def test_a_torn_end_is_told_and_no_footer_is_claimed(tmp_path: Path) -> None:
+def test_a_torn_end_is_reported_and_no_footer_is_claimed(tmp_path: Path) -> None:
     original = Original.recorded(tmp_path, KEY)
     (tmp_path / "torn").write_bytes(original.content[: original.ends[-2] + 9])
     records, damages, report = read_all(tmp_path / "torn", KEY)
@@ -110,7 +110,7 @@ def test_a_record_taken_out_cleanly_is_missed(tmp_path: Path) -> None:
     assert not report.is_whole
 
 
-def test_nothing_counts_that_stands_behind_the_footer(tmp_path: Path) -> None:
+def test_nothing_counts_that_is_behind_the_footer(tmp_path: Path) -> None:
     path = record_some(tmp_path, KEY, rounds=1).path
     header = JournalReader(path, KEY).header
     key = header.key(KEY, "a")

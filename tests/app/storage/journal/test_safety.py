@@ -76,7 +76,7 @@ def test_ten_thousand_flipped_bits_are_noticed(tmp_path: Path, key: bytes | None
 
 
 @needs_posix
-def test_a_full_disk_closes_the_journal_and_is_said() -> None:
+def test_a_full_disk_closes_the_journal_and_is_stated() -> None:
     fills = fill_often(2, seed=6)
     assert fills.faults == []
 
@@ -86,4 +86,4 @@ def test_a_full_disk_closes_the_journal_and_is_said() -> None:
 def test_twenty_full_disks_close_their_journals() -> None:
     fills = fill_often(20, seed=7)
     assert fills.faults == []
-    assert len(fills.said_ms) == 20
+    assert len(fills.stated_ms) == 20

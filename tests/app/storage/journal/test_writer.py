@@ -1,4 +1,4 @@
-"""What is put in is on the disk within moments, whatever the disk does, and what is not is counted and said."""
+"""What is put in is on the disk within moments, whatever the disk does, and what is not is counted and stated."""
 
 import errno
 import itertools
@@ -10,7 +10,7 @@ from pathlib import Path
 
 import pytest
 
-from app.storage.journal.disk import TOLD, JournalFile, Room, Trouble
+from app.storage.journal.disk import REPORTED, JournalFile, Room, Trouble
 from app.storage.journal.header import JournalRefusedError, find_segments
 from app.storage.journal.payloads import Footer, SourceEntry
 from app.storage.journal.records import MAX_PAYLOAD, RecordKind
@@ -42,7 +42,7 @@ def wait_for(is_so: Callable[[], bool]) -> None:
 
 
 class Disk:
-    """Stands in the way of every journal's file: holds it up, or fails it."""
+    """Is in the way of every journal's file: holds it up, or fails it."""
 
     def __init__(self, monkeypatch: pytest.MonkeyPatch) -> None:
         self.error: int | None = None
@@ -123,8 +123,8 @@ def test_resuming_opens_the_next_segment(tmp_path: Path) -> None:
 
 
 def test_a_disk_that_stalls_holds_up_nobody_and_costs_nothing(tmp_path: Path, disk: Disk) -> None:
-    said: list[Trouble] = []
-    with JournalWriter.create(tmp_path, ID, KEY, room=NO_ROOM_ASKED, on_trouble=said.append) as journal:
+    stated: list[Trouble] = []
+    with JournalWriter.create(tmp_path, ID, KEY, room=NO_ROOM_ASKED, on_trouble=stated.append) as journal:
         source = journal.source(LINES)
         wait_for(lambda: journal.status.records == 1)
         disk.answers.clear()
@@ -136,7 +136,7 @@ def test_a_disk_that_stalls_holds_up_nobody_and_costs_nothing(tmp_path: Path, di
         assert slowest_s < 1.0  # the stall itself lasts until this test ends it
         wait_for(lambda: journal.status.stuck_s > SLOW_S)
         journal.received(source, line(2000))
-        assert said == [Trouble.DISK_SLOW]
+        assert stated == [Trouble.DISK_SLOW]
         disk.answers.set()
     records, _, report = read_all(journal.path, KEY)
     assert [r.payload[2:] for r in records if r.kind is RecordKind.BYTES] == [line(k) for k in range(2001)]
@@ -148,10 +148,10 @@ def test_a_process_that_stood_still_blames_no_disk(
     tmp_path: Path, disk: Disk, awake_s: float, expected: list[Trouble]
 ) -> None:
     """What counts is for how long the process ran while the disk did not answer."""
-    said: list[Trouble] = []
+    stated: list[Trouble] = []
     clock_s = [0.0]
     with JournalWriter.create(
-        tmp_path, ID, KEY, room=NO_ROOM_ASKED, on_trouble=said.append, awake_s=lambda: clock_s[0]
+        tmp_path, ID, KEY, room=NO_ROOM_ASKED, on_trouble=stated.append, awake_s=lambda: clock_s[0]
     ) as journal:
         source = journal.source(LINES)
         wait_for(lambda: journal.status.records == 1)
@@ -159,11 +159,11 @@ def test_a_process_that_stood_still_blames_no_disk(
         journal.received(source, line(0))
         clock_s[0] = awake_s
         journal.received(source, line(1))
-        assert said == expected
+        assert stated == expected
         disk.answers.set()
 
 
-def test_status_tells_up_to_when_records_are_written_and_synced(tmp_path: Path, disk: Disk) -> None:
+def test_status_shows_up_to_when_records_are_written_and_synced(tmp_path: Path, disk: Disk) -> None:
     now_ns = 5_000_000_000
     with JournalWriter.create(tmp_path, ID, KEY, room=NO_ROOM_ASKED, now_ns=lambda: now_ns) as journal:
         source = journal.source(LINES)
@@ -197,10 +197,10 @@ def test_ten_seconds_of_six_sensors_fit_into_the_queue(tmp_path: Path, disk: Dis
     assert journal.stop().dropped_records == 0
 
 
-def test_what_a_stalled_disk_has_no_room_for_is_dropped_counted_and_said(tmp_path: Path, disk: Disk) -> None:
-    said: list[Trouble] = []
+def test_what_a_stalled_disk_has_no_room_for_is_dropped_counted_and_stated(tmp_path: Path, disk: Disk) -> None:
+    stated: list[Trouble] = []
     with JournalWriter.create(
-        tmp_path, ID, KEY, room=NO_ROOM_ASKED, on_trouble=said.append, queue_bytes=100_000
+        tmp_path, ID, KEY, room=NO_ROOM_ASKED, on_trouble=stated.append, queue_bytes=100_000
     ) as journal:
         source, other = journal.source(LINES), journal.source(LINES)
         disk.answers.clear()
@@ -208,15 +208,15 @@ def test_what_a_stalled_disk_has_no_room_for_is_dropped_counted_and_said(tmp_pat
         dropped = taken.count(False)
         assert dropped > 40
         assert taken == [True] * (150 - dropped) + [False] * dropped
-        assert said == [Trouble.DROPPED]
+        assert stated == [Trouble.DROPPED]
         assert journal.mark("still here")
         disk.answers.set()
         wait_for(lambda: journal.status.stuck_s == 0.0)
         assert journal.received(source, b"after")
         assert journal.received(other, b"nothing dropped here")
     records, _, report = read_all(journal.path, KEY)
-    told = [SourceEntry.parsed(record.payload) for record in records if record.kind is RecordKind.SOURCE]
-    assert [(entry.number, entry.dropped_records, entry.dropped_bytes) for entry in told] == [
+    reported = [SourceEntry.parsed(record.payload) for record in records if record.kind is RecordKind.SOURCE]
+    assert [(entry.number, entry.dropped_records, entry.dropped_bytes) for entry in reported] == [
         (0, 0, 0),
         (1, 0, 0),
         (0, dropped, dropped * 1002),
@@ -227,7 +227,7 @@ def test_what_a_stalled_disk_has_no_room_for_is_dropped_counted_and_said(tmp_pat
         RecordKind.BYTES,
         RecordKind.BYTES,
         RecordKind.FOOTER,
-    ]  # told anew right before it goes on
+    ]  # reported again right before it goes on
     assert report.footer == Footer("stopped", dropped, dropped * 1002)
     assert journal.stop().dropped_records == dropped
 
@@ -236,12 +236,12 @@ def test_what_a_stalled_disk_has_no_room_for_is_dropped_counted_and_said(tmp_pat
     ("error", "trouble"),
     [(errno.EIO, Trouble.DISK_GONE), (errno.ENODEV, Trouble.DISK_GONE), (errno.ENOSPC, Trouble.DISK_FULL)],
 )
-def test_a_disk_that_fails_ends_the_recording_at_its_last_batch_and_says_so(
+def test_a_disk_that_fails_ends_the_recording_at_its_last_batch_and_states_so(
     tmp_path: Path, disk: Disk, error: int, trouble: Trouble
 ) -> None:
-    said: list[tuple[Trouble, float]] = []
+    stated: list[tuple[Trouble, float]] = []
     journal = JournalWriter.create(
-        tmp_path, ID, KEY, room=NO_ROOM_ASKED, on_trouble=lambda one: said.append((one, time.monotonic()))
+        tmp_path, ID, KEY, room=NO_ROOM_ASKED, on_trouble=lambda one: stated.append((one, time.monotonic()))
     )
     source = journal.source(LINES)
     assert journal.received(source, line(0))
@@ -250,8 +250,8 @@ def test_a_disk_that_fails_ends_the_recording_at_its_last_batch_and_says_so(
     failing_s = time.monotonic()
     journal.received(source, line(1))
     wait_for(lambda: journal.status.state is State.BROKEN)
-    assert [one for one, _ in said] == [trouble]
-    assert said[0][1] - failing_s < 1.0
+    assert [one for one, _ in stated] == [trouble]
+    assert stated[0][1] - failing_s < 1.0
     assert not journal.received(source, line(2))
     assert not journal.mark("too late")
     summary = journal.stop()
@@ -319,21 +319,21 @@ def test_a_recording_does_not_begin_without_room(tmp_path: Path, monkeypatch: py
 
 
 @pytest.mark.endurance
-def test_five_minutes_before_the_end_it_is_said_and_before_the_disk_is_full_it_is_closed(
+def test_five_minutes_before_the_end_it_is_stated_and_before_the_disk_is_full_it_is_closed(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    room, left_s, said = Room(), 400.0, list[Trouble]()
+    room, left_s, stated = Room(), 400.0, list[Trouble]()
     monkeypatch.setattr(JournalFile, "free_bytes", lambda file: room.kept_bytes + left_s * 1000)
-    with JournalWriter.create(tmp_path, ID, None, bytes_per_s=1000, on_trouble=said.append) as journal:
+    with JournalWriter.create(tmp_path, ID, None, bytes_per_s=1000, on_trouble=stated.append) as journal:
         source = journal.source(LINES)
         journal.received(source, line(0))
         wait_for(lambda: journal.status.left_s == 400.0)
-        assert said == []
+        assert stated == []
         left_s = 299.0
-        wait_for(lambda: said == [Trouble.LITTLE_ROOM])
+        wait_for(lambda: stated == [Trouble.LITTLE_ROOM])
         left_s = 0.0
         wait_for(lambda: journal.status.state is State.CLOSED)
-        assert said == [Trouble.LITTLE_ROOM, Trouble.NO_ROOM]
+        assert stated == [Trouble.LITTLE_ROOM, Trouble.NO_ROOM]
         assert not journal.received(source, line(1))
     _, _, report = read_all(journal.path, None)
     assert report.is_whole
@@ -413,7 +413,7 @@ def test_samples_that_a_source_never_promised_are_refused_at_once(tmp_path: Path
 
 
 def test_every_trouble_has_its_words() -> None:
-    assert set(TOLD) == set(Trouble)
+    assert set(REPORTED) == set(Trouble)
 
 
 def test_a_segment_that_another_program_writes_is_left_alone(tmp_path: Path) -> None:

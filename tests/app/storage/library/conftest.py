@@ -70,8 +70,8 @@ def samples(count: int, seed: int = 0) -> ImuBlock:
 def record(opened: OpenedLibrary, session_id: UUID) -> Record:
     """Make a recording of 100 Hz: stopped as it should be, or as a kill leaves it.
 
-    `has_row` False: the database did not answer. `is_told` False: killed before the row knew of the journal.
-    `says_session`: the journal itself tells that it is of this one.
+    `has_row` False: the database did not answer. `is_reported` False: killed before the row knew of the journal.
+    `states_session`: the journal itself reports that it is of this one.
     """
 
     def record(
@@ -80,21 +80,21 @@ def record(opened: OpenedLibrary, session_id: UUID) -> Record:
         *,
         is_stopped: bool = True,
         has_row: bool = True,
-        is_told: bool = True,
-        says_session: UUID | None = None,
+        is_reported: bool = True,
+        states_session: UUID | None = None,
         is_simulated: bool = False,
     ) -> StoredRecording:
         library, recording_id = opened.library, uuid7()
-        told = Recording(name, RecordingKind.WALKING, name.replace(" ", "_"), {})
+        reported = Recording(name, RecordingKind.WALKING, name.replace(" ", "_"), {})
         if has_row:
-            library.recordings.start(session_id, told, False, recording_id)
+            library.recordings.start(session_id, reported, False, recording_id)
         writer = JournalWriter.create(opened.recordings, recording_id, opened.data_key, room=ANY_ROOM)
         header = writer.header
         journal = StoredJournal(header.recording_id, header.segment, header.wrapped_key)
-        if has_row and is_told:
+        if has_row and is_reported:
             library.recordings.add_journal(recording_id, journal)
-        if says_session is not None:
-            writer.mark(Belonging(says_session, replace(told, condition="barefoot")).text())
+        if states_session is not None:
+            writer.mark(Belonging(states_session, replace(reported, condition="barefoot")).text())
         block = samples(count)
         source = writer.source(
             SourceInfo("walker", "1", sensors=(SENSOR,), is_simulated=is_simulated), layout_of(block)
@@ -107,6 +107,8 @@ def record(opened: OpenedLibrary, session_id: UUID) -> Record:
         with summary.path.open("r+b") as file:
             file.truncate(summary.bytes - footer)
         found = library.recordings.find(recording_id)
-        return found or StoredRecording(recording_id, 0, session_id, told, RecordingState.OPEN, False, None, (journal,))
+        return found or StoredRecording(
+            recording_id, 0, session_id, reported, RecordingState.OPEN, False, None, (journal,)
+        )
 
     return record

@@ -60,7 +60,7 @@ def test_a_restored_library_opens_with_the_same_passphrase_and_holds_the_same(
             assert list(JournalReader(restored.recordings / journal.file, key).records())
 
 
-def test_a_backup_that_is_copied_to_a_librarys_place_is_that_library_as_the_manual_says(
+def test_a_backup_that_is_copied_to_a_librarys_place_is_that_library_as_the_manual_states(
     opened: OpenedLibrary, session_id: UUID, record: Record, tmp_path: Path
 ) -> None:
     record("walk 1")
@@ -109,11 +109,11 @@ def test_a_backup_that_is_stopped_leaves_nothing(
     opened: OpenedLibrary, record: Record, tmp_path: Path, reports: int
 ) -> None:
     record("walk 1", 20_000)
-    told: list[float] = []
+    reported: list[float] = []
 
     def stop(share: float, _: str) -> None:
-        told.append(share)
-        if len(told) == reports:
+        reported.append(share)
+        if len(reported) == reports:
             raise StoppedError
 
     with pytest.raises(StoppedError):
@@ -143,7 +143,7 @@ def flip(path: Path, offset: int) -> None:
         file.write(bytes([byte ^ 1]))
 
 
-def test_what_the_library_lacks_already_is_told_and_the_rest_is_kept(
+def test_what_the_library_lacks_already_is_reported_and_the_rest_is_kept(
     opened: OpenedLibrary, record: Record, tmp_path: Path
 ) -> None:
     files = [record(f"walk {k}").journals[0].file for k in (1, 2, 3)]
@@ -187,19 +187,19 @@ def test_nothing_is_restored_over_a_library_nor_with_another_key_nor_by_a_strang
 
 def test_a_list_cannot_lead_out_of_its_backup(opened: OpenedLibrary, tmp_path: Path) -> None:
     folder = back_up(opened, tmp_path / "backups").folder
-    told = json.loads((folder / LIST).read_text())
+    reported = json.loads((folder / LIST).read_text())
     (tmp_path / "elsewhere").write_text("mine")
-    told["files"] |= {"../../elsewhere": "0" * 64, "recordings/../../elsewhere": "0" * 64, str(tmp_path): "0" * 64}
-    (folder / LIST).write_text(json.dumps(told))
+    reported["files"] |= {"../../elsewhere": "0" * 64, "recordings/../../elsewhere": "0" * 64, str(tmp_path): "0" * 64}
+    (folder / LIST).write_text(json.dumps(reported))
     assert restore(folder, tmp_path / "restored", opened.data_key, "hk") == ()
     assert not (tmp_path / "restored" / "elsewhere").exists()
-    del told["files"][KEYS]
-    (folder / LIST).write_text(json.dumps(told))
+    del reported["files"][KEYS]
+    (folder / LIST).write_text(json.dumps(reported))
     with pytest.raises(LibraryError, match="This version cannot read this folder as a backup"):
         restore(folder, tmp_path / "again", opened.data_key, "hk")
 
 
-def test_a_backup_stands_outside_of_its_library_and_needs_room(
+def test_a_backup_is_outside_of_its_library_and_needs_room(
     opened: OpenedLibrary, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     with pytest.raises(LibraryError, match="A backup cannot be stored inside its own library"):
@@ -293,7 +293,7 @@ def test_a_restore_is_not_held_up_by_what_a_kill_left_where_an_open_file_does_no
     assert not left.exists()
 
 
-def test_a_disk_that_refuses_the_copy_of_the_database_is_said_and_nothing_is_left(
+def test_a_disk_that_refuses_the_copy_of_the_database_is_stated_and_nothing_is_left(
     opened: OpenedLibrary, tmp_path: Path
 ) -> None:
     def refuse(share: float, _what: str) -> None:

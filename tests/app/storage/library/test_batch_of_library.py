@@ -30,8 +30,8 @@ RunBatch = Callable[..., int]
 def visits(opened: OpenedLibrary) -> list[UUID]:
     """Two sessions of one patient."""
     patient = Patient(code="MUSTER-7", birth_year=1980)
-    told = [replace(swinging_session(seed, patient), notes="Anna", operator="hk") for seed in (1, 2)]
-    return [import_session(opened, one, silent, room=ANY_ROOM).session_id for one in told]
+    reported = [replace(swinging_session(seed, patient), notes="Anna", operator="hk") for seed in (1, 2)]
+    return [import_session(opened, one, silent, room=ANY_ROOM).session_id for one in reported]
 
 
 @pytest.fixture
@@ -65,7 +65,7 @@ def test_each_session_of_the_library_is_analysed_as_analyse_does_it(
 
 
 @pytest.mark.endurance
-def test_the_table_tells_pseudonyms_and_shifted_days_and_nobodys_name(
+def test_the_table_shows_pseudonyms_and_shifted_days_and_nobodys_name(
     opened: OpenedLibrary, visits: list[UUID], run_batch: RunBatch, tmp_path: Path
 ) -> None:
     assert run_batch() == 0
@@ -77,7 +77,7 @@ def test_the_table_tells_pseudonyms_and_shifted_days_and_nobodys_name(
     assert {row["started"] for row in rows} == {pseudonyms.shifted(patient_id, "2026-05-04T10:00:00")[:10]}
     assert {row["session"] for row in rows} == {str(visit) for visit in visits}
     assert {row["age_years"] for row in rows} == {"46"}
-    assert [said for said in ("MUSTER", "Anna") if said in written] == []
+    assert [stated for stated in ("MUSTER", "Anna") if stated in written] == []
     assert not any("1980" in row.values() for row in rows)  # as a cell: digits of figures and ids may be the same
 
 

@@ -23,7 +23,7 @@ def silent(_share: float, _what: str) -> None:
 
 
 @pytest.fixture(scope="module")
-def told() -> Session:
+def reported() -> Session:
     """A walk of one leg, short, with a condition."""
     sites = (Site.LEFT_THIGH, Site.LEFT_SHANK, Site.LEFT_FOOT)
     played = (Standing(duration_s=2.0), Walk(strides=8))
@@ -33,8 +33,8 @@ def told() -> Session:
 
 
 @pytest.fixture
-def visit(opened: OpenedLibrary, told: Session) -> StoredSession:
-    return opened.library.sessions.get(import_session(opened, told, silent).session_id)
+def visit(opened: OpenedLibrary, reported: Session) -> StoredSession:
+    return opened.library.sessions.get(import_session(opened, reported, silent).session_id)
 
 
 def corrected(opened: OpenedLibrary, visit: StoredSession, change: Callable[[Session], Session]) -> None:
@@ -67,11 +67,11 @@ def swapped(opened: OpenedLibrary, visit: StoredSession) -> None:
 
 
 def turned(opened: OpenedLibrary, visit: StoredSession) -> None:
-    corrected(opened, visit, lambda told: replace(told, turned_sign={Joint.LEFT_KNEE: -1}))
+    corrected(opened, visit, lambda reported: replace(reported, turned_sign={Joint.LEFT_KNEE: -1}))
 
 
 def zeroed(opened: OpenedLibrary, visit: StoredSession) -> None:
-    corrected(opened, visit, lambda told: replace(told, zero_rad={Joint.LEFT_KNEE: 0.1}))
+    corrected(opened, visit, lambda reported: replace(reported, zero_rad={Joint.LEFT_KNEE: 0.1}))
 
 
 def without_ankle(opened: OpenedLibrary, visit: StoredSession) -> None:
@@ -95,7 +95,7 @@ def test_what_was_found_no_longer_holds_once_something_is_put_right(
     assert current_course_key(opened.library.sessions.get(visit.id)) != before
 
 
-def test_what_is_said_to_people_leaves_it_as_it_is(opened: OpenedLibrary, visit: StoredSession) -> None:
+def test_what_is_stated_to_people_leaves_it_as_it_is(opened: OpenedLibrary, visit: StoredSession) -> None:
     before = current_course_key(visit)
     opened.library.sessions.change(visit, replace(visit.details, notes="walked well"), comment="for the prosthetist")
     walk = visit.recordings[1]

@@ -46,7 +46,7 @@ def same_bits(one: NDArray[Any] | None, other: NDArray[Any] | None) -> bool:
 
 
 def assert_same(one: Session, other: Session) -> None:
-    """Everything but the findings, which reading makes anew."""
+    """Everything but the findings, which reading makes again."""
     bare = [replace(session, recordings=(), findings=()) for session in (one, other)]
     assert bare[0] == bare[1]
     assert len(one.recordings) == len(other.recordings)
@@ -223,8 +223,8 @@ def named(session: Session, name: str) -> Session:
             )
             for site, block in recording.imu.items()
         }
-        said = replace(recording, name=f"{name} {number}", folder=f"{name}_{number}", note=name, started="2026-11-20")
-        recordings.append(replace(said, imu=imu, unknown=odd))
+        stated = replace(recording, name=f"{name} {number}", folder=f"{name}_{number}", note=name, started="2026-11-20")
+        recordings.append(replace(stated, imu=imu, unknown=odd))
     return replace(
         session,
         recordings=tuple(recordings),
@@ -258,7 +258,7 @@ def small(session: Session) -> Session:
 
 
 @pytest.mark.endurance
-def test_an_export_says_no_name_unless_it_is_asked_to(opened: OpenedLibrary, walked: Session, tmp_path: Path) -> None:
+def test_an_export_states_no_name_unless_it_is_asked_to(opened: OpenedLibrary, walked: Session, tmp_path: Path) -> None:
     pseudonyms = set()
     for number, name in enumerate(NAMES[:8]):
         imported = import_session(opened, named(small(walked), name), silent, room=ANY_ROOM)
@@ -278,9 +278,9 @@ def test_an_export_says_no_name_unless_it_is_asked_to(opened: OpenedLibrary, wal
 def test_of_200_names_none_passes_the_pseudonyms(walked: Session) -> None:
     pseudonyms, patient_id = Pseudonyms(bytes(32)), UUID(int=1)
     for name in NAMES:
-        said = repr(pseudonyms.session(patient_id, named(small(walked), name)))
-        assert name not in said
-        assert "2026-11-20" not in said
+        stated = repr(pseudonyms.session(patient_id, named(small(walked), name)))
+        assert name not in stated
+        assert "2026-11-20" not in stated
 
 
 def test_a_pseudonym_and_a_shift_are_a_patients_own_and_stay() -> None:
@@ -296,16 +296,20 @@ def test_a_pseudonym_and_a_shift_are_a_patients_own_and_stay() -> None:
 
 
 def test_samples_and_clinical_facts_pass_the_pseudonyms(walked: Session) -> None:
-    told = Pseudonyms(bytes(32)).session(UUID(int=1), walked, [Typed.CONDITIONS])
+    reported = Pseudonyms(bytes(32)).session(UUID(int=1), walked, [Typed.CONDITIONS])
     age = {AGE: age_in_words(walked)} if age_in_words(walked) else {}
-    without = replace(walked.patient, code=told.patient.code, birth_year=None, device="", aids="", unknown=age)
-    assert told.patient == without
-    assert (told.zero_rad, told.turned_sign, told.is_simulated) == (walked.zero_rad, walked.turned_sign, True)
-    assert told.patient.code.startswith("DEMO-")
-    for before, after in zip(walked.recordings, told.recordings, strict=True):
+    without = replace(walked.patient, code=reported.patient.code, birth_year=None, device="", aids="", unknown=age)
+    assert reported.patient == without
+    assert (reported.zero_rad, reported.turned_sign, reported.is_simulated) == (
+        walked.zero_rad,
+        walked.turned_sign,
+        True,
+    )
+    assert reported.patient.code.startswith("DEMO-")
+    for before, after in zip(walked.recordings, reported.recordings, strict=True):
         assert (before.kind, before.condition, before.is_kept) == (after.kind, after.condition, after.is_kept)
         assert all(same_bits(before.imu[site].gyr_rad_s, after.imu[site].gyr_rad_s) for site in before.imu)
-    worn = [{site: block.sensor for site, block in recording.imu.items()} for recording in told.recordings]
+    worn = [{site: block.sensor for site, block in recording.imu.items()} for recording in reported.recordings]
     assert len(set(worn[0].values())) == 6
     assert worn[0] == worn[1] == worn[2]  # the same sensor is still known as the same
 
@@ -343,16 +347,18 @@ def test_a_known_patient_stays_as_the_library_knows_it(opened: OpenedLibrary, wa
 
 
 @pytest.mark.endurance
-def test_goals_come_with_a_new_patient_and_go_out_again_and_others_are_told_of(
+def test_goals_come_with_a_new_patient_and_go_out_again_and_others_are_reported_of(
     opened: OpenedLibrary, walked: Session, tmp_path: Path
 ) -> None:
     goal = Goal("speed_m_s", GoalOf.WALK, 1.2, datetime.date(2026, 1, 5), "H. Keller", note="bus")
-    told = replace(small(walked), patient=replace(walked.patient, goals=(goal,)))
-    first = import_session(opened, told, silent, room=ANY_ROOM)
+    reported = replace(small(walked), patient=replace(walked.patient, goals=(goal,)))
+    first = import_session(opened, reported, silent, room=ANY_ROOM)
     assert first.patient.details.goals == (goal,)
-    assert import_session(opened, told, silent, room=ANY_ROOM).differing == ()
+    assert import_session(opened, reported, silent, room=ANY_ROOM).differing == ()
     other = replace(goal, value=1.4)
-    second = import_session(opened, replace(told, patient=replace(told.patient, goals=(other,))), silent, room=ANY_ROOM)
+    second = import_session(
+        opened, replace(reported, patient=replace(reported.patient, goals=(other,))), silent, room=ANY_ROOM
+    )
     assert second.differing == ("goals",)
     assert second.patient.details.goals == (goal,)
     for name, is_identified in (("whole", True), ("nameless", False)):
@@ -362,7 +368,7 @@ def test_goals_come_with_a_new_patient_and_go_out_again_and_others_are_told_of(
     assert (nameless.key, nameless.value, nameless.by, nameless.note) == (goal.key, 1.2, "", "")
 
 
-def test_a_destroyed_recording_is_not_exported_and_a_missing_file_is_said(
+def test_a_destroyed_recording_is_not_exported_and_a_missing_file_is_stated(
     opened: OpenedLibrary, walked: Session, tmp_path: Path
 ) -> None:
     imported = import_session(opened, small(walked), silent, room=ANY_ROOM)
@@ -378,7 +384,7 @@ def test_a_destroyed_recording_is_not_exported_and_a_missing_file_is_said(
     assert states == [RecordingState.DISCARDED, RecordingState.CLOSED, RecordingState.CLOSED]
 
 
-def test_what_happened_to_a_recordings_file_is_told(opened: OpenedLibrary, walked: Session) -> None:
+def test_what_happened_to_a_recordings_file_is_reported(opened: OpenedLibrary, walked: Session) -> None:
     imported = import_session(opened, small(walked), silent, room=ANY_ROOM)
     visit = opened.library.sessions.get(imported.session_id)
     assert session_with_samples(opened, visit, {}, silent).findings == ()

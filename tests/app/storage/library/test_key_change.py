@@ -158,11 +158,11 @@ def test_a_key_is_not_changed_while_a_recording_waits_to_come_home(
     """Its journal has the old key, and would open no more; once it is in the library it gets the new one."""
     monkeypatch.setattr("app.storage.root.platformdirs.user_data_path", lambda *_, **__: tmp_path / "data")
     opened.folder.rename(tmp_path / "renamed")
-    told = Recording("walk 1", RecordingKind.WALKING, "walk_1", {})
+    reported = Recording("walk 1", RecordingKind.WALKING, "walk_1", {})
     with JournalWriter.create(
         opened.recordings, uuid7(), opened.data_key, room=ANY_ROOM, shelter=opened.shelter
     ) as writer:
-        writer.mark(Belonging(session_id, told).text())
+        writer.mark(Belonging(session_id, reported).text())
     with pytest.raises(LibraryGoneError):
         change_data_key(opened, ["hk"], silent)
     (tmp_path / "renamed").rename(opened.folder)
@@ -176,7 +176,7 @@ def test_a_key_is_not_changed_while_a_recording_waits_to_come_home(
     bring_home(opened)
     (home,) = find_interrupted(opened)
     adopt_home(opened, home, silent)
-    opened.shelter.made()  # that a folder was left over stands in nobody's way
+    opened.shelter.made()  # that a folder was left over is in nobody's way
     change_data_key(opened, ["hk"], silent)
     with open_library(opened.folder, PASSPHRASE) as again:
         assert samples_of(again)
@@ -210,7 +210,7 @@ def test_slots_of_the_first_format_open_and_become_new_ones(opened: OpenedLibrar
     recovery = first_format(opened.data_key, "recovery", "x" * 20)
     path.write_text(json.dumps({"format": "gaitwright-keys/1", "slots": [*old, recovery]}))
     with pytest.raises(KeyRefusedError, match="Log in with the passphrase once"):
-        slots.sealed_anew(opened.data_key, DataKey(bytes(32)), ["hk", "ab"])
+        slots.sealed_again(opened.data_key, DataKey(bytes(32)), ["hk", "ab"])
     assert slots.open("hk", PASSPHRASE) == opened.data_key
     assert slots.is_recovery_key_confirmed
     changed = change_data_key(opened, ["hk", "ab"], silent)

@@ -42,7 +42,7 @@ def silent(_share: float, _what: str) -> None:
     """Report to nobody."""
 
 
-def test_recover_closes_what_was_interrupted_and_says_so(
+def test_recover_closes_what_was_interrupted_and_states_so(
     opened: OpenedLibrary, record: Record, session_id: UUID, key: list[str], capsys: pytest.CaptureFixture[str]
 ) -> None:
     record("walk 1")
@@ -60,7 +60,7 @@ def test_recover_closes_what_was_interrupted_and_says_so(
     assert [one.stored.details.name for one in find_interrupted(opened) if one.stored] == ["walk 3"]
 
 
-def test_recover_says_when_there_is_nothing_to_do(
+def test_recover_states_when_there_is_nothing_to_do(
     opened: OpenedLibrary, key: list[str], capsys: pytest.CaptureFixture[str]
 ) -> None:
     assert cli.main(["recover", str(opened.folder), *key, "--operator", "hk"]) == 0
@@ -85,17 +85,17 @@ def test_what_does_not_open_is_one_line_without_the_passphrase(
         [here, *key, "--into", str(uuid4())],
     ):
         code = cli.main(["recover", *arguments])
-        said = capsys.readouterr()
+        stated = capsys.readouterr()
         if "--into" in arguments:
             assert code == 0  # there was nothing to put there
             continue
         assert code == 2, arguments
-        assert said.err.count("\n") == 1
-        assert "passphrase's" not in said.err
-        assert PASSPHRASE not in said.err
+        assert stated.err.count("\n") == 1
+        assert "passphrase's" not in stated.err
+        assert PASSPHRASE not in stated.err
 
 
-def test_where_there_are_several_users_the_option_that_names_one_is_told(
+def test_where_there_are_several_users_the_option_that_names_one_is_reported(
     opened: OpenedLibrary, key: list[str], capsys: pytest.CaptureFixture[str]
 ) -> None:
     assert opened.data_key is not None
@@ -121,8 +121,8 @@ def test_on_a_terminal_the_passphrase_is_asked_for_and_not_shown(
     monkeypatch.setattr(sys.stdin, "isatty", lambda: True)
     monkeypatch.setattr("getpass.getpass", lambda prompt: PASSPHRASE)
     assert cli.main(["recover", str(opened.folder)]) == 0
-    said = capsys.readouterr()
-    assert PASSPHRASE not in said.out + said.err
+    stated = capsys.readouterr()
+    assert PASSPHRASE not in stated.out + stated.err
 
 
 @pytest.mark.endurance
@@ -136,13 +136,13 @@ def test_a_session_of_the_library_gives_the_same_results_as_its_folder(
     by_folder, by_library = tmp_path / "one", tmp_path / "two"
     assert cli.main(["analyse", str(tmp_path / "folder"), "--out", str(by_folder), "--no-rrd"]) == 0
     place = ["--library", str(opened.folder), *key]
-    wanted = f"library:{imported.session_id}"
-    assert cli.main(["analyse", wanted, "--out", str(by_library), "--no-rrd", *place]) == 0
+    required = f"library:{imported.session_id}"
+    assert cli.main(["analyse", required, "--out", str(by_library), "--no-rrd", *place]) == 0
     for name in FILES:
         assert (by_folder / name).read_bytes() == (by_library / name).read_bytes(), name
     assert opened.library.audit.entries()[-1].action == Action.VIEW
     assert cli.main(["analyse", f"library:{uuid4()}", "--out", str(tmp_path / "three"), *place]) == 2
-    assert cli.main(["analyse", wanted, "--out", str(opened.folder / "out"), *place]) == 2
+    assert cli.main(["analyse", required, "--out", str(opened.folder / "out"), *place]) == 2
     assert not (tmp_path / "three").exists()
 
 
@@ -178,9 +178,9 @@ def test_an_audit_whose_entry_was_changed_or_whose_end_is_missing_is_refused(
         connection.exec_driver_sql("DROP TRIGGER audit_no_update")
         connection.exec_driver_sql("UPDATE audit SET action = 'view' WHERE number = 2")
     assert cli.main(["audit", str(opened.folder), *key]) == 2
-    told = capsys.readouterr()
-    assert "- entry 2 was changed." in told.out
-    assert "a fault in the audit" in told.err
+    reported = capsys.readouterr()
+    assert "- entry 2 was changed." in reported.out
+    assert "a fault in the audit" in reported.err
     assert cli.main(["audit", str(opened.folder), *key, "--since", "nonsense"]) == 2
     assert "is no line of an earlier audit" in capsys.readouterr().err
 
@@ -195,11 +195,11 @@ def test_recover_brings_home_what_was_recorded_while_the_library_was_gone(
 ) -> None:
     monkeypatch.setattr("app.storage.root.platformdirs.user_data_path", lambda *_, **__: tmp_path / "data")
     opened.folder.rename(tmp_path / "renamed")
-    told = Recording("walk 1", RecordingKind.WALKING, "walk_1", {})
+    reported = Recording("walk 1", RecordingKind.WALKING, "walk_1", {})
     with JournalWriter.create(
         opened.recordings, uuid7(), opened.data_key, room=ANY_ROOM, shelter=opened.shelter
     ) as writer:
-        writer.mark(Belonging(session_id, told).text())
+        writer.mark(Belonging(session_id, reported).text())
     (tmp_path / "renamed").rename(opened.folder)
     assert cli.main(["recover", str(opened.folder), *key]) == 0
     assert f"was recovered into library:{session_id}" in capsys.readouterr().out

@@ -54,7 +54,7 @@ def test_an_interrupted_recording_is_listed_then_closed_with_all_that_there_is(
 
 
 def test_what_a_kill_left_between_file_and_row_is_found(opened: OpenedLibrary, record: Record) -> None:
-    record("walk 1", is_stopped=False, is_told=False)
+    record("walk 1", is_stopped=False, is_reported=False)
     (found,) = find_interrupted(opened)
     recovered = recover(opened, found, silent)
     (journal,) = recovered.stored.journals
@@ -79,7 +79,7 @@ def test_a_recording_that_only_its_row_does_not_know_as_stopped_is_closed(
     assert recover(opened, found, silent).stored.state is RecordingState.CLOSED
 
 
-def test_an_orphan_is_listed_until_somebody_says_where_it_belongs(
+def test_an_orphan_is_listed_until_somebody_states_where_it_belongs(
     opened: OpenedLibrary, session_id: UUID, record: Record
 ) -> None:
     record("walk 1")
@@ -101,9 +101,9 @@ def test_an_orphan_is_listed_until_somebody_says_where_it_belongs(
 def test_an_orphan_goes_into_the_session_that_it_was_begun_in(
     opened: OpenedLibrary, session_id: UUID, record: Record
 ) -> None:
-    """With what was told of it; under another name where its own was given anew meanwhile."""
-    record("walk 1", is_stopped=False, has_row=False, says_session=session_id)
-    record("walk 2", has_row=False, says_session=session_id, is_stopped=False)
+    """With what was given of it; under another name where its own was given again meanwhile."""
+    record("walk 1", is_stopped=False, has_row=False, states_session=session_id)
+    record("walk 2", has_row=False, states_session=session_id, is_stopped=False)
     record("walk 2")
     found = find_interrupted(opened)
     assert [one.belonging is not None for one in found] == [True, True]
@@ -117,9 +117,9 @@ def test_an_orphan_goes_into_the_session_that_it_was_begun_in(
 
 
 def test_an_orphan_of_no_session_is_exported_and_stays(opened: OpenedLibrary, record: Record, tmp_path: Path) -> None:
-    """It says nothing of its session, or that one is not there any more: its samples come out all the same."""
+    """It gives nothing of its session, or that one is not there any more: its samples come out all the same."""
     silent_one = record("left over", is_stopped=False, has_row=False)
-    record("left over", 700, is_stopped=False, has_row=False, says_session=uuid7())
+    record("left over", 700, is_stopped=False, has_row=False, states_session=uuid7())
     found = find_interrupted(opened)
     for one in found:
         with pytest.raises(LibraryError):
@@ -157,8 +157,8 @@ def test_an_export_that_was_broken_off_is_none(opened: OpenedLibrary, record: Re
 def test_an_orphan_comes_where_it_was_made(opened: OpenedLibrary, session_id: UUID, record: Record) -> None:
     """Between the recordings begun before and after it, also where these say their time as another zone's clocks."""
     began = {"walk 1": 0, "walk 4": 3}
-    left = record("walk 2", is_stopped=False, has_row=False, says_session=session_id)
-    record("walk 3", is_stopped=False, has_row=False, says_session=session_id)
+    left = record("walk 2", is_stopped=False, has_row=False, states_session=session_id)
+    record("walk 3", is_stopped=False, has_row=False, states_session=session_id)
     first, second = find_interrupted(opened)
     assert first.recording_id == left.id
     assert first.began_at is not None
@@ -186,7 +186,7 @@ def test_an_orphan_comes_where_it_was_made(opened: OpenedLibrary, session_id: UU
         "The library refers to an invalid recording file",
     ],
 )
-def test_what_cannot_be_recovered_stays_open_and_says_what_to_do(
+def test_what_cannot_be_recovered_stays_open_and_states_what_to_do(
     opened: OpenedLibrary, record: Record, damage: str
 ) -> None:
     path = opened.recordings / record("walk 1", is_stopped=False).journals[0].file
@@ -229,7 +229,7 @@ def test_a_long_torn_tail_is_read_past(opened: OpenedLibrary, record: Record) ->
     assert recover(opened, found, silent).reports[0].damaged_bytes >= 200_000
 
 
-def test_progress_is_told_and_a_stop_leaves_the_recording_open(opened: OpenedLibrary, record: Record) -> None:
+def test_progress_is_reported_and_a_stop_leaves_the_recording_open(opened: OpenedLibrary, record: Record) -> None:
     record("walk 1", 200_000, is_stopped=False)
     (found,) = find_interrupted(opened)
 

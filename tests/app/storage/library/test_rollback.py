@@ -45,11 +45,11 @@ def test_an_older_copy_that_was_put_back_is_noticed(opened: OpenedLibrary, seen:
     for _ in range(3):  # until it is accepted, and however much is added meanwhile
         with open_library(opened.folder, PASSPHRASE) as old:
             assert seen().look(old.library) == Rollback(kept + 1, last)
-            assert old.library.audit.verify().faults == ()  # it is whole: nothing else tells
+            assert old.library.audit.verify().faults == ()  # it is whole: nothing else reports
             work_on(old, seen(), patients=5)
 
 
-def test_a_restored_backup_is_said_once_and_accepted_by_an_administrator(
+def test_a_restored_backup_is_stated_once_and_accepted_by_an_administrator(
     opened: OpenedLibrary, seen: Seen, tmp_path: Path
 ) -> None:
     opened.library.operators.add(Operator("ab", "A. Bauer", Role.CLINICIAN))
@@ -78,7 +78,7 @@ def test_a_restored_backup_is_said_once_and_accepted_by_an_administrator(
         assert seen().look(again.library) is None
 
 
-def test_another_computer_says_nothing(opened: OpenedLibrary, seen: Seen, tmp_path: Path) -> None:
+def test_another_computer_states_nothing(opened: OpenedLibrary, seen: Seen, tmp_path: Path) -> None:
     work_on(opened, seen())
     opened.library.close()
     shutil.copytree(opened.folder, tmp_path / "copy")

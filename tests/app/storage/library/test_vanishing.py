@@ -1,4 +1,4 @@
-"""A library's folder that goes away is not made anew; what is recorded meanwhile comes home, once."""
+"""A library's folder that goes away is not made again; what is recorded meanwhile comes home, once."""
 
 import errno
 import os
@@ -60,16 +60,16 @@ class Lines:
     """A recording of a port that sends numbered lines, in pieces that end amid a line."""
 
     def __init__(self, opened: OpenedLibrary, session_id: UUID | None = None, *, has_row: bool = False) -> None:
-        self.opened, self.id, self.said, self.number = opened, uuid7(), list[Trouble](), 0
-        told = Recording("walk 1", RecordingKind.WALKING, "walk_1", {})
+        self.opened, self.id, self.stated, self.number = opened, uuid7(), list[Trouble](), 0
+        reported = Recording("walk 1", RecordingKind.WALKING, "walk_1", {})
         if has_row and session_id is not None:
-            opened.library.recordings.start(session_id, told, False, self.id)
+            opened.library.recordings.start(session_id, reported, False, self.id)
         self.writer = JournalWriter.create(
             opened.recordings,
             self.id,
             opened.data_key,
             room=NO_ROOM_ASKED,
-            on_trouble=self.said.append,
+            on_trouble=self.stated.append,
             shelter=opened.shelter,
         )
         if has_row:
@@ -77,7 +77,7 @@ class Lines:
             journal = StoredJournal(header.recording_id, header.segment, header.wrapped_key)
             opened.library.recordings.add_journal(self.id, journal)
         elif session_id is not None:
-            self.writer.mark(Belonging(session_id, told).text())
+            self.writer.mark(Belonging(session_id, reported).text())
         self.source = self.writer.source(LINES)
         self._rest = b""
 
@@ -130,7 +130,7 @@ def test_a_folder_that_is_renamed_while_recording_costs_no_byte(opened: OpenedLi
         assert time.monotonic() - began_s < 1.0
         lines.send(30)
         summary = lines.writer.stop()
-        assert (summary.state, summary.is_away, lines.said) == (State.CLOSED, True, [Trouble.MOVED])
+        assert (summary.state, summary.is_away, lines.stated) == (State.CLOSED, True, [Trouble.MOVED])
         assert not opened.folder.exists(), "made anew"
         assert lines.sheltered == [f"{lines.id}.2.journal"]
         assert [path.name for path in (elsewhere / "recordings").iterdir()] == [f"{lines.id}.1.journal"]
@@ -175,7 +175,7 @@ def test_a_disk_that_is_taken_out_costs_no_more_than_a_power_cut(
     assert all(report.missing_records == 0 for report in lines.decoded().reports)
 
 
-def test_dropped_records_are_told_once(opened: OpenedLibrary) -> None:
+def test_dropped_records_are_reported_once(opened: OpenedLibrary) -> None:
     lines = Lines(opened)
     lines.writer._inlet._limit_bytes = 100
     lines.writer.received(lines.source, bytes(200))
@@ -273,7 +273,7 @@ def test_opening_makes_no_library(opened: OpenedLibrary, tmp_path: Path) -> None
     assert {one.details.code for one in opened.library.patients.search()} == {"P-002"}
 
 
-def test_what_is_gone_with_the_library_is_not_said_to_be_missing(opened: OpenedLibrary, record: Record) -> None:
+def test_what_is_gone_with_the_library_is_not_stated_to_be_missing(opened: OpenedLibrary, record: Record) -> None:
     """No backup is needed of a folder that somebody renamed."""
     stored = record("walk 1")
     record("walk 2", is_stopped=False)
@@ -293,7 +293,7 @@ def test_what_is_gone_with_the_library_is_not_said_to_be_missing(opened: OpenedL
 
 
 def test_a_copy_in_its_place_is_the_library_once_it_is_taken(opened: OpenedLibrary, tmp_path: Path) -> None:
-    """As after a disk was mounted anew: the same library, in another folder."""
+    """As after a disk was mounted again: the same library, in another folder."""
     opened.library.patients.create(Patient(code="P-002"))
     shutil.copytree(opened.folder, tmp_path / "copy")
     opened.folder.rename(tmp_path / "old")

@@ -52,7 +52,7 @@ def test_detected_positions_are_used_by_the_primary_button_and_the_step_goes_on(
     moved.enter()
     assert moved.page.band.hint.sentence == "Positions look swapped"
     before = dict(visit.sensors.site_of)
-    with qtbot.waitSignals([moved.done, moved.told, visit.worn.corrected], timeout=10_000):
+    with qtbot.waitSignals([moved.done, moved.reported, visit.worn.corrected], timeout=10_000):
         press(moved)
     assert visit.sensors.site_of == {name: detected.get(site, site) for name, site in before.items()}
     free = visit.recordings.free_motion
@@ -90,7 +90,7 @@ def test_positions_can_be_checked_and_kept_as_they_are(
     primary = moved.bar().primary
     assert primary is not None
     assert primary.text == "Continue to walking"
-    visit.sensors.doubt(MIXED)  # the motion still says so
+    visit.sensors.doubt(MIXED)  # the motion still reports it
     assert not visit.sensors.detected
     sensors.deleteLater()
 
@@ -108,14 +108,14 @@ def test_sensors_left_to_the_motion_after_it_are_found_by_another(visit: Visit, 
     assert moved.bar().primary is not None
 
 
-def test_a_motion_that_tells_no_positions_leads_to_them(qtbot: QtBot, visit: Visit, moved: FreeMotionStep) -> None:
+def test_a_motion_that_shows_no_positions_leads_to_them(qtbot: QtBot, visit: Visit, moved: FreeMotionStep) -> None:
     visit.sensors.leave_to_motion(True)
     moved.enter()
     done: list[None] = []
     moved.done.connect(lambda: done.append(None))
-    with qtbot.waitSignal(moved.told, timeout=10_000) as told:
+    with qtbot.waitSignal(moved.reported, timeout=10_000) as reported:
         press(moved)
-    assert told.args[0] == "Sensor positions could not be detected."
+    assert reported.args[0] == "Sensor positions could not be detected."
     bar = moved.bar()
     assert bar.primary is not None
     assert (bar.primary.text, [one.text for one in bar.quiet]) == ("Start free motion", ["Check positions"])

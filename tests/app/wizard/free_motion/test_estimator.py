@@ -1,4 +1,4 @@
-"""The free motion: gauges, one leg again, labels that are wrong, and sensors whose sites nobody has said."""
+"""The free motion: gauges, one leg again, labels that are wrong, and sensors whose sites nobody has stated."""
 
 import numpy as np
 import pytest
@@ -17,11 +17,11 @@ LEFT_MOVES_S, RIGHT_MOVES_S = BEGIN_S, BEGIN_S + 11.0
 def fed(
     estimator: FreeMotionEstimator | UnplacedFreeMotionEstimator, streams: dict[str, ImuBlock], block_s: float = 0.1
 ) -> list[FreeMotionView]:
-    told = []
+    reported = []
     for block in in_blocks(streams, block_s):
         estimator.update(block)
-        told.append(estimator.state)
-    return told
+        reported.append(estimator.state)
+    return reported
 
 
 def assert_same(one: FreeMotionState, two: FreeMotionState) -> None:
@@ -63,7 +63,7 @@ def test_the_size_of_the_blocks_changes_nothing(dressed: Worn, usual: list[FreeM
     assert (other.elapsed_s, other.detected) == (usual[-1].elapsed_s, usual[-1].detected)
 
 
-def test_one_leg_begins_anew_and_the_other_stays_as_it_is(dressed: Worn) -> None:
+def test_one_leg_begins_again_and_the_other_stays_as_it_is(dressed: Worn) -> None:
     estimator = FreeMotionEstimator(dressed.site_of, dressed.live_sensors)
     before = fed(estimator, shortened(dressed, LEFT_MOVES_S, LEFT_MOVES_S + 8.0))[-1]
     estimator.repeat(Side.LEFT)
@@ -83,10 +83,10 @@ def test_one_leg_begins_anew_and_the_other_stays_as_it_is(dressed: Worn) -> None
 def test_labels_that_the_motion_contradicts_are_named(dressed: Worn, one: Site, other: Site) -> None:
     standing = {name: rest.acc_m_s2 for name, rest in dressed.rests.items()}
     estimator = FreeMotionEstimator(exchanged(dressed, one, other), dressed.live_sensors, standing=standing)
-    told = fed(estimator, dict(dressed.free_motion))
-    assert told[-1].detected == {one: other, other: one}
+    reported = fed(estimator, dict(dressed.free_motion))
+    assert reported[-1].detected == {one: other, other: one}
     if one.side is other.side:  # across the legs another group may be named until both have moved for long
-        assert all(state.detected in ({}, {one: other, other: one}) for state in told)
+        assert all(state.detected in ({}, {one: other, other: one}) for state in reported)
 
 
 @pytest.mark.parametrize("first", [Side.LEFT, None])
@@ -94,18 +94,18 @@ def test_sensors_without_sites_are_placed_and_made_up_for(
     dressed: Worn, usual: list[FreeMotionView], first: Side | None
 ) -> None:
     estimator = UnplacedFreeMotionEstimator(dressed.live_sensors, first)
-    told = fed(estimator, dict(dressed.free_motion), 0.1)
+    reported = fed(estimator, dict(dressed.free_motion), 0.1)
     if first is None:
-        assert not told[-1].site_of
-        assert told[-1].chains is not None
-        assert told[-1].chains.is_first_certain
-        assert told[-1].is_side_open
+        assert not reported[-1].site_of
+        assert reported[-1].chains is not None
+        assert reported[-1].chains.is_first_certain
+        assert reported[-1].is_side_open
         return
-    assert not told[-1].is_side_open
-    assert all(state.site_of in ({}, dressed.site_of) for state in told)
-    assert told[-1].site_of == dressed.site_of
-    assert_same(told[-1].motion, usual[-1].motion)
-    assert told[-1].elapsed_s == usual[-1].elapsed_s
+    assert not reported[-1].is_side_open
+    assert all(state.site_of in ({}, dressed.site_of) for state in reported)
+    assert reported[-1].site_of == dressed.site_of
+    assert_same(reported[-1].motion, usual[-1].motion)
+    assert reported[-1].elapsed_s == usual[-1].elapsed_s
 
 
 def test_a_word_names_the_side_that_nobody_was_asked_to_move_first(dressed: Worn) -> None:
@@ -161,10 +161,10 @@ def test_no_more_than_half_a_minute_is_held_back(dressed: Worn) -> None:
         name: ImuBlock(name, block.time_s - BEGIN_S + end_s + 0.02, block.gyr_rad_s, block.acc_m_s2)
         for name, block in dressed.free_motion.items()
     }
-    told = fed(estimator, moved)
-    assert told[-1].site_of == dressed.site_of
-    assert told[-1].elapsed_s == pytest.approx(62.0, abs=0.2)
-    assert told[-1].motion.joints[Joint.RIGHT_KNEE].moved_s == pytest.approx(11.0, abs=1.0)
+    reported = fed(estimator, moved)
+    assert reported[-1].site_of == dressed.site_of
+    assert reported[-1].elapsed_s == pytest.approx(62.0, abs=0.2)
+    assert reported[-1].motion.joints[Joint.RIGHT_KNEE].moved_s == pytest.approx(11.0, abs=1.0)
 
 
 def repeated(block: ImuBlock, times: int) -> tuple[np.ndarray, np.ndarray]:

@@ -1,4 +1,4 @@
-"""Which words ask for a motion, how long they stay, and what stopping early is said to cost."""
+"""Which words ask for a motion, how long they stay, and what stopping early is stated to cost."""
 
 from collections.abc import Iterator, Mapping
 from dataclasses import replace
@@ -119,7 +119,7 @@ LOOSE = replace(ENOUGH, axis_sd_with_floor_rad=float(np.deg2rad(6.0)))
 PROSTHETIC = frozenset({Side.LEFT})
 
 
-def test_at_the_end_it_says_whether_the_motion_is_enough_or_all_only_as_good_as_they_get() -> None:
+def test_at_the_end_it_states_whether_the_motion_is_enough_or_all_only_as_good_as_they_get() -> None:
     enough = state(1, 8, None, is_closed=True)
     assert last_hint(motion({Joint.LEFT_KNEE: enough})).sentence == "Enough movement"
     mixed = motion({Joint.LEFT_KNEE: enough, Joint.RIGHT_KNEE: state(4, 8, is_plateau=True)})
@@ -134,23 +134,23 @@ def test_at_the_end_it_says_whether_the_motion_is_enough_or_all_only_as_good_as_
         (LEG_JOINTS, " It determines the ankle axes."),
     ],
 )
-def test_walking_is_said_to_find_the_axes_of_ankles_that_wear_sensors(joints: tuple[Joint, ...], finds: str) -> None:
+def test_walking_is_stated_to_find_the_axes_of_ankles_that_wear_sensors(joints: tuple[Joint, ...], finds: str) -> None:
     assert last_hint(motion(dict.fromkeys(joints, ENOUGH))).how == f"Walking follows automatically.{finds}"
 
 
-def test_a_joint_that_is_no_hinge_is_said_in_place_of_enough_motion() -> None:
+def test_a_joint_that_is_no_hinge_is_stated_in_place_of_enough_motion() -> None:
     all_four = dict.fromkeys(LEG_JOINTS, ENOUGH)
     one, both = all_four | {Joint.LEFT_KNEE: LOOSE}, dict.fromkeys(LEG_JOINTS, LOOSE)
-    said = last_hint(motion(one), PROSTHETIC)
-    assert said.sentence == "Left knee: not a hinge"
-    assert said.how == "The angle is the rotation about the main axis. Walking follows automatically."
+    stated = last_hint(motion(one), PROSTHETIC)
+    assert stated.sentence == "Left knee: not a hinge"
+    assert stated.how == "The angle is the rotation about the main axis. Walking follows automatically."
     assert recorded_hint(motion(one), PROSTHETIC).sentence == "Left knee: not a hinge"
     assert last_hint(motion(both), frozenset(Side)).sentence == "2 joints: not hinges"
     assert last_hint(motion(one)).sentence == "Enough movement"  # of a living knee none is expected
     assert last_hint(motion(all_four), PROSTHETIC).sentence == "Enough movement"
 
 
-def test_the_rail_says_which_joints_have_enough_motion_and_an_ankle_by_its_centre() -> None:
+def test_the_rail_states_which_joints_have_enough_motion_and_an_ankle_by_its_centre() -> None:
     far, none = state(11, 34), frozenset[Side]()
     some = motion({Joint.LEFT_KNEE: ENOUGH, Joint.RIGHT_KNEE: far, Joint.LEFT_ANKLE: ENOUGH, Joint.RIGHT_ANKLE: ENOUGH})
     assert enough_for(some, none) == "enough movement for 1 of 2 knees, 2 of 2 ankle centres"
@@ -161,8 +161,8 @@ def test_the_rail_says_which_joints_have_enough_motion_and_an_ankle_by_its_centr
 
 def test_a_joint_that_is_no_hinge_is_named_and_not_counted() -> None:
     loose = motion(dict.fromkeys(LEG_JOINTS, ENOUGH) | {Joint.LEFT_KNEE: LOOSE})
-    said = "enough movement for 1 of 2 knees, 2 of 2 ankle centres; left knee: not a hinge"
-    assert enough_for(loose, PROSTHETIC) == said
+    stated = "enough movement for 1 of 2 knees, 2 of 2 ankle centres; left knee: not a hinge"
+    assert enough_for(loose, PROSTHETIC) == stated
     assert enough_for(loose, frozenset()) == "enough movement"
 
 
@@ -201,7 +201,7 @@ def test_stopping_before_a_joint_is_found_costs_its_angles() -> None:
     assert price_of_stopping(FreeMotionState()) == "No joint is calibrated yet."
 
 
-def test_a_joint_that_is_nearly_there_is_told_with_both_figures_and_what_helps() -> None:
+def test_a_joint_that_is_nearly_there_is_reported_with_both_figures_and_what_helps() -> None:
     nearly = motion({Joint.LEFT_KNEE: state(3.8, 9)})
     assert price_of_stopping(nearly) == (
         "Left knee: 3.8°, limit 1.5°. Move the left leg for 5 more seconds, or continue: the report then states this."
@@ -216,16 +216,16 @@ def test_moving_on_is_not_proposed_where_it_brings_nothing() -> None:
 
 def test_a_replayed_patient_who_has_ended_is_not_asked_to_move() -> None:
     nearly = motion({Joint.LEFT_KNEE: state(3.8, 9)})
-    said = price_of_stopping(nearly, can_move=False)
-    assert said == "Left knee: 3.8°, limit 1.5°. If you continue, the report states this."
+    stated = price_of_stopping(nearly, can_move=False)
+    assert stated == "Left knee: 3.8°, limit 1.5°. If you continue, the report states this."
 
 
-def test_of_a_prosthesis_more_is_wanted() -> None:
-    said = price_of_stopping(motion({Joint.LEFT_KNEE: state(1.2, 6)}), frozenset({Side.LEFT}))
-    assert said.startswith("Left knee: 1.2°, limit 0.5°.")
+def test_of_a_prosthesis_more_is_required() -> None:
+    stated = price_of_stopping(motion({Joint.LEFT_KNEE: state(1.2, 6)}), frozenset({Side.LEFT}))
+    assert stated.startswith("Left knee: 1.2°, limit 0.5°.")
 
 
-def test_a_joint_without_gauge_says_why() -> None:
+def test_a_joint_without_gauge_states_why() -> None:
     worn = set(LEG_SITES) - {Site.RIGHT_FOOT}
     assert absent_note(Joint.RIGHT_ANKLE, worn, ()) == "No sensor on R foot: no right ankle angle."
     assert absent_note(Joint.RIGHT_KNEE, worn, ()) == ""
@@ -253,7 +253,7 @@ def test_hips_never_keep_anybody_from_walking() -> None:
     )
 
 
-def test_the_walk_is_not_said_to_show_hips_that_are_shown_or_not_worn() -> None:
+def test_the_walk_is_not_stated_to_show_hips_that_are_shown_or_not_worn() -> None:
     shown = dict.fromkeys(OPEN_HIPS, hip(4.0, is_sure=True))
     for hips in (shown, {}):
         assert "hips" not in last_hint(replace(motion(ALL_ENOUGH), hips=hips)).how
@@ -284,7 +284,7 @@ def test_the_hint_of_the_hips_can_be_read_from_two_metres() -> None:
     assert len(hip_hint().sentence) <= LETTERS
 
 
-def test_a_hip_says_which_sensor_it_lacks() -> None:
+def test_a_hip_states_which_sensor_it_lacks() -> None:
     worn = {Site.PELVIS, Site.LEFT_SHANK, Site.RIGHT_THIGH}
     assert absent_note(Joint.LEFT_HIP, worn, ()) == "No sensor on L thigh: no left hip angle."
     assert absent_note(Joint.RIGHT_HIP, worn, {Side.RIGHT}) == ""

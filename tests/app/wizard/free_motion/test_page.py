@@ -1,4 +1,4 @@
-"""The free motion on the page: what is said aloud, what is painted anew, and how it is laid out."""
+"""The free motion on the page: what is stated aloud, what is painted again, and how it is laid out."""
 
 import time
 from collections.abc import Iterator
@@ -51,14 +51,14 @@ def page(qtbot: QtBot, qapp: QApplication) -> Iterator[FreeMotionPage]:
 
 @pytest.fixture
 def announced(monkeypatch: pytest.MonkeyPatch) -> list[str]:
-    said: list[str] = []
+    stated: list[str] = []
 
     def note(event: QAccessibleEvent) -> None:
         if isinstance(event, QAccessibleAnnouncementEvent):
-            said.append(event.message())
+            stated.append(event.message())
 
     monkeypatch.setattr(QAccessible, "updateAccessibility", note)
-    return said
+    return stated
 
 
 def test_gauges_lie_as_the_patient_faces_you(page: FreeMotionPage) -> None:
@@ -76,7 +76,7 @@ def test_where_there_is_little_room_the_figure_goes(page: FreeMotionPage) -> Non
     assert all(gauge.width() > 300 for gauge in page.gauges.values())
 
 
-def test_a_hint_is_said_aloud_only_when_its_sentence_changes(page: FreeMotionPage, announced: list[str]) -> None:
+def test_a_hint_is_stated_aloud_only_when_its_sentence_changes(page: FreeMotionPage, announced: list[str]) -> None:
     page.band.show_hint(Hint("Bend the left knee", "Moving it by hand is fine"))
     page.band.show_hint(Hint("Bend the left knee", "The therapist moves the limb."))
     page.band.show_hint(Hint("Bend the right knee", "Moving it by hand is fine"))

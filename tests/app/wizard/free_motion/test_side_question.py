@@ -23,13 +23,13 @@ def asked(*shanks: str, earlier: dict[str, Side] | None = None, lead_s: float | 
 
 
 @pytest.mark.parametrize(
-    ("shanks", "lead_s", "is_said"), [(("A", "B"), 0.1, True), (("A", "B"), None, False), (("A",), None, False)]
+    ("shanks", "lead_s", "is_stated"), [(("A", "B"), 0.1, True), (("A", "B"), None, False), (("A",), None, False)]
 )
-def test_both_legs_moved_at_once_is_said_only_where_both_moved(
-    shanks: tuple[str, ...], lead_s: float | None, is_said: bool
+def test_both_legs_moved_at_once_is_stated_only_where_both_moved(
+    shanks: tuple[str, ...], lead_s: float | None, is_stated: bool
 ) -> None:
     what, _, answers = asked(*shanks, lead_s=lead_s).words
-    assert ("Both legs moved at once" in what) is is_said
+    assert ("Both legs moved at once" in what) is is_stated
     assert "has A on the shank?" in what
     assert answers == SIDES
 
@@ -39,43 +39,43 @@ def test_an_answer_ends_the_question_and_a_second_press_is_no_answer() -> None:
     question.answer(1)
     for _ in range(5):
         question.look(chains("A", "B"), {})
-    assert question.told == ("A", Side.RIGHT)
+    assert question.reported == ("A", Side.RIGHT)
     assert question.words == ("A set to the right leg.", "", ("Undo",))
     question.look(chains("B", "A"), {})  # the search puts another leg first
-    assert question.told == ("A", Side.RIGHT)
+    assert question.reported == ("A", Side.RIGHT)
 
 
-def test_what_was_understood_is_undone_and_asked_anew() -> None:
+def test_what_was_understood_is_undone_and_asked_again() -> None:
     question = asked("A", "B", earlier={"A": Side.RIGHT})
     question.answer(1)
     question.answer(1)
-    assert question.told is None
+    assert question.reported is None
     assert question.words[2] == SIDES
     question.withdraw()  # the motion has been placed by the answer meanwhile
     assert question.words[2] == SIDES
-    question.answer(0)  # who undoes has said that the earlier one was wrong
-    assert question.told == ("A", Side.LEFT)
+    question.answer(0)  # who undoes has stated that the earlier one was wrong
+    assert question.reported == ("A", Side.LEFT)
 
 
 @pytest.mark.parametrize("second", [0, 1])
 def test_an_answer_that_contradicts_an_earlier_one_is_asked_again(second: int) -> None:
     question = asked("A", "B", earlier={"A": Side.RIGHT})
     question.answer(0)
-    assert question.told is None
+    assert question.reported is None
     assert question.words == ("A was on the right leg before. Which leg is it on now?", "", SIDES)
     question.look(chains("A", "B"), {"A": Side.RIGHT})
     question.answer(second)
-    assert question.told == ("A", (Side.LEFT, Side.RIGHT)[second])
+    assert question.reported == ("A", (Side.LEFT, Side.RIGHT)[second])
 
 
 @pytest.mark.parametrize("earlier", [{}, {"A": Side.LEFT}, {"B": Side.LEFT}])
 def test_an_answer_that_contradicts_nothing_is_taken_at_once(earlier: dict[str, Side]) -> None:
     question = asked("A", "B", earlier=earlier)
     question.answer(0)
-    assert question.told == ("A", Side.LEFT)
+    assert question.reported == ("A", Side.LEFT)
 
 
-def test_what_the_motion_tells_itself_is_asked_no_longer() -> None:
+def test_what_the_motion_shows_itself_is_asked_no_longer() -> None:
     question = asked("A", "B")
     question.withdraw()
     assert question.words == SILENT
@@ -85,5 +85,5 @@ def test_a_leg_that_nobody_was_asked_about_is_asked_about() -> None:
     question = asked("A", "B")
     question.answer(0)
     question.look(chains("C", "D"), {})
-    assert question.told is None
+    assert question.reported is None
     assert "has C on the shank?" in question.words[0]

@@ -76,12 +76,12 @@ def test_it_records_at_once_and_goes_on_by_itself_when_all_gauges_are_closed(
     assert step.page.band.hint.sentence == "Move either leg"
     ticks(qtbot, step, lambda: knows(step))
     closed = {joint: state(0.8, 6.0, None, is_closed=True) for joint in LEG_JOINTS}
-    tell(step, worn, FreeMotionState(closed))
+    show_message(step, worn, FreeMotionState(closed))
     with qtbot.waitSignal(step.done, timeout=PATIENCE_MS):
         ticks(qtbot, step, lambda: states(step.page) == {GaugeState.ENOUGH, GaugeState.CENTRE})
         verb = step.bar().primary
         assert verb is not None
-        assert (verb.text, verb.is_wished) == ("Continue to walking", True)
+        assert (verb.text, verb.is_requested) == ("Continue to walking", True)
     moved = visit.recordings.free_motion
     assert moved is not None
     assert moved.read_back is not None
@@ -89,7 +89,7 @@ def test_it_records_at_once_and_goes_on_by_itself_when_all_gauges_are_closed(
     assert (step.state, step.note) == (StepState.DONE, "enough movement")
 
 
-def test_a_plateau_is_said_and_left_to_the_therapist(
+def test_a_plateau_is_stated_and_left_to_the_therapist(
     qtbot: QtBot, step: FreeMotionStep, visit: Visit, worn: dict[str, Site]
 ) -> None:
     step.enter()
@@ -97,7 +97,7 @@ def test_a_plateau_is_said_and_left_to_the_therapist(
     ticks(qtbot, step, lambda: step._estimator is not None)
     joints = {joint: state(0.8, 6.0, None, is_closed=True) for joint in LEG_JOINTS}
     joints[Joint.LEFT_KNEE] = state(3.8, 6.0, is_plateau=True)
-    tell(step, worn, FreeMotionState(joints))
+    show_message(step, worn, FreeMotionState(joints))
     ticks(qtbot, step, lambda: step.page.band.hint.sentence == "Certainty no longer rises")
     assert not step._settled.isActive()
     bar = step.bar()
@@ -105,12 +105,12 @@ def test_a_plateau_is_said_and_left_to_the_therapist(
     assert [verb.text for verb in bar.quiet] == ["Repeat left"]
 
 
-def test_stopping_early_says_its_price_and_goes_on(qtbot: QtBot, step: FreeMotionStep, visit: Visit) -> None:
+def test_stopping_early_states_its_price_and_goes_on(qtbot: QtBot, step: FreeMotionStep, visit: Visit) -> None:
     step.enter()
     ticks(qtbot, step, lambda: knows(step))
     bar = step.bar()
     assert bar.primary is not None
-    assert (bar.primary.text, bar.primary.is_wished) == ("Stop early", False)
+    assert (bar.primary.text, bar.primary.is_requested) == ("Stop early", False)
     assert bar.note
     with qtbot.waitSignal(step.done, timeout=PATIENCE_MS):
         assert step.on_intent(SPACE)
@@ -118,13 +118,13 @@ def test_stopping_early_says_its_price_and_goes_on(qtbot: QtBot, step: FreeMotio
     assert step.state is StepState.ATTENTION
 
 
-def test_a_replay_that_has_ended_is_said_and_is_recorded_again_from_its_beginning(
+def test_a_replay_that_has_ended_is_stated_and_is_recorded_again_from_its_beginning(
     qtbot: QtBot, step: FreeMotionStep, visit: Visit, worn: dict[str, Site]
 ) -> None:
     step.enter()
     ticks(qtbot, step, lambda: step._estimator is not None)
     open_joints = motion({joint: state(3.8, 6.0) for joint in LEG_JOINTS})
-    tell(step, worn, open_joints)
+    show_message(step, worn, open_joints)
     ticks(qtbot, step, lambda: step.page.band.hint.sentence == "The replay has ended")
     bar = step.bar()
     assert bar.primary is not None
@@ -138,7 +138,7 @@ def test_a_replay_that_has_ended_is_said_and_is_recorded_again_from_its_beginnin
     ticks(qtbot, step, lambda: knows(step))
 
 
-def test_a_replay_without_free_motion_says_so_and_what_did_not_move_does_not_count(
+def test_a_replay_without_free_motion_states_so_and_what_did_not_move_does_not_count(
     qtbot: QtBot, step: FreeMotionStep, visit: Visit, source: ReplaySource
 ) -> None:
     source._by_kind[RecordingKind.FREE_MOTION] = []
@@ -147,14 +147,14 @@ def test_a_replay_without_free_motion_says_so_and_what_did_not_move_does_not_cou
         qtbot, step, lambda: step.page.band.hint.sentence == "Replay has no free motion" and bool(step._motion.joints)
     )
     assert [verb.text for verb in step.bar().others] == []
-    with qtbot.waitSignals([step.done, step.told], timeout=PATIENCE_MS, order="strict"):
+    with qtbot.waitSignals([step.done, step.reported], timeout=PATIENCE_MS, order="strict"):
         press(step)
     qtbot.waitUntil(lambda: visit.recordings.free_motion is None, timeout=PATIENCE_MS)
     assert len(visit.recordings.every) == 1  # nothing is deleted
     assert step.state is StepState.TODO
 
 
-def test_one_leg_begins_anew_while_the_motion_goes_on(qtbot: QtBot, step: FreeMotionStep) -> None:
+def test_one_leg_begins_again_while_the_motion_goes_on(qtbot: QtBot, step: FreeMotionStep) -> None:
     step.enter()
     ticks(qtbot, step, lambda: knows(step))
     assert step.on_intent(Intent(KeyAction.RIGHT_LEG))
@@ -186,14 +186,14 @@ def test_a_leg_that_is_repeated_later_leaves_the_other_legs_recording_in_force(
     qtbot.waitUntil(lambda: visit.session is not None and set(visit.session.details.sensors) == set(LEG_SITES))
 
 
-def test_leaving_before_a_leg_has_moved_is_said_and_does_not_count(
+def test_leaving_before_a_leg_has_moved_is_stated_and_does_not_count(
     qtbot: QtBot, step: FreeMotionStep, visit: Visit
 ) -> None:
     step.enter()
     qtbot.waitUntil(lambda: visit.recordings.is_recording)
-    with qtbot.waitSignal(step.told, timeout=PATIENCE_MS) as told:
+    with qtbot.waitSignal(step.reported, timeout=PATIENCE_MS) as reported:
         step.leave()
-    assert told.args[0] == "Free motion was left before a leg moved, so it is not used."
+    assert reported.args[0] == "Free motion was left before a leg moved, so it is not used."
     qtbot.waitUntil(lambda: visit.recordings.free_motion is None, timeout=PATIENCE_MS)
     assert len(visit.recordings.every) == 1  # nothing is deleted
     assert step.state is StepState.TODO
@@ -204,23 +204,23 @@ def test_leaving_before_its_end_keeps_what_has_moved_unless_another_is_in_force(
 ) -> None:
     step.enter()
     ticks(qtbot, step, lambda: knows(step))
-    with qtbot.waitSignal(step.told, timeout=PATIENCE_MS) as told:
+    with qtbot.waitSignal(step.reported, timeout=PATIENCE_MS) as reported:
         step.leave()
-    assert told.args[0].startswith("Free motion was left early and is used")
+    assert reported.args[0].startswith("Free motion was left early and is used")
     kept, note = visit.recordings.free_motion, step.note
     assert kept is not None
     assert kept.read_back is not None
     assert len(kept.read_back.imu) == len(LEG_SITES)
     assert note.startswith("enough movement for")
     assert note.endswith("of 2 ankle centres")
-    assert told.args[0] == f"Free motion was left early and is used: {note}."
+    assert reported.args[0] == f"Free motion was left early and is used: {note}."
     step.enter()
     assert not visit.recordings.is_recording
     press(step, "Record again")
     ticks(qtbot, step, lambda: visit.recordings.is_recording and knows(step))
-    with qtbot.waitSignal(step.told, timeout=PATIENCE_MS) as told:
+    with qtbot.waitSignal(step.reported, timeout=PATIENCE_MS) as reported:
         step.leave()
-    assert told.args[0] == "Free motion was left early. The previous one still applies."
+    assert reported.args[0] == "Free motion was left early. The previous one still applies."
     qtbot.waitUntil(lambda: not visit.recordings.every[1].details.is_kept, timeout=PATIENCE_MS)
     assert visit.recordings.free_motion is not None
     assert visit.recordings.free_motion.id == kept.id
@@ -230,25 +230,25 @@ def test_leaving_before_its_end_keeps_what_has_moved_unless_another_is_in_force(
 def test_a_knee_that_is_no_hinge_is_not_counted_as_enough_but_named(
     qtbot: QtBot, step: FreeMotionStep, visit: Visit, worn: dict[str, Site], monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    heard: list[Sound] = []
-    monkeypatch.setattr(sounds, "play", heard.append)
+    received: list[Sound] = []
+    monkeypatch.setattr(sounds, "play", received.append)
     visit.patient.edit(replace(visit.patient.details, prosthetic_side="left"))
     step.enter()
     ticks(qtbot, step, lambda: knows(step))
     closed = {joint: state(0.4, 4.0, None, is_closed=True) for joint in LEG_JOINTS}
     loose = replace(closed[Joint.LEFT_KNEE], axis_sd_with_floor_rad=math.radians(6.0))
-    tell(step, worn, motion(closed | {Joint.LEFT_KNEE: state(3.8, 9.0)}))
+    show_message(step, worn, motion(closed | {Joint.LEFT_KNEE: state(3.8, 9.0)}))
     left = step.page.gauges[Joint.LEFT_KNEE]
     ticks(qtbot, step, lambda: left.face.axis is not None and left.face.axis.figure == "3.8")
-    assert Sound.READY in heard
-    heard.clear()
-    tell(step, worn, FreeMotionState(closed | {Joint.LEFT_KNEE: loose}))
+    assert Sound.READY in received
+    received.clear()
+    show_message(step, worn, FreeMotionState(closed | {Joint.LEFT_KNEE: loose}))
     with qtbot.waitSignal(step.done, timeout=PATIENCE_MS):  # more motion would not make it one
         ticks(qtbot, step, lambda: GaugeState.LOOSE in states(step.page))
         assert step.page.band.hint.sentence == "Left knee: not a hinge"
     assert step.note == "enough movement for 1 of 2 knees, 2 of 2 ankle centres; left knee: not a hinge"
     assert step.state is StepState.ATTENTION
-    assert Sound.READY not in heard
+    assert Sound.READY not in received
 
 
 def test_a_free_motion_that_holds_is_not_recorded_again_unasked(
@@ -274,14 +274,14 @@ def test_a_missing_foot_sensor_and_a_foot_without_joint_have_no_gauge(
     assert step.page.gauges[Joint.LEFT_ANKLE].face.state is GaugeState.ABSENT
 
 
-def test_what_a_recording_before_it_told_neither_ends_nor_counts_for_the_next(
+def test_what_a_recording_before_it_reported_neither_ends_nor_counts_for_the_next(
     qtbot: QtBot, step: FreeMotionStep, visit: Visit, worn: dict[str, Site]
 ) -> None:
     """While the library has not answered, and once it was stopped."""
     step.enter()
     ticks(qtbot, step, lambda: visit.recordings.has_begun)
     closed = {joint: state(0.8, 6.0, None, is_closed=True) for joint in LEG_JOINTS}
-    tell(step, worn, FreeMotionState(closed))
+    show_message(step, worn, FreeMotionState(closed))
     ticks(qtbot, step, lambda: step._settled.isActive())
     with qtbot.waitSignal(visit.recordings.ended, timeout=PATIENCE_MS):
         step.on_intent(SPACE)
@@ -294,7 +294,7 @@ def test_what_a_recording_before_it_told_neither_ends_nor_counts_for_the_next(
     assert not step._motion.joints
     ticks(qtbot, step, lambda: visit.recordings.has_begun)
     still = {joint: replace(state(9.0, 60.0), moved_s=0.0) for joint in LEG_JOINTS}
-    tell(step, worn, FreeMotionState(still))
+    show_message(step, worn, FreeMotionState(still))
     ticks(qtbot, step, lambda: bool(step._motion.joints))
     step.on_intent(SPACE)
     for _ in range(6):
@@ -379,7 +379,7 @@ def test_labels_swapped_in_a_visit_that_is_closed_amid_the_motion_are_in_the_lib
     assert stored.placement.sensors[Site.LEFT_THIGH].name == f"DEMO-{Site.LEFT_SHANK}"
 
 
-def test_sensors_that_nobody_placed_are_placed_once_the_motion_tells(
+def test_sensors_that_nobody_placed_are_placed_once_the_motion_shows(
     qtbot: QtBot, step: FreeMotionStep, visit: Visit, worn: dict[str, Site]
 ) -> None:
     visit.sensors.leave_to_motion(True)
@@ -387,11 +387,11 @@ def test_sensors_that_nobody_placed_are_placed_once_the_motion_tells(
     ticks(qtbot, step, lambda: visit.recordings.has_begun)  # from then on the motion is looked at
     ticks(qtbot, step, lambda: step.page.band.hint.sentence == "Move the left leg first")
     assert states(step.page) == {GaugeState.OPEN}
-    tell(step, worn)
+    show_message(step, worn)
     ticks(qtbot, step, lambda: visit.sensors.site_of == worn)
 
 
-def test_two_legs_that_begin_together_are_told_apart_by_asking(
+def test_two_legs_that_begin_together_are_reported_apart_by_asking(
     qtbot: QtBot, step: FreeMotionStep, visit: Visit
 ) -> None:
     visit.sensors.leave_to_motion(True)
@@ -429,7 +429,7 @@ def test_a_leg_that_was_named_wrongly_changes_places_when_that_is_undone(
     step.labels.ask_for_side(chains(shank, f"DEMO-{Site.RIGHT_SHANK}"))
     for _ in range(2):  # the library knows it of the left leg
         step.page.answered.emit(1)
-    visit.sensors.assign_all({sensor: opposite(site) for sensor, site in worn.items()})  # as the motion then tells
+    visit.sensors.assign_all({sensor: opposite(site) for sensor, site in worn.items()})  # as the motion then reports
     for number in (1, 0):
         step.page.answered.emit(number)
     assert visit.sensors.site_of == worn
@@ -442,12 +442,12 @@ def swapped(one: Site, other: Site) -> dict[Site, Site]:
     return {one: other, other: one}
 
 
-def tell(step: FreeMotionStep, worn: dict[str, Site], motion: FreeMotionState | None = None) -> None:
+def show_message(step: FreeMotionStep, worn: dict[str, Site], motion: FreeMotionState | None = None) -> None:
     """Let the step hear this of the motion: on a busy machine the estimator itself takes its time."""
-    step._estimator = Told(worn, motion)  # type: ignore[assignment]  # as far as the step asks it
+    step._estimator = Reported(worn, motion)  # type: ignore[assignment]  # as far as the step asks it
 
 
-class Told:
+class Reported:
     """An estimator that knows everything already."""
 
     def __init__(self, site_of: dict[str, Site], motion: FreeMotionState | None = None) -> None:

@@ -38,9 +38,9 @@ def page(qtbot: QtBot) -> PatientPage:
 
 @pytest.fixture
 def edits(page: PatientPage) -> list[PatientDraft]:
-    heard: list[PatientDraft] = []
-    page.edited.connect(heard.append)
-    return heard
+    received: list[PatientDraft] = []
+    page.edited.connect(received.append)
+    return received
 
 
 def type_into(line: QLineEdit, text: str) -> None:
@@ -55,7 +55,7 @@ def test_a_patient_comes_out_as_shown_and_showing_is_no_edit(page: PatientPage, 
     assert edits == []
 
 
-def test_every_letter_is_told(page: PatientPage, edits: list[PatientDraft]) -> None:
+def test_every_letter_is_reported(page: PatientPage, edits: list[PatientDraft]) -> None:
     page.focus()
     type_into(page.code.line_edit, "P-1")
     assert [draft.patient.code for draft in edits] == ["P", "P-", "P-1"]
@@ -114,7 +114,7 @@ def test_aids_are_chosen_by_arrows_and_space(page: PatientPage, edits: list[Pati
     assert [chip.focusPolicy() for chip in chips].count(Qt.FocusPolicy.StrongFocus) == 1
 
 
-def test_a_code_in_use_is_said_and_offered(page: PatientPage) -> None:
+def test_a_code_in_use_is_stated_and_offered(page: PatientPage) -> None:
     opened: list[str] = []
     page.open_pressed.connect(opened.append)
     type_into(page.code.line_edit, "P-0147")
@@ -138,7 +138,7 @@ def test_a_code_in_use_is_said_and_offered(page: PatientPage) -> None:
         (2016, "The reference is for adults. Gait differs at age 10, so it is not shown."),
     ],
 )
-def test_the_band_says_whom_it_is_of(page: PatientPage, birth_year: int | None, words: str) -> None:
+def test_the_band_states_whom_it_is_of(page: PatientPage, birth_year: int | None, words: str) -> None:
     page.show_draft(PatientDraft(Patient(code="P-1", birth_year=birth_year)))
     texts = [label.text() for label in page.findChildren(QLabel)]
     assert any(words in text for text in texts)

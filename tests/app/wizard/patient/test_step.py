@@ -88,8 +88,8 @@ def test_the_set_up_of_the_last_visit_is_taken_over(
     step.page.open_pressed.emit("DEMO-10")
     button = next(one for one in step.page.findChildren(QAbstractButton) if one.text() == "Use last visit's set-up")
     qtbot.waitUntil(button.isVisible, timeout=5000)
-    said = {label.text() for label in step.page.findChildren(QLabel)}
-    assert {"Last visit, 24 Oct 2026", "barefoot", "left knee 15°, others 0°", "0A09, 0A31"} <= said
+    stated = {label.text() for label in step.page.findChildren(QLabel)}
+    assert {"Last visit, 24 Oct 2026", "barefoot", "left knee 15°, others 0°", "0A09, 0A31"} <= stated
     with qtbot.waitSignal(step.done, timeout=5000):
         button.click()
     assert visit.placement_before == {"0A09": Site.LEFT_THIGH, "0A31": Site.LEFT_SHANK}
@@ -99,7 +99,7 @@ def test_the_set_up_of_the_last_visit_is_taken_over(
     assert np.rad2deg(visit.details.zero_rad[Joint.LEFT_KNEE]) == pytest.approx(15.0)
 
 
-def test_a_foot_without_an_ankle_joint_is_told_to_the_visit(visit: Visit, step: PatientStep) -> None:
+def test_a_foot_without_an_ankle_joint_is_reported_to_the_visit(visit: Visit, step: PatientStep) -> None:
     page = step.page
     page.side.segments[1].click()
     page.limb.segments[1].click()
@@ -115,8 +115,8 @@ def make(opened: OpenedLibrary) -> None:
 def make_with_visit(opened: OpenedLibrary) -> None:
     library = opened.library
     patient = library.patients.create(Patient(code="DEMO-10"))
-    told = Session(recordings=(), started="2026-10-24T10:00:00+02:00", zero_rad={Joint.LEFT_KNEE: np.deg2rad(15)})
-    session = library.sessions.create(patient.id, told)
+    reported = Session(recordings=(), started="2026-10-24T10:00:00+02:00", zero_rad={Joint.LEFT_KNEE: np.deg2rad(15)})
+    session = library.sessions.create(patient.id, reported)
     placed = {
         Site.LEFT_THIGH: PlacedSensor("0A09", SensorInfo()),
         Site.LEFT_SHANK: PlacedSensor("0A31", SensorInfo()),
@@ -126,7 +126,7 @@ def make_with_visit(opened: OpenedLibrary) -> None:
     library.recordings.start(session.id, walk, is_simulated=True)
 
 
-def test_a_patient_of_a_list_read_before_a_change_is_read_anew(
+def test_a_patient_of_a_list_read_before_a_change_is_read_again(
     qtbot: QtBot, controller: LibraryController, visit: Visit, step: PatientStep
 ) -> None:
     listed: list[StoredPatient] = []
@@ -152,7 +152,7 @@ def test_a_patient_of_a_list_read_before_a_change_is_read_anew(
     assert (stored.details.birth_year, stored.details.mass_kg) == (1982, 70.0)
 
 
-def test_another_patient_chosen_while_the_first_is_read_anew_is_the_one(
+def test_another_patient_chosen_while_the_first_is_read_again_is_the_one(
     qtbot: QtBot, controller: LibraryController, visit: Visit, step: PatientStep
 ) -> None:
     made: list[StoredPatient] = []

@@ -34,19 +34,19 @@ def png(ppi: float) -> bytes:
 @pytest.mark.endurance
 def test_pictures_that_come_too_coarse_are_asked_for_once_more(qtbot: QtBot, page: ReportPage) -> None:
     """They were asked for before the page had its size."""
-    with qtbot.waitSignal(page.sharper_wanted, timeout=10 * REBUILT_AFTER_MS):
+    with qtbot.waitSignal(page.sharper_required, timeout=10 * REBUILT_AFTER_MS):
         page.show_pages([png(page.pages_ppi / 2)])
-    with qtbot.assertNotEmitted(page.sharper_wanted, wait=2 * REBUILT_AFTER_MS):
+    with qtbot.assertNotEmitted(page.sharper_required, wait=2 * REBUILT_AFTER_MS):
         page.show_pages([png(page.pages_ppi)])
 
 
 @pytest.mark.endurance
 def test_more_room_asks_for_finer_pictures_and_less_for_none(qtbot: QtBot, page: ReportPage) -> None:
     page.show_pages([png(page.pages_ppi)])
-    with qtbot.waitSignal(page.sharper_wanted, timeout=10 * REBUILT_AFTER_MS):
+    with qtbot.waitSignal(page.sharper_required, timeout=10 * REBUILT_AFTER_MS):
         page.resize(1400, 900)
     page.show_pages([png(page.pages_ppi)])
-    with qtbot.assertNotEmitted(page.sharper_wanted, wait=2 * REBUILT_AFTER_MS):
+    with qtbot.assertNotEmitted(page.sharper_required, wait=2 * REBUILT_AFTER_MS):
         page.resize(1000, 600)
 
 

@@ -1,4 +1,4 @@
-"""The report on a printer: every page over a whole sheet, in order, and the audit tells of it."""
+"""The report on a printer: every page over a whole sheet, in order, and the audit reports it."""
 
 from pathlib import Path
 
@@ -28,7 +28,7 @@ def test_each_page_takes_a_whole_sheet(qtbot: QtBot, tmp_path: Path, paper: str,
 
 
 @pytest.mark.qt_log_ignore(".*QPainter::begin")
-def test_a_printer_that_cannot_begin_is_told_of(qtbot: QtBot, tmp_path: Path) -> None:
+def test_a_printer_that_cannot_begin_is_reported_of(qtbot: QtBot, tmp_path: Path) -> None:
     printer = make_printer("P-1", "a4")
     printer.setOutputFormat(QPrinter.OutputFormat.PdfFormat)
     printer.setOutputFileName(str(tmp_path / "nowhere" / "printed.pdf"))

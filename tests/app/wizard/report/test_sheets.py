@@ -1,4 +1,4 @@
-"""Small pages beside the report: they lead to a page, and tell which one is read."""
+"""Small pages beside the report: they lead to a page, and report which one is read."""
 
 import pytest
 from PySide6.QtCore import QPointF, Qt

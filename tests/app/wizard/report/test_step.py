@@ -69,7 +69,7 @@ def step(
     step.leave()
 
 
-def test_pages_are_shown_and_made_anew_with_the_words(qtbot: QtBot, step: ReportStep, visit: Visit) -> None:
+def test_pages_are_shown_and_made_again_with_the_words(qtbot: QtBot, step: ReportStep, visit: Visit) -> None:
     sheets = step.page.report.sheets
     qtbot.waitUntil(lambda: sheets.count >= 4, timeout=WAIT_MS)
     step.page.report.comment.setPlainText("Keep alignment C.")
@@ -90,13 +90,13 @@ def report_name(visit: Visit) -> str:
 
 def test_the_chosen_files_are_saved(qtbot: QtBot, step: ReportStep, visit: Visit, tmp_path: Path) -> None:
     out = tmp_path / "results"
-    told: list[tuple[str, str]] = []
-    step.told.connect(lambda what, remedy: told.append((what, remedy)))
+    reported: list[tuple[str, str]] = []
+    step.reported.connect(lambda what, remedy: reported.append((what, remedy)))
     step.page.report.formats.choose(["csv"])
     chosen: Callable[[str], None] = step.save_in
     chosen(str(out))
     qtbot.waitUntil(lambda: step.state is StepState.DONE, timeout=WAIT_MS)
-    assert told == [("", "")]
+    assert reported == [("", "")]
     assert [file.name for file in out.glob("*.pdf")] == [report_name(visit)]
     assert (out / report_name(visit)).read_bytes().startswith(b"%PDF-")
     assert (out / "summary.json").exists()
@@ -108,13 +108,13 @@ def test_a_file_that_was_not_written_is_named_with_its_reason(
 ) -> None:
     lines = ["walk 1, mot: No angle of it can be given as a pose."]
     monkeypatch.setattr("app.exports.exports.export_from_library", lambda *_, **__: lines)
-    told: list[tuple[str, str]] = []
-    step.told.connect(lambda what, remedy: told.append((what, remedy)))
+    reported: list[tuple[str, str]] = []
+    step.reported.connect(lambda what, remedy: reported.append((what, remedy)))
     step.page.report.formats.choose(["mot"])
     chosen: Callable[[str], None] = step.save_in
     chosen(str(tmp_path / "results"))
     qtbot.waitUntil(lambda: step.state is StepState.DONE, timeout=WAIT_MS)
-    assert told == [("Not every file was written.", lines[0])]
+    assert reported == [("Not every file was written.", lines[0])]
 
 
 def test_what_is_printed_is_in_the_audit_before_a_page_is_made(
@@ -154,8 +154,8 @@ def test_what_leaves_without_the_name_is_shown_first_and_nothing_typed_but_what_
     assert session is not None
     library = state.library.library
     patients, patient = library.patients, library.patients.get(session.patient_id)
-    told = replace(simulated_session, started="2026-11-20T10:00:00+00:00")
-    imported = import_session(state.library, told, lambda _share, _what: None, patient.details.code)
+    reported = replace(simulated_session, started="2026-11-20T10:00:00+00:00")
+    imported = import_session(state.library, reported, lambda _share, _what: None, patient.details.code)
     visit.record.resume(library.sessions.get(imported.session_id))
     patients.change(patient, replace(patient.details, birth_year=1950, device="Qx1 knee", aids="Qx2 stick"))
     step.page.report.formats.choose(["xlsx", "fhir"])
@@ -177,11 +177,11 @@ def test_what_leaves_without_the_name_is_shown_first_and_nothing_typed_but_what_
     chosen(str(out))
     qtbot.waitUntil(lambda: step.state is StepState.DONE, timeout=WAIT_MS)
     with zipfile.ZipFile(out / "gaitwright.xlsx") as book:
-        said = b"".join(book.read(name) for name in book.namelist()).decode()
-    assert shown["patient"] in said
-    assert "Qx1 knee" in said
-    assert "Qx2 stick" not in said
-    assert patient.details.code not in said.replace(shown["patient"], "")  # which begins as the code does
+        stated = b"".join(book.read(name) for name in book.namelist()).decode()
+    assert shown["patient"] in stated
+    assert "Qx1 knee" in stated
+    assert "Qx2 stick" not in stated
+    assert patient.details.code not in stated.replace(shown["patient"], "")  # which begins as the code does
 
 
 def test_nothing_is_asked_where_no_file_leaves_without_the_name(qtbot: QtBot, step: ReportStep, visit: Visit) -> None:
@@ -190,8 +190,10 @@ def test_nothing_is_asked_where_no_file_leaves_without_the_name(qtbot: QtBot, st
     assert step.dialog is not None
     assert step.page.findChild(LeavingDialog) is None
     assert visit.session is not None
-    told = visit.session.details
-    assert [Path(path).name for path in step.dialog.selectedFiles()] == [session_name(told.patient.code, told.started)]
+    reported = visit.session.details
+    assert [Path(path).name for path in step.dialog.selectedFiles()] == [
+        session_name(reported.patient.code, reported.started)
+    ]
     step.dialog.close()
 
 
@@ -252,11 +254,11 @@ def test_an_earlier_visit_is_compared_with_and_the_clinic_named(
     assert first.startswith("2,")
 
 
-def test_a_preview_that_fails_goes_blank_and_says_so_until_one_can_be_shown(
+def test_a_preview_that_fails_goes_blank_and_states_so_until_one_can_be_shown(
     qtbot: QtBot, step: ReportStep, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    sheets, told = step.page.report.sheets, []
-    step.told.connect(lambda what, remedy: told.append((what, remedy)))
+    sheets, reported = step.page.report.sheets, []
+    step.reported.connect(lambda what, remedy: reported.append((what, remedy)))
     qtbot.waitUntil(lambda: sheets.count >= 4, timeout=WAIT_MS)
 
     def fail(*_: object) -> None:
@@ -265,12 +267,12 @@ def test_a_preview_that_fails_goes_blank_and_says_so_until_one_can_be_shown(
     with monkeypatch.context() as broken:
         broken.setattr(ReportPreview, "pages", fail)
         step.page.report.options_changed.emit()
-        qtbot.waitUntil(lambda: bool(told), timeout=WAIT_MS)
+        qtbot.waitUntil(lambda: bool(reported), timeout=WAIT_MS)
     assert sheets.count == 0
-    assert told[-1] == ("The report cannot be shown.", "See the log for details.")
+    assert reported[-1] == ("The report cannot be shown.", "See the log for details.")
     step.page.report.options_changed.emit()
     qtbot.waitUntil(lambda: sheets.count >= 4, timeout=WAIT_MS)
-    assert told[-1] == ("", "")
+    assert reported[-1] == ("", "")
 
 
 def test_an_earlier_visit_that_cannot_be_read_leaves_no_page_of_another_comparison_and_nothing_to_save(
@@ -280,13 +282,13 @@ def test_an_earlier_visit_that_cannot_be_read_leaves_no_page_of_another_comparis
         raise LibraryError("the visit cannot be read", "Choose another")
 
     monkeypatch.setattr("app.wizard.report.step.read_analysed", refuse)
-    report, told = step.page.report, []
-    step.told.connect(lambda what, _remedy: told.append(what))
+    report, reported = step.page.report, []
+    step.reported.connect(lambda what, _remedy: reported.append(what))
     qtbot.waitUntil(lambda: report.sheets.count >= 4, timeout=WAIT_MS)
     report.show_visits([(uuid4(), "1 Jul 2026")])
     report.earlier.setCurrentIndex(1)
     report.earlier.activated.emit(1)
-    qtbot.waitUntil(lambda: bool(told), timeout=WAIT_MS)
+    qtbot.waitUntil(lambda: bool(reported), timeout=WAIT_MS)
     assert report.sheets.count == 0
     assert not step.can_save()
     report.earlier.setCurrentIndex(0)
@@ -295,7 +297,7 @@ def test_an_earlier_visit_that_cannot_be_read_leaves_no_page_of_another_comparis
     assert step.can_save()
 
 
-def test_ctrl_s_saves_as_its_cap_says(qtbot: QtBot, visit: Visit, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_ctrl_s_saves_as_its_cap_states(qtbot: QtBot, visit: Visit, monkeypatch: pytest.MonkeyPatch) -> None:
     step = ReportStep(ThemeNotifier(), visit, visit.controller)
     qtbot.addWidget(step.page)
     pressed = []

@@ -157,19 +157,19 @@ def test_a_walk_is_left_out_comes_back_and_changes_its_condition(qtbot: QtBot, v
     with qtbot.waitSignal(visit.evaluation.done, timeout=30_000):
         step.page.correct().condition_typed.emit(key, "AFO")
     assert row.condition.line_edit.accessibleName() == "Condition of A AFO"
-    said: list[str] = []
-    step.offered.connect(said.append)
+    stated: list[str] = []
+    step.offered.connect(stated.append)
     for is_kept in (False, True):
         with qtbot.waitSignal(visit.evaluation.done, timeout=30_000):
             step.page.correct().kept_turned.emit(key, is_kept)
-    assert said == ["A AFO is excluded.", "A AFO is included."]
+    assert stated == ["A AFO is excluded.", "A AFO is included."]
     assert step.page.results().recordings.currentText() == "A AFO"
     assert [recording.details.condition for recording in visit.recordings.walks] == ["AFO"]
     step.page.correct().closed.emit()
     assert [part.name for part in step.page.results().compare._conditions] == ["AFO"]
 
 
-def test_an_earlier_visit_is_compared_as_worn_anew(qtbot: QtBot, visit: Visit, step: ResultsStep) -> None:
+def test_an_earlier_visit_is_compared_as_worn_again(qtbot: QtBot, visit: Visit, step: ResultsStep) -> None:
     compare = step.page.results().compare
     with qtbot.waitSignal(visit.earlier_read, timeout=60_000):
         compare.kinds.setCurrentIndex(compare.kinds.findData(Contrast.VISITS))
@@ -193,14 +193,14 @@ def test_the_last_visit_is_read_from_the_library_to_stand_beside_the_walk(
     assert results.cycles.charts.knee.chart.described.beside
 
 
-def test_rerun_that_is_missing_is_told(
+def test_rerun_that_is_missing_is_reported(
     qtbot: QtBot, visit: Visit, step: ResultsStep, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.setattr(reviewing, "viewer_program", lambda: None)
-    with qtbot.waitSignal(visit.refused) as told:
+    with qtbot.waitSignal(visit.refused) as reported:
         press(step, "Review in Rerun")
-    assert told.args is not None
-    assert "Rerun is not installed on this computer" in told.args[0]
+    assert reported.args is not None
+    assert "Rerun is not installed on this computer" in reported.args[0]
 
 
 def test_how_a_joint_was_found_is_shown_saved_audited_and_left_again(
@@ -220,7 +220,7 @@ def test_how_a_joint_was_found_is_shown_saved_audited_and_left_again(
     assert dialog is not None
     # its files name no patient, so neither does their folder
     assert [Path(one).name for one in dialog.selectedFiles()] == ["session_how-found"]
-    with qtbot.waitSignal(step.told, timeout=10_000):
+    with qtbot.waitSignal(step.reported, timeout=10_000):
         dialog.fileSelected.emit(str(tmp_path / "how"))
     dialog.close()
     assert "how" in page.note.text()
@@ -233,7 +233,7 @@ def test_how_a_joint_was_found_is_shown_saved_audited_and_left_again(
     assert not step.on_intent(Intent(KeyAction.BACK))
 
 
-def test_swapped_sides_are_read_anew_and_swapped_back(qtbot: QtBot, visit: Visit, step: ResultsStep) -> None:
+def test_swapped_sides_are_read_again_and_swapped_back(qtbot: QtBot, visit: Visit, step: ResultsStep) -> None:
     strides = {side: len(gait.strides) for side, gait in walk_of(visit).gait.items()}
     left, right = angle_of(visit, Joint.LEFT_KNEE), angle_of(visit, Joint.RIGHT_KNEE)
     press(step, "Correct")
@@ -270,12 +270,12 @@ def test_strides_are_left_out_by_hand_taken_back_one_by_one_and_stay_out_after_a
     assert strides.currentIndex().row() == rows[1]
     assert not computed
 
-    def told(opened: OpenedLibrary) -> tuple[list[str], str]:
+    def reported(opened: OpenedLibrary) -> tuple[list[str], str]:
         corrections = opened.library.corrections.of_session(session_id)
         fields = [change.field for correction in corrections for change in correction.changes]
         return fields, opened.library.audit.entries(f"session:{session_id}")[-1].details
 
-    answer = asked(qtbot, controller, told)
+    answer = asked(qtbot, controller, reported)
     assert isinstance(answer, tuple)
     assert answer[0] == ["left_out", "left_out"]
     assert "left_out" in answer[1]
@@ -287,10 +287,10 @@ def test_strides_are_left_out_by_hand_taken_back_one_by_one_and_stay_out_after_a
 
     kept_course = asked(qtbot, controller, of_the_course)
     assert isinstance(kept_course, tuple)
-    kept, current, strides_told = kept_course
-    assert kept == current  # so that home can show it as it stands now
+    kept, current, strides_reported = kept_course
+    assert kept == current  # so that home can show it as it is now
     gait = walk_of(visit).gait
-    assert strides_told == sum(int(one.strides.is_used.sum()) for one in gait.values())
+    assert strides_reported == sum(int(one.strides.is_used.sum()) for one in gait.values())
 
     again = Visit(controller, [])
     again.evaluation.computed.connect(lambda _session, analysis: computed.append(analysis))
@@ -350,7 +350,7 @@ def test_the_agreement_with_an_optical_system_is_saved_audited_and_left_again(
     qtbot.waitUntil(lambda: page.sheets.count > 0, timeout=60_000)
     page.save.click()
     dialog = page.findChildren(QFileDialog)[-1]
-    with qtbot.waitSignal(step.told, timeout=20_000):
+    with qtbot.waitSignal(step.reported, timeout=20_000):
         dialog.fileSelected.emit(str(tmp_path / "agreed"))
     dialog.close()
     assert page.note.text() == "Saved in agreed."

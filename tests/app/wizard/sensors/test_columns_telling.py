@@ -84,7 +84,7 @@ def test_what_is_guessed_is_shown_with_what_comes_and_is_kept(
     assert not step.telling.is_on
 
 
-def test_what_cannot_be_is_said(qtbot: QtBot, step: SensorsStep) -> None:
+def test_what_cannot_be_is_stated(qtbot: QtBot, step: SensorsStep) -> None:
     form = asked(qtbot, step)
     form.force.setCurrentIndex(form.force.findData("m/s2"))
     step.telling.tick()

@@ -48,7 +48,7 @@ def words_of(form: DotForm, row: int) -> list[str]:
     return [cell.words for cell in rows_of(form.list)[row].cells]
 
 
-def test_a_line_tells_signal_battery_firmware_and_what_is_the_matter(form: DotForm) -> None:
+def test_a_line_shows_signal_battery_firmware_and_what_is_the_matter(form: DotForm) -> None:
     assert words_of(form, 0) == ["DOT 0A22", "strong, \N{MINUS SIGN}50 dBm", "85 %", "2.4.0", ""]
     assert words_of(form, 1)[1:3] == ["fair, \N{MINUS SIGN}70 dBm", "14 %"]
     assert words_of(form, 2)[1:] == [
@@ -73,17 +73,17 @@ def test_space_turns_a_tick_and_enter_goes_on(form: DotForm, qtbot: QtBot) -> No
 
 
 @pytest.mark.parametrize(
-    ("record_hz", "said", "unsaid"),
+    ("record_hz", "stated", "unsaid"),
     [
         (120, "synchronised again before the first walk", "Data lost in radio transmission are missing"),
         (60, "Curves appear once the walk is fetched.", "synchronised again before the first walk"),
         (0, "Data lost in radio transmission are missing", "fetched"),
     ],
 )
-def test_each_way_to_record_walks_says_its_price(form: DotForm, record_hz: int, said: str, unsaid: str) -> None:
+def test_each_way_to_record_walks_states_its_price(form: DotForm, record_hz: int, stated: str, unsaid: str) -> None:
     form.show_choice(DotChoice(30, record_hz, 1))
     assert form.choice == DotChoice(30, record_hz, 1)
-    assert said in form.consequence
+    assert stated in form.consequence
     assert unsaid not in form.consequence
 
 
@@ -91,7 +91,7 @@ def test_each_way_to_record_walks_says_its_price(form: DotForm, record_hz: int, 
 def test_everything_on_the_list_of_sensors_has_its_room(form: DotForm, size: tuple[int, int]) -> None:
     form.set_room(size[0], is_narrow=size[0] < 1000)
     form.resize(*size)
-    form.tell(
+    form.show_message(
         "Not synchronised: DOT 0A22 (heard too little of the others).", "Lay all sensors side by side, try again."
     )
     assert [cut for cut in words_cut(form) if "DOT 0A2" not in cut] == []
@@ -114,7 +114,7 @@ def test_everything_of_the_memories_has_its_room(look: ThemeNotifier, qtbot: QtB
     qtbot.addWidget(form)
     form.resize(*size)
     form.show_lines(HELD)
-    form.tell("1 recording is not saved in this library and would be lost.", "This cannot be undone")
+    form.show_message("1 recording is not saved in this library and would be lost.", "This cannot be undone")
     form.show()
     assert words_cut(form) == []
     assert form.title == "2 recordings in the sensor memory"

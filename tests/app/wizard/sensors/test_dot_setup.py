@@ -24,7 +24,7 @@ def choice(radio: FastRadio) -> SourceChoice:
 
 @pytest.fixture
 def asked(qtbot: QtBot, step: SensorsStep) -> SensorsStep:
-    """The step, once both have told of themselves."""
+    """The step, once both have informed of themselves."""
     step.page.source_chosen.emit(DRIVER)
     qtbot.waitUntil(lambda: has_asked_all(step), timeout=WAIT_MS)
     return step
@@ -36,11 +36,11 @@ def verb(bar: BarState) -> tuple[str, bool]:
 
 
 def words_of(step: SensorsStep, row: int) -> list[str]:
-    """What a line of the list says, from left to right."""
+    """What a line of the list states, from left to right."""
     return [cell.words for cell in rows_of(step.page.dots.list)[row].cells]
 
 
-def test_each_that_was_heard_tells_of_itself_and_is_worn_until_its_tick_is_turned(
+def test_each_that_was_received_shows_of_itself_and_is_worn_until_its_tick_is_turned(
     qtbot: QtBot, asked: SensorsStep
 ) -> None:
     form = asked.page.dots
@@ -56,7 +56,7 @@ def test_each_that_was_heard_tells_of_itself_and_is_worn_until_its_tick_is_turne
     assert asked.cannot_leave == ""
 
 
-def test_a_light_blinks_and_links_are_left_when_other_sources_are_wanted(
+def test_a_light_blinks_and_links_are_left_when_other_sources_are_required(
     qtbot: QtBot, asked: SensorsStep, radio: FastRadio, visit: Visit
 ) -> None:
     asked.page.dots.list.choose(1)
@@ -69,7 +69,7 @@ def test_a_light_blinks_and_links_are_left_when_other_sources_are_wanted(
     qtbot.waitUntil(lambda: visit.sensors.is_idle, timeout=WAIT_MS)
 
 
-def test_a_stored_session_may_be_wanted_instead(asked: SensorsStep) -> None:
+def test_a_stored_session_may_be_required_instead(asked: SensorsStep) -> None:
     asked.page.source_chosen.emit(REPLAY)
     assert asked.page.stored.isVisible()
     assert not asked.setup.is_on
@@ -77,7 +77,7 @@ def test_a_stored_session_may_be_wanted_instead(asked: SensorsStep) -> None:
     assert asked.page.nothing.isVisible()
 
 
-def test_synchronising_is_told_step_by_step_and_gives_sensors_on_one_clock(
+def test_synchronising_is_reported_step_by_step_and_gives_sensors_on_one_clock(
     qtbot: QtBot, asked: SensorsStep, visit: Visit
 ) -> None:
     shown = []
@@ -144,7 +144,7 @@ def test_what_a_sensor_records_is_stopped_before_anything_is_set(
     assert len(dot.memory.files) == 1
 
 
-def test_one_that_does_not_answer_says_so_and_is_asked_until_it_does(
+def test_one_that_does_not_answer_states_so_and_is_asked_until_it_does(
     qtbot: QtBot, step: SensorsStep, radio: FastRadio
 ) -> None:
     radio.dots[1].faults.unreachable_until_ns = radio.now_ns() + 10**15

@@ -1,4 +1,4 @@
-"""Shaking one sensor after the other, or moving the legs, tells where each is dressed."""
+"""Shaking one sensor after the other, or moving the legs, gives where each is dressed."""
 
 from collections.abc import Iterator
 from dataclasses import replace
@@ -43,11 +43,11 @@ def shaken(block: ImuBlock, from_s: float, to_s: float, hz: float = 3.0) -> ImuB
 
 
 def states(blocks: Iterator[dict[str, ImuBlock]]) -> list[PlacingState]:
-    estimator, told = PlacingEstimator(NAMES), []
+    estimator, reported = PlacingEstimator(NAMES), []
     for block in blocks:
         estimator.update(block)
-        told.append(estimator.state)
-    return told
+        reported.append(estimator.state)
+    return reported
 
 
 def runs(values: list[object]) -> list[object]:
@@ -60,19 +60,19 @@ def test_one_after_the_other_is_recognised_within_a_second_and_a_half(hz: float)
     streams = lying(12.0)
     streams["B"] = shaken(streams["B"], 2.0, 4.5, hz)
     streams["E"] = shaken(streams["E"], 7.0, 9.5, hz)
-    told = states(in_blocks(streams, 0.03))
-    assert runs([state.shaken for state in told]) == [None, "B", None, "E", None]
-    assert told[-1].shakes == 2
-    first = next(k for k, state in enumerate(told) if state.shaken) * 0.03
+    reported = states(in_blocks(streams, 0.03))
+    assert runs([state.shaken for state in reported]) == [None, "B", None, "E", None]
+    assert reported[-1].shakes == 2
+    first = next(k for k, state in enumerate(reported) if state.shaken) * 0.03
     assert 2.9 < first < 3.5
-    assert not any(state.shaken_together for state in told)
+    assert not any(state.shaken_together for state in reported)
 
 
-def test_a_sensor_counts_anew_once_it_was_calm() -> None:
+def test_a_sensor_counts_again_once_it_was_calm() -> None:
     streams = lying(14.0)
     streams["A"] = shaken(shaken(streams["A"], 2.0, 6.0), 9.0, 11.0)
-    told = states(in_blocks(streams, 0.03))
-    assert runs([(state.shaken, state.shakes) for state in told]) == [
+    reported = states(in_blocks(streams, 0.03))
+    assert runs([(state.shaken, state.shakes) for state in reported]) == [
         (None, 0),
         ("A", 1),
         (None, 1),
@@ -85,9 +85,9 @@ def test_two_at_once_are_named_and_neither_counts() -> None:
     streams = lying(8.0)
     for name, from_s in (("C", 2.0), ("D", 2.3)):
         streams[name] = shaken(streams[name], from_s, 5.0)
-    told = states(in_blocks(streams, 0.03))
-    assert runs([state.shaken_together for state in told]) == [(), ("C", "D"), ()]
-    assert told[-1].shakes == 0
+    reported = states(in_blocks(streams, 0.03))
+    assert runs([state.shaken_together for state in reported]) == [(), ("C", "D"), ()]
+    assert reported[-1].shakes == 0
 
 
 @pytest.mark.parametrize(
@@ -95,8 +95,8 @@ def test_two_at_once_are_named_and_neither_counts() -> None:
 )
 def test_moving_all_of_them_shakes_nobody(rad_s: float, m_s2: float, hz: float) -> None:
     streams = {name: moved(block, 2.0, 8.0, hz, rad_s, m_s2) for name, block in lying(10.0).items()}
-    told = states(in_blocks(streams, 0.03))
-    assert all(state.shaken is None and not state.shaken_together for state in told)
+    reported = states(in_blocks(streams, 0.03))
+    assert all(state.shaken is None and not state.shaken_together for state in reported)
 
 
 def test_strapping_one_on_is_no_shaking() -> None:
@@ -113,20 +113,20 @@ def test_a_sensor_that_has_fallen_silent_keeps_nobody_from_being_recognised() ->
     assert states(in_blocks(streams, 0.03))[-1].shakes == 1
 
 
-def test_the_legs_are_told_and_their_sides_by_who_moved_first(dressed: Worn) -> None:
-    estimator, told = PlacingEstimator(dressed.site_of), []
+def test_the_legs_are_reported_and_their_sides_by_who_moved_first(dressed: Worn) -> None:
+    estimator, reported = PlacingEstimator(dressed.site_of), []
     for block in in_blocks(dressed.free_motion, 0.03):
         estimator.update(block)
-        told.append(estimator.state)
-    named = [state.sites(Side.LEFT) for state in told]
+        reported.append(estimator.state)
+    named = [state.sites(Side.LEFT) for state in reported]
     assert all(sites in ({}, dressed.site_of) for sites in named)  # never anything wrong
     assert named[-1] == dressed.site_of
-    mirrored = {name: site.side for name, site in told[-1].sites(Side.RIGHT).items()}
+    mirrored = {name: site.side for name, site in reported[-1].sites(Side.RIGHT).items()}
     assert all(mirrored[name] is not site.side for name, site in dressed.site_of.items())
-    assert not any(state.shaken or state.shaken_together for state in told)
+    assert not any(state.shaken or state.shaken_together for state in reported)
 
 
-def test_standing_and_shaking_tell_no_legs(dressed: Worn) -> None:
+def test_standing_and_shaking_show_no_legs(dressed: Worn) -> None:
     streams = dict(dressed.standing)
     for number, name in enumerate(streams):
         streams[name] = shaken(streams[name], BEGIN_S + 0.8 * number, BEGIN_S + 0.8 * (number + 1))
@@ -139,7 +139,7 @@ def test_standing_and_shaking_tell_no_legs(dressed: Worn) -> None:
 @pytest.mark.parametrize("block_s", [0.013, 60.0])
 def test_the_size_of_the_blocks_changes_nothing(dressed: Worn, block_s: float) -> None:
     usual, other = PlacingEstimator(dressed.site_of), PlacingEstimator(dressed.site_of)
-    # a look that is going on at the end tells nothing yet, unless one block brings all its steps
+    # a look that is going on at the end gives nothing yet, unless one block brings all its steps
     streams = {name: between(block, BEGIN_S, BEGIN_S + 21.9) for name, block in dressed.free_motion.items()}
     name = next(iter(streams))
     streams[name] = shaken(streams[name], BEGIN_S + 20.5, BEGIN_S + 21.9)
@@ -152,7 +152,7 @@ def test_the_size_of_the_blocks_changes_nothing(dressed: Worn, block_s: float) -
 def test_a_state_that_was_read_stays_as_it_was() -> None:
     streams = lying(4.0)
     streams["B"] = shaken(streams["B"], 1.0, 3.0)
-    told = states(in_blocks(streams, 0.03))
-    before, amid = told[30], told[60]
+    reported = states(in_blocks(streams, 0.03))
+    before, amid = reported[30], reported[60]
     assert before.movement_deg_s["B"] < 3.0
     assert amid.movement_deg_s["B"] > 100.0

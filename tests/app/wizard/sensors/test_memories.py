@@ -1,4 +1,5 @@
-"""What the sensors' memories hold: told, fetched where it was left, erased once it was said what is lost by that."""
+"""What the sensors' memories hold: reported, fetched where it was left, erased once it was stated what is lost by
+that."""
 
 from dataclasses import replace
 from datetime import datetime
@@ -48,8 +49,8 @@ def left_by_itself(dot: EmulatedDot, utc_s: int = SEPARATE_UTC_S) -> None:
     dot.write(0x7001, start_recording(utc_s).packed())
 
 
-def told_lines(step: SensorsStep) -> list[list[str]]:
-    """What the list says, but for when."""
+def reported_lines(step: SensorsStep) -> list[list[str]]:
+    """What the list states, but for when."""
     return [[cell.words for cell in row.cells][1:] for row in rows_of(step.page.memories.list)]
 
 
@@ -60,7 +61,7 @@ def look(qtbot: QtBot, step: SensorsStep) -> None:
 
 def wait(qtbot: QtBot, step: SensorsStep) -> None:
     assert step.memories.is_busy
-    assert step.cannot_leave == "The sensors are being queried. Wait, or cancel."
+    assert step.cannot_leave == "The sensors are being queried. Wait until they have answered, or cancel."
     qtbot.waitUntil(lambda: not step.memories.is_busy, timeout=WAIT_MS)
     assert step.cannot_leave == ""
 
@@ -79,7 +80,7 @@ def walk_in_memory(qtbot: QtBot, visit: Visit, *, is_fetched: bool) -> None:
 
 
 @pytest.mark.endurance
-def test_empty_memories_are_told_and_live_comes_back(qtbot: QtBot, opened: SensorsStep, visit: Visit) -> None:
+def test_empty_memories_are_reported_and_live_comes_back(qtbot: QtBot, opened: SensorsStep, visit: Visit) -> None:
     assert [one.text for one in opened.bar().quiet] == ["Sensor memory"]
     look(qtbot, opened)
     assert opened.page.memories.isVisible()
@@ -97,7 +98,7 @@ def test_what_is_kept_is_erased_after_a_second_press(
 ) -> None:
     walk_in_memory(qtbot, visit, is_fetched=True)
     look(qtbot, opened)
-    assert told_lines(opened) == [["2 sensors", "Saved: A Shoes."]]
+    assert reported_lines(opened) == [["2 sensors", "Saved: A Shoes."]]
     bar = opened.bar()
     assert bar.primary is not None
     assert bar.primary.text == "Back to the sensors"
@@ -117,10 +118,10 @@ def test_what_is_kept_is_erased_after_a_second_press(
 def test_no_other_sensors_are_opened_while_these_are_asked(qtbot: QtBot, opened: SensorsStep, visit: Visit) -> None:
     press(opened, "Sensor memory")
     open_ones = visit.sensors.acquisition
-    with qtbot.waitSignal(opened.told) as told:
+    with qtbot.waitSignal(opened.reported) as reported:
         opened.page.source_chosen.emit(DRIVER)
-    assert told.args is not None
-    assert "The sensors are being queried" in told.args[0]
+    assert reported.args is not None
+    assert "The sensors are being queried" in reported.args[0]
     assert not opened.on_intent(Intent(KeyAction.IDENTIFY)), "a light was lit of a sensor that is not in sight"
     wait(qtbot, opened)
     assert visit.sensors.acquisition is open_ones
@@ -137,12 +138,12 @@ def test_what_a_closed_visit_left_in_the_sensors_is_fetched_where_the_session_go
     recordings.fetch_later()
     recordings.close()
     assert recordings.in_sensors == ()
-    visit.read_anew()  # as a session that is gone on with is read
+    visit.read_again()  # as a session that is gone on with is read
     qtbot.waitUntil(lambda: len(recordings.walks) == 1, timeout=WAIT_MS)
     assert [walk.details.is_kept for walk in recordings.walks] == [False]
     last.unreachable_until_ns = 0
     look(qtbot, opened)
-    assert told_lines(opened) == [["2 sensors", "Not fetched: Shoes."]]
+    assert reported_lines(opened) == [["2 sensors", "Not fetched: Shoes."]]
     bar = opened.bar()
     assert bar.primary is not None
     assert bar.primary.text == "Fetch walk"
@@ -155,7 +156,7 @@ def test_what_a_closed_visit_left_in_the_sensors_is_fetched_where_the_session_go
     assert [len(block) for block in fetched.read_back.imu.values()] == [
         len(dot.memory.files[0].ticks) for dot in radio.dots
     ]
-    assert told_lines(opened) == [["2 sensors", "Saved: A Shoes."]]
+    assert reported_lines(opened) == [["2 sensors", "Saved: A Shoes."]]
 
 
 def test_what_is_not_of_this_library_is_not_fetched_and_is_named_before_it_is_lost(
@@ -169,7 +170,7 @@ def test_what_is_not_of_this_library_is_not_fetched_and_is_named_before_it_is_lo
     for dot in radio.dots:
         dot.write(0x7001, bytes.fromhex("010141bd"))
     look(qtbot, opened)
-    assert told_lines(opened) == [["2 sensors", "Not recorded with this library."]]
+    assert reported_lines(opened) == [["2 sensors", "Not recorded with this library."]]
     bar = opened.bar()
     assert bar.primary is not None
     assert bar.primary.text == "Back to the sensors"
@@ -183,7 +184,7 @@ def test_what_is_not_of_this_library_is_not_fetched_and_is_named_before_it_is_lo
 
 
 @pytest.mark.endurance
-def test_a_sensor_that_is_out_of_reach_is_told_and_asked_again(
+def test_a_sensor_that_is_out_of_reach_is_reported_and_asked_again(
     qtbot: QtBot, opened: SensorsStep, visit: Visit, radio: FastRadio
 ) -> None:
     radio.dots[1].faults.unreachable_until_ns = radio.now_ns() + 10**15
@@ -230,7 +231,7 @@ def test_what_lacked_when_it_was_fetched_first_and_was_had_then_is_not_lacking(
     utc_s = int(datetime.fromisoformat(walk.details.started).timestamp())
 
     def fetched_before(*journal: Any) -> DecodedJournal:
-        """The same, with a first attempt that was not told where the first sensor's file ends."""
+        """The same, with a first attempt that was not reported where the first sensor's file ends."""
         whole = decode(*journal)
         count = len(whole.sensors["DOT 0001"].block)
         first = replace(whole.marks[0], text=f'{FETCHED}{{"DOT 0001": [{utc_s}, {count}, false]}}')

@@ -1,4 +1,5 @@
-"""The page of the sensors: by mouse, by keys and by shaking each sensor comes to one place, and is said to be there."""
+"""The page of the sensors: by mouse, by keys and by shaking each sensor comes to one place, and is stated to be
+there."""
 
 from collections.abc import Iterator
 
@@ -99,9 +100,9 @@ def test_no_tile_lies_over_the_letters_of_the_legs(qtbot: QtBot, look: ThemeNoti
 
 @pytest.fixture
 def assigned(page: SensorsPage) -> list[tuple[str, Site | None]]:
-    heard: list[tuple[str, Site | None]] = []
-    page.assigned.connect(lambda sensor, site: heard.append((sensor, site)))
-    return heard
+    received: list[tuple[str, Site | None]] = []
+    page.assigned.connect(lambda sensor, site: received.append((sensor, site)))
+    return received
 
 
 def data_of(sensor: str) -> QMimeData:
@@ -133,7 +134,7 @@ def test_a_drop_beside_the_figure_is_none(page: SensorsPage, assigned: list[tupl
     assert assigned == []
 
 
-def test_a_worn_place_says_that_dropping_swaps(page: SensorsPage) -> None:
+def test_a_worn_place_states_that_dropping_swaps(page: SensorsPage) -> None:
     page.show_sensors(rows(Site.LEFT_THIGH))
     at = page.places.tiles[Site.LEFT_THIGH].geometry().center()
     data = data_of("0A31")  # the event does not keep it alive
@@ -239,7 +240,7 @@ def test_shaken_sensors_take_the_places_in_turn(page: SensorsPage, assigned: lis
     assert assigned[-1] == ("0A31", Site.RIGHT_FOOT)
 
 
-def test_two_shaken_at_once_tell_nothing(page: SensorsPage) -> None:
+def test_two_shaken_at_once_show_nothing(page: SensorsPage) -> None:
     page.show_way(Way.SHAKE)
     page.show_shaken_together(["0A22", "0A2C"])
     assert page.notice.text == "0A22 and 0A2C were both shaken. Shake one at a time."
@@ -280,7 +281,7 @@ def test_a_foot_that_no_sensor_is_left_for_costs_the_ankle(page: SensorsPage) ->
         ),
     ],
 )
-def test_what_wants_a_look_is_said(page: SensorsPage, changes: dict[str, object], words: str) -> None:
+def test_what_wants_a_look_is_stated(page: SensorsPage, changes: dict[str, object], words: str) -> None:
     page.show_sensors(rows(*LEG_SITES, s0A22=changes))
     assert page.notice.text.startswith(words)
     assert page.list.rows["0A22"].sensor.wants_look
@@ -289,7 +290,7 @@ def test_what_wants_a_look_is_said(page: SensorsPage, changes: dict[str, object]
 
 def test_a_refusal_goes_before_all_else_and_is_seen_without_a_source(page: SensorsPage) -> None:
     page.show_no_source()
-    page.tell("COM7 is in use by another program.", "Close that program, then search again.")
+    page.show_message("COM7 is in use by another program.", "Close that program, then search again.")
     assert page.nothing.isVisible()
     assert "COM7 is in use by another program. Close that program, then search again." in _texts_of(page.nothing)
 
@@ -308,23 +309,23 @@ def test_without_a_source_five_are_offered_and_pressed_by_keys(page: SensorsPage
     page.show_no_source()
     assert [button.text() for button in page.nothing.buttons] == [option.name for option in OPTIONS[:5]]
     page.focus()
-    with qtbot.waitSignal(page.source_chosen, timeout=1000) as heard:
+    with qtbot.waitSignal(page.source_chosen, timeout=1000) as received:
         QTest.keyClick(page.nothing.buttons[0], Qt.Key.Key_Return)
-    assert heard.args == ["serial"]
+    assert received.args == ["serial"]
     page.show_searching("Serial ports")
     assert page.searching.isVisible()
     with qtbot.waitSignal(page.stop_pressed, timeout=1000):
         QTest.keyClick(page.searching.stop, Qt.Key.Key_Space)
 
 
-def test_rows_keep_the_focus_while_they_are_shown_anew(page: SensorsPage) -> None:
+def test_rows_keep_the_focus_while_they_are_shown_again(page: SensorsPage) -> None:
     page.focus()
     page.show_sensors(rows(Site.LEFT_FOOT))
     assert page.list.rows["0A09"].hasFocus()
     assert "position: L foot" in page.list.rows["0A09"].accessibleName()
 
 
-def test_a_silent_sensor_is_looked_for_and_a_heard_one_lit(page: SensorsPage, qtbot: QtBot) -> None:
+def test_a_silent_sensor_is_looked_for_and_a_received_one_lit(page: SensorsPage, qtbot: QtBot) -> None:
     page.show_sensors(rows(*LEG_SITES, s0A22={"silent_s": 4.0}))
     with qtbot.waitSignal(page.reconnect_pressed, timeout=1000):
         page.list.rows["0A22"].identify.click()
@@ -373,7 +374,7 @@ def test_nothing_lies_over_another_or_outside(
             assert left + control.width() <= page.width()
 
 
-def test_a_trace_breaks_where_nothing_was_heard() -> None:
+def test_a_trace_breaks_where_nothing_was_received() -> None:
     values = np.sin(np.arange(500) / 10)
     values[200:300] = np.nan
     first, last = _lines(values, 600, 40)
@@ -394,7 +395,7 @@ def test_a_page_asks_no_room_for_another(page: SensorsPage) -> None:
     settle()
     assert page._whole.horizontalScrollBar().maximum() == 0
     low = scroll.maximum()
-    page.stored.tell("what " * 80, "then " * 120)
+    page.stored.show_message("what " * 80, "then " * 120)
     page.show_stored()
     settle()
     assert scroll.maximum() > low
@@ -458,7 +459,7 @@ def test_shaken_in_turn_the_pelvis_comes_last(page: SensorsPage, assigned: list[
     assert assigned == [(SEVENTH, Site.PELVIS)]
 
 
-def test_what_is_said_of_a_pelvis_costs_the_hips_alone(page: SensorsPage) -> None:
+def test_what_is_stated_of_a_pelvis_costs_the_hips_alone(page: SensorsPage) -> None:
     page.show_sensors(seven(*Site))
     assert page.notice.text == "All seven are assigned and connected."
     page.show_sensors(seven(*Site, s0A3E={"silent_s": 4.0}))
@@ -474,7 +475,7 @@ def test_what_is_said_of_a_pelvis_costs_the_hips_alone(page: SensorsPage) -> Non
     assert page.notice.text == "No sensor on the pelvis: no hip angles. Knees, ankles and steps are not affected."
 
 
-def test_without_a_pelvis_nothing_is_said_of_hips(page: SensorsPage) -> None:
+def test_without_a_pelvis_nothing_is_stated_of_hips(page: SensorsPage) -> None:
     page.show_sensors(rows(*LEG_SITES))
     assert page.notice.text == "All six are assigned and connected."
     page.show_sensors(rows(*LEG_SITES, s0A09={"silent_s": 4.0}))

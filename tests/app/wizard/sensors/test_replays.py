@@ -107,7 +107,7 @@ def test_a_folder_is_chosen_beside_the_page(qtbot: QtBot, visit: Visit, step: Se
         dialog.close()
 
 
-def test_what_cannot_be_read_is_said_in_the_page(
+def test_what_cannot_be_read_is_stated_in_the_page(
     qtbot: QtBot, visit: Visit, step: SensorsStep, folder: Path, tmp_path: Path
 ) -> None:
     step.page.source_chosen.emit(REPLAY)

@@ -74,7 +74,7 @@ def test_a_choice_opens_all_sensors_of_its_driver() -> None:
         acquisition.close()
 
 
-def test_a_search_looks_anew_and_opens_whatever_is_there() -> None:
+def test_a_search_looks_again_and_opens_whatever_is_there() -> None:
     every = [SearchResult(), SearchResult((sensor("A"), sensor("C", "witmotion")))]
     sources = Sources(lambda: every.pop(0))
     sources.look()
@@ -97,7 +97,7 @@ def test_a_search_looks_anew_and_opens_whatever_is_there() -> None:
         (SearchResult((), (REFUSED,) * 2), "No sensor"),
     ],
 )
-def test_where_nothing_is_found_it_says_why(found: SearchResult, what: str) -> None:
+def test_where_nothing_is_found_it_states_why(found: SearchResult, what: str) -> None:
     with pytest.raises(SourceRefusedError, match=what):
         found_by(found)[-2].make()
 
@@ -120,7 +120,7 @@ def test_the_machines_own_search_begins_with_the_list(monkeypatch: pytest.Monkey
     qtbot.waitUntil(lambda: len(listed) == 4, timeout=5000)
 
 
-def test_streams_are_asked_for_by_a_choice_only_that_says_whom(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_streams_are_asked_for_by_a_choice_only_that_states_whom(monkeypatch: pytest.MonkeyPatch) -> None:
     asked: list[str] = []
 
     def search_streams(address: str) -> SearchResult:
@@ -158,24 +158,26 @@ def test_a_patient_with_one_prosthesis_is_simulated_with_it(sides: tuple[Side, .
     assert (simulated.make != Sources(lambda: SearchResult(()))[0].make) is is_user
     if sides == (Side.LEFT,):
         acquisition = simulated.make()
-        acquisition.set_up([NetChange(ProsthesisPart.PYLON, height_mm=3.0)])  # who is simulated with none hears nothing
+        acquisition.set_up(
+            [NetChange(ProsthesisPart.PYLON, height_mm=3.0)]
+        )  # who is simulated with none receives nothing
         assert acquisition.is_simulated
         acquisition.close()
 
 
 @pytest.mark.parametrize(
-    ("deaf", "said"),
+    ("deaf", "stated"),
     [
         (None, "search again$"),
         (BluetoothMissingError("a", "b"), "need gaitwright\\[bluetooth\\]$"),
         (SourceRefusedError("a", "b"), "once Bluetooth is switched on$"),
     ],
 )
-def test_where_nothing_is_found_it_says_what_bluetooth_lacks(deaf: SourceRefusedError | None, said: str) -> None:
+def test_where_nothing_is_found_it_states_what_bluetooth_lacks(deaf: SourceRefusedError | None, stated: str) -> None:
     sources = Sources(lambda: SearchResult(deaf=deaf))
     with pytest.raises(SourceRefusedError, match="No sensor found") as refused:
         sources[-2].make()
-    assert re.search(said, refused.value.remedy)
+    assert re.search(stated, refused.value.remedy)
 
 
 def test_dots_are_set_up_before_they_are_opened_and_others_are_opened_without_them(qtbot: QtBot) -> None:
@@ -193,15 +195,15 @@ def test_dots_are_set_up_before_they_are_opened_and_others_are_opened_without_th
     acquisition.close()
 
 
-def test_sensors_that_have_to_be_set_up_are_told_by_their_key(qtbot: QtBot) -> None:
+def test_sensors_that_have_to_be_set_up_are_reported_by_their_key(qtbot: QtBot) -> None:
     sensors = WornSensors(None)  # type: ignore[arg-type]  # it belongs to nobody
 
     def make() -> Acquisition:
         raise SetUpFirstError(MOVELLA_DOT)
 
-    with qtbot.waitSignal(sensors.set_up_wanted, timeout=5000) as wanted, qtbot.assertNotEmitted(sensors.refused):
+    with qtbot.waitSignal(sensors.set_up_required, timeout=5000) as required, qtbot.assertNotEmitted(sensors.refused):
         sensors.search(SourceChoice(SEARCH, "Search", make))
-    assert wanted.args == [MOVELLA_DOT]
+    assert required.args == [MOVELLA_DOT]
     sensors.finish()
 
 

@@ -1,4 +1,4 @@
-"""The step of the sensors, on the simulated patient: heard, shaken, placed, silent and back."""
+"""The step of the sensors, on the simulated patient: received, shaken, placed, silent and back."""
 
 import threading
 
@@ -55,7 +55,7 @@ def test_without_a_source_the_choices_stand_in_the_page(step: SensorsStep) -> No
     assert step.state is StepState.TODO
 
 
-def test_sensors_are_placed_by_keys_and_told_to_the_library(
+def test_sensors_are_placed_by_keys_and_reported_to_the_library(
     qtbot: QtBot, visit: Visit, step: SensorsStep, worn: dict[str, Site]
 ) -> None:
     open_source(qtbot, visit, step)
@@ -72,7 +72,7 @@ def test_sensors_are_placed_by_keys_and_told_to_the_library(
     assert step.state is StepState.DONE
     verb = step.bar().primary
     assert verb is not None
-    assert verb.is_wished
+    assert verb.is_requested
     with qtbot.waitSignal(step.done):
         press(step)
     with qtbot.waitSignal(visit.changed, timeout=5000):
@@ -188,7 +188,7 @@ def test_a_search_that_is_stopped_gives_the_sources_back(visit: Visit, step: Sen
     may_end.set()
 
 
-def test_whom_a_network_asks_is_told_only_as_long_as_it_is_chosen(
+def test_whom_a_network_asks_is_reported_only_as_long_as_it_is_chosen(
     qtbot: QtBot, visit: Visit, step: SensorsStep
 ) -> None:
     asks = SourceChoice("net", "Network", visit.known_choices[0].make, asks=("This asks every computer.", "Again."))
@@ -205,7 +205,7 @@ def test_whom_a_network_asks_is_told_only_as_long_as_it_is_chosen(
 
 
 @pytest.mark.usefixtures("pseudo_language")
-def test_what_is_refused_is_said_in_the_users_language(qtbot: QtBot, visit: Visit, step: SensorsStep) -> None:
+def test_what_is_refused_is_stated_in_the_users_language(qtbot: QtBot, visit: Visit, step: SensorsStep) -> None:
     def make() -> Acquisition:
         raise SourceRefusedError("{place} is in use by another program", "Close that program", place="COM{7}")
 
@@ -262,7 +262,7 @@ def test_simulated_sensors_are_not_refused_on_the_demonstrations_patient(
 def test_who_has_simulated_sensors_is_led_to_a_demonstration_patient(
     qtbot: QtBot, simulated_on_a_patient: Visit, step: SensorsStep
 ) -> None:
-    with qtbot.waitSignal(step.demonstration_wanted):
+    with qtbot.waitSignal(step.demonstration_required):
         press(step, "Start with a demonstration patient")
     step.leave()
     qtbot.wait(50)
@@ -278,7 +278,7 @@ def test_the_demonstration_begins_with_its_patient_found_or_to_be_made(
     monkeypatch.setattr("app.wizard.wizard.DEMO_PATIENT", code)
     wizard.begin(None)
     first = wizard.visit
-    wizard.steps[StepId.PATIENT].demonstration_wanted.emit()
+    wizard.steps[StepId.PATIENT].demonstration_required.emit()
     assert wizard.visit is not first
     assert wizard.visit is not None
     patient = wizard.visit.patient

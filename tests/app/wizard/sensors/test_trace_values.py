@@ -1,4 +1,4 @@
-"""What a sensor's trace draws: even steps about one axis, and nothing where nothing was heard."""
+"""What a sensor's trace draws: even steps about one axis, and nothing where nothing was received."""
 
 import numpy as np
 import pytest

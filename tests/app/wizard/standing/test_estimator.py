@@ -10,11 +10,11 @@ from tests.app.wizard.dressed_patient import BEGIN_S, Worn, in_blocks
 
 
 def states(dressed: Worn, streams: dict[str, ImuBlock], block_s: float = 0.03) -> list[StandingView]:
-    estimator, told = StandingEstimator(dressed.site_of), []
+    estimator, reported = StandingEstimator(dressed.site_of), []
     for block in in_blocks(streams, block_s):
         estimator.update(block)
-        told.append(estimator.state)
-    return told
+        reported.append(estimator.state)
+    return reported
 
 
 def swayed(dressed: Worn, at_s: float) -> tuple[str, dict[str, ImuBlock]]:
@@ -26,21 +26,21 @@ def swayed(dressed: Worn, at_s: float) -> tuple[str, dict[str, ImuBlock]]:
     return name, {**dressed.standing, name: replace(block, gyr_rad_s=gyr_rad_s)}
 
 
-def test_who_stands_still_is_done_with_every_sensor_at_rest(dressed: Worn) -> None:
+def test_who_is_still_is_done_with_every_sensor_at_rest(dressed: Worn) -> None:
     last = states(dressed, dict(dressed.standing))[-1]
     assert set(last.standing.rest) == set(dressed.site_of)
     assert last.standing.restarts == 0
     assert 0.0 < max(last.movement_deg_s.values()) < LIMIT_DEG_S
 
 
-def test_the_bars_pass_the_limit_just_when_the_verdict_says_so(dressed: Worn) -> None:
+def test_the_bars_pass_the_limit_just_when_the_verdict_states_so(dressed: Worn) -> None:
     name, streams = swayed(dressed, BEGIN_S + 2.0)
-    told = states(dressed, streams)
-    for state in told:
+    reported = states(dressed, streams)
+    for state in reported:
         over = tuple(one for one, deg_s in state.movement_deg_s.items() if deg_s >= LIMIT_DEG_S)
         assert over == state.standing.moved
-    assert {state.standing.moved for state in told} == {(), (name,)}
-    assert told[-1].standing.restarts == 1
+    assert {state.standing.moved for state in reported} == {(), (name,)}
+    assert reported[-1].standing.restarts == 1
 
 
 def test_a_sensor_that_is_not_worn_is_passed_over(dressed: Worn) -> None:

@@ -52,7 +52,7 @@ def test_the_ring_counts_the_seconds_that_are_left(still_s: float, figure: str) 
     assert face.share == pytest.approx(still_s / 3, abs=1e-3)
 
 
-def test_before_the_count_the_ring_says_which_key_starts_it() -> None:
+def test_before_the_count_the_ring_states_which_key_starts_it() -> None:
     face = ring_face(StandStillView(movement_deg_s=STILL))
     assert (face.share, face.key, face.word) == (0.0, "Space", "starts")
 
@@ -77,7 +77,7 @@ def test_who_moved_is_named_until_a_second_is_still_again() -> None:
     assert verdict(counting(1.1, moved=moved))[1] == "All 6 sensors still"
 
 
-def test_both_legs_and_many_sensors_are_said_in_a_few_words() -> None:
+def test_both_legs_and_many_sensors_are_stated_in_a_few_words() -> None:
     _, what, then, _ = verdict(counting(0.0, moved=(Site.LEFT_THIGH, Site.RIGHT_FOOT)))
     assert what == "L thigh and R foot moving"
     assert then == "The count restarts automatically."
@@ -109,7 +109,7 @@ def test_going_on_without_is_offered_after_three_restarts() -> None:
     assert is_caution
 
 
-def test_without_standing_the_page_says_what_is_lost_and_the_way_back(qtbot: QtBot, page: StandStillPage) -> None:
+def test_without_standing_the_page_states_what_is_lost_and_the_way_back(qtbot: QtBot, page: StandStillPage) -> None:
     with qtbot.waitSignal(page.cannot_stand_pressed):
         page.zero.button.click()
     skipped = StandStillView(StandPhase.SKIPPED, movement_deg_s=STILL)
@@ -126,7 +126,7 @@ def test_no_field_takes_the_focus_by_itself_for_space_starts_the_count(page: Sta
     assert not any(one.line_edit.hasFocus() for one in page.zero.fields.values())
 
 
-def test_an_angle_is_told_with_its_joint_when_it_is_left(qtbot: QtBot, page: StandStillPage) -> None:
+def test_an_angle_is_reported_with_its_joint_when_it_is_left(qtbot: QtBot, page: StandStillPage) -> None:
     knee = page.zero.fields[Joint.LEFT_KNEE].line_edit
     knee.setFocus()
     knee.selectAll()
@@ -137,7 +137,7 @@ def test_an_angle_is_told_with_its_joint_when_it_is_left(qtbot: QtBot, page: Sta
     assert page.zero.fields[Joint.RIGHT_KNEE].line_edit.hasFocus()  # L then R
 
 
-def test_an_emptied_angle_is_told_as_none_and_a_wrong_one_not_at_all(qtbot: QtBot, page: StandStillPage) -> None:
+def test_an_emptied_angle_is_reported_as_none_and_a_wrong_one_not_at_all(qtbot: QtBot, page: StandStillPage) -> None:
     ankle = page.zero.fields[Joint.RIGHT_ANKLE].line_edit
     ankle.selectAll()
     QTest.keyClicks(ankle, "61")
@@ -150,7 +150,7 @@ def test_an_emptied_angle_is_told_as_none_and_a_wrong_one_not_at_all(qtbot: QtBo
     assert edited.args == [Joint.RIGHT_ANKLE, None]
 
 
-def test_an_angle_being_typed_is_told_when_the_page_goes(qtbot: QtBot, page: StandStillPage) -> None:
+def test_an_angle_being_typed_is_reported_when_the_page_goes(qtbot: QtBot, page: StandStillPage) -> None:
     knee = page.zero.fields[Joint.LEFT_KNEE].line_edit
     knee.setFocus()
     knee.selectAll()
@@ -160,7 +160,7 @@ def test_an_angle_being_typed_is_told_when_the_page_goes(qtbot: QtBot, page: Sta
     assert edited.args == [Joint.LEFT_KNEE, 12.0]
 
 
-def test_a_joint_without_its_sensors_has_no_angle_and_says_so(page: StandStillPage) -> None:
+def test_a_joint_without_its_sensors_has_no_angle_and_states_so(page: StandStillPage) -> None:
     page.show_zero({joint: 0.0 for joint in LEG_JOINTS if joint is not Joint.RIGHT_ANKLE})
     assert [joint for joint, field in page.zero.fields.items() if not field.isEnabled()] == [Joint.RIGHT_ANKLE]
     assert page.zero.fields[Joint.RIGHT_ANKLE].text == ""
@@ -226,17 +226,19 @@ def test_more_sensors_than_places_are_all_still() -> None:
 
 @pytest.mark.parametrize("phase", StandPhase)
 @pytest.mark.parametrize("moves_deg_s", [21.0, 74.0])
-def test_all_are_never_said_to_be_still_beside_a_figure_above_the_limit(phase: StandPhase, moves_deg_s: float) -> None:
+def test_all_are_never_stated_to_be_still_beside_a_figure_above_the_limit(
+    phase: StandPhase, moves_deg_s: float
+) -> None:
     for sites in ((Site.LEFT_SHANK,), LEG_SITES):
         view = StandStillView(phase, 2.0, movement_deg_s=STILL | dict.fromkeys(sites, moves_deg_s))
-        said = " ".join(str(part) for part in verdict(view))
-        assert "still" not in said
+        stated = " ".join(str(part) for part in verdict(view))
+        assert "still" not in stated
         if phase in (StandPhase.READY, StandPhase.COUNTING):
-            assert "moving" in said
+            assert "moving" in stated
         assert "All 6 sensors still" in verdict(replace(view, movement_deg_s=STILL)) or phase is StandPhase.SKIPPED
 
 
-def test_what_is_not_heard_enough_is_not_said_to_be_still() -> None:
+def test_what_is_not_received_enough_is_not_stated_to_be_still() -> None:
     view = replace(counting(), movement_deg_s=STILL | {Site.LEFT_FOOT: math.inf})
     assert verdict(view) == (None, "", "", False)
 

@@ -1,4 +1,4 @@
-"""The step of standing on a simulated patient: it ends by itself, begins anew when somebody moves, can be skipped."""
+"""The step of standing on a simulated patient: it ends by itself, begins again when somebody moves, can be skipped."""
 
 from collections.abc import Callable, Iterator
 
@@ -143,7 +143,7 @@ def test_leaving_during_the_count_keeps_nothing(qtbot: QtBot, step: StandStillSt
     assert not visit.rests
 
 
-def test_the_goniometer_is_told_in_radians_and_nought_is_the_standing_itself(
+def test_the_goniometer_is_reported_in_radians_and_nought_is_the_standing_itself(
     qtbot: QtBot, step: StandStillStep, visit: Visit
 ) -> None:
     step.page.zero_edited.emit(Joint.LEFT_KNEE, 15.0)

@@ -14,9 +14,11 @@ OF_B = AlignmentChange("Alignment A", (PartChange(PYLON, height_mm=3.0),))
 OF_C = AlignmentChange("Alignment B", (PartChange(PYLON, height_mm=-1.0),))
 
 
-def recording(number: int, letter: str, change: AlignmentChange | None = None, **told: Any) -> Recording:
+def recording(number: int, letter: str, change: AlignmentChange | None = None, **reported: Any) -> Recording:
     name = f"walk {number}"
-    return Recording(name, RecordingKind.WALKING, name, {}, condition=f"Alignment {letter}", alignment=change, **told)
+    return Recording(
+        name, RecordingKind.WALKING, name, {}, condition=f"Alignment {letter}", alignment=change, **reported
+    )
 
 
 WALKED = (recording(1, "A"), recording(2, "B", OF_B), recording(3, "C", OF_C))

@@ -1,4 +1,4 @@
-"""The prosthetist's bench: the chain and the next change, what it says of two alignments, and its page by keys."""
+"""The prosthetist's bench: the chain and the next change, what it states of two alignments, and its page by keys."""
 
 from dataclasses import replace
 from types import SimpleNamespace
@@ -41,12 +41,12 @@ def part(letter: str, **changes: Any) -> Part:
     return Part(letter, f"Alignment {letter}", (judged_walk(walk(**changes), found),), found)
 
 
-def told_of(one: Part, other: Part) -> tuple[Outcome, str, str]:
+def reported_of(one: Part, other: Part) -> tuple[Outcome, str, str]:
     found = bench_answer(Comparison(Contrast.CONDITIONS, (other, one)), Side.LEFT)
     return found.outcome, found.first, found.then
 
 
-def test_a_change_is_told_part_by_part_in_steps_up_to_its_limits() -> None:
+def test_a_change_is_reported_part_by_part_in_steps_up_to_its_limits() -> None:
     entry = ChangeEntry()
     assert not entry.parts
     entry.step("angle_deg", 3)
@@ -65,7 +65,7 @@ def test_a_change_is_told_part_by_part_in_steps_up_to_its_limits() -> None:
     assert not list(other.parts)
 
 
-def test_with_nothing_told_the_next_walk_is_the_same_alignment_again() -> None:
+def test_with_nothing_reported_the_next_walk_is_the_same_alignment_again() -> None:
     chain, entry = chain_of(WALKED[:2], ""), ChangeEntry()
     assert (chain.base, chain.first, chain.next_letter) == ("Alignment B", "Alignment A", "C")
     assert next_walk(chain, entry, "Alignment C") == ("Alignment B", OF_B)
@@ -92,8 +92,8 @@ def test_what_is_discarded_is_no_part_of_the_chain() -> None:
     assert (chain.base, chain.next_letter) == ("Alignment B", "C")
 
 
-def test_the_sentence_tells_the_prosthetic_sides_change_with_both_values() -> None:
-    outcome, first, then = told_of(part("B", left=leg(Side.LEFT, knee_range_deg=70.0)), part("A"))
+def test_the_sentence_shows_the_prosthetic_sides_change_with_both_values() -> None:
+    outcome, first, then = reported_of(part("B", left=leg(Side.LEFT, knee_range_deg=70.0)), part("A"))
     assert outcome is Outcome.DIFFERS
     assert first == "Prosthetic-side knee has 70.0° range of motion with B, 10.0° more than with A (60.0°)."
     assert then.startswith("Beyond measurement error (±")
@@ -110,32 +110,34 @@ def swinging(range_deg: float, swing_deg: float) -> SideGait:
     return replace(found, parameters={**found.parameters, **swing})
 
 
-@pytest.mark.parametrize(("swing_deg", "told"), [(68.0, "flexes 68.0° from stance to swing"), (58.5, ROM), (48.0, ROM)])
-def test_of_a_range_and_the_excursion_that_makes_it_the_excursion_is_told(swing_deg: float, told: str) -> None:
+@pytest.mark.parametrize(
+    ("swing_deg", "reported"), [(68.0, "flexes 68.0° from stance to swing"), (58.5, ROM), (48.0, ROM)]
+)
+def test_of_a_range_and_the_excursion_that_makes_it_the_excursion_is_reported(swing_deg: float, reported: str) -> None:
     """Not where the excursion hardly changes, nor where it changes the other way and less."""
-    _, first, _ = told_of(part("B", left=swinging(70.0, swing_deg)), part("A", left=swinging(59.0, 57.0)))
-    assert first.startswith(f"Prosthetic-side knee {told} with B, ")
+    _, first, _ = reported_of(part("B", left=swinging(70.0, swing_deg)), part("A", left=swinging(59.0, 57.0)))
+    assert first.startswith(f"Prosthetic-side knee {reported} with B, ")
 
 
 def test_where_only_the_sound_side_changes_no_sentence_is_of_the_prosthetic_one() -> None:
-    outcome, first, then = told_of(part("B", right=leg(Side.RIGHT, knee_range_deg=70.0)), part("A"))
+    outcome, first, then = reported_of(part("B", right=leg(Side.RIGHT, knee_range_deg=70.0)), part("A"))
     assert outcome is Outcome.NOTHING
     assert first == "Prosthetic side: knee range of motion is similar with A and with B, 60.0° and 60.0°."
     assert then.startswith("The change of 0.0° may be measurement error: likely between −")
     assert "The sound side also changes beyond measurement error." in then
 
 
-def test_strapped_on_anew_between_the_error_is_the_larger_and_said_so() -> None:
+def test_strapped_on_again_between_the_error_is_the_larger_and_stated_so() -> None:
     """4° are beyond the error of one strapping and inside that of two."""
     other = part("A")
     changed = part("B", left=leg(Side.LEFT, knee_range_deg=65.0))
-    assert told_of(changed, other)[0] is Outcome.DIFFERS
-    outcome, _, then = told_of(replace(changed, attachment=1), other)
+    assert reported_of(changed, other)[0] is Outcome.DIFFERS
+    outcome, _, then = reported_of(replace(changed, attachment=1), other)
     assert outcome is Outcome.NOTHING
     assert "Sensors were reattached in between." in then
 
 
-def test_a_change_that_the_table_marks_is_told_with_its_error_however_little_it_is_beyond() -> None:
+def test_a_change_that_the_table_marks_is_reported_with_its_error_however_little_it_is_beyond() -> None:
     """63.5 against 60 is beyond the error of 2.8, and by less than a sentence on paper needs."""
     one, other = part("B", left=leg(Side.LEFT, knee_range_deg=63.5)), part("A")
     (row,) = (
@@ -145,14 +147,14 @@ def test_a_change_that_the_table_marks_is_told_with_its_error_however_little_it_
     )
     assert row.exceeds
     assert not row.difference.is_worth_a_sentence
-    outcome, first, then = told_of(one, other)
+    outcome, first, then = reported_of(one, other)
     assert outcome is Outcome.DIFFERS
     assert first == "Prosthetic-side knee has 63.5° range of motion with B, 3.5° more than with A (60.0°)."
     assert then.startswith("Just beyond measurement error (±")
 
 
-def test_what_may_be_error_is_told_with_what_fits() -> None:
-    outcome, first, then = told_of(part("B", left=leg(Side.LEFT, knee_range_deg=61.0)), part("A"))
+def test_what_may_be_error_is_reported_with_what_fits() -> None:
+    outcome, first, then = reported_of(part("B", left=leg(Side.LEFT, knee_range_deg=61.0)), part("A"))
     assert outcome is Outcome.NOTHING
     assert first == "Prosthetic side: knee range of motion is similar with A and with B, 60.0° and 61.0°."
     assert then.startswith("The change of +1.0° may be measurement error: likely between −1.")
@@ -166,24 +168,24 @@ def test_stance_of_a_prosthetic_foot_is_compared_at_the_bench_nowhere(
         return leg(Side.LEFT, stance_percent=stance_percent, is_toe_off_biased=is_biased)
 
     one, other = part("B", left=of(70.0)), part("A", left=of(60.0))
-    outcome, *_ = told_of(one, other)
+    outcome, *_ = reported_of(one, other)
     assert outcome is (Outcome.NOTHING if is_biased else Outcome.DIFFERS)
     differences = BenchDifferences(look)
     qtbot.addWidget(differences)
     differences.show_pair(Comparison(Contrast.CONDITIONS, (other, one)), Side.LEFT, "")
-    said = [[cell.text for cell in row.cells if isinstance(cell, TextCell)] for row in differences.table.cells.rows]
-    (stance, *_) = (row for row in said if row[0].startswith("Stance"))
+    stated = [[cell.text for cell in row.cells if isinstance(cell, TextCell)] for row in differences.table.cells.rows]
+    (stance, *_) = (row for row in stated if row[0].startswith("Stance"))
     assert ("not compared" in stance) is is_biased
 
 
 def test_under_ten_strides_nothing_is_judged() -> None:
-    outcome, first, then = told_of(part("B", left=leg(Side.LEFT, 7, knee_range_deg=80.0)), part("A"))
+    outcome, first, then = reported_of(part("B", left=leg(Side.LEFT, 7, knee_range_deg=80.0)), part("A"))
     assert (outcome, first) == (Outcome.OPEN, "B and A: too few strides to assess a change.")
     assert then == "Provisional: B has 7 strides on the prosthetic side; 10 are needed for a measurement error."
 
 
 def test_few_strides_are_ten() -> None:
-    assert told_of(part("B", left=leg(Side.LEFT, 10, knee_range_deg=80.0)), part("A"))[0] is Outcome.DIFFERS
+    assert reported_of(part("B", left=leg(Side.LEFT, 10, knee_range_deg=80.0)), part("A"))[0] is Outcome.DIFFERS
 
 
 @pytest.fixture
@@ -202,7 +204,7 @@ def shown(bench: Bench) -> tuple[str, str]:
     return (state.found.parts[1].letter, state.found.against.letter) if state.found else (state.parts[0].letter, "")
 
 
-def test_each_alignment_stands_against_the_one_it_was_changed_from_until_another_is_chosen(bench: Bench) -> None:
+def test_each_alignment_is_against_the_one_it_was_changed_from_until_another_is_chosen(bench: Bench) -> None:
     assert shown(bench) == ("C", "B")
     bench.choose(1, is_beside=False)
     assert shown(bench) == ("B", "A")
@@ -214,7 +216,7 @@ def test_each_alignment_stands_against_the_one_it_was_changed_from_until_another
     assert shown(bench) == ("A", "")
 
 
-def test_to_return_it_says_what_to_undo_and_can_be_taken_back(bench: Bench) -> None:
+def test_to_return_it_states_what_to_undo_and_can_be_taken_back(bench: Bench) -> None:
     assert bench.return_to_first() == "Back to A: Pylon \N{MINUS SIGN}2 mm"
     assert bench.chain.base == "Alignment A"
     assert bench.next_title == "Next change, from A. Undo first: Pylon −2 mm"  # as long as it is so
@@ -229,9 +231,9 @@ def test_to_return_it_says_what_to_undo_and_can_be_taken_back(bench: Bench) -> N
     assert bench.chain.base == "Alignment A"
 
 
-def walked_again(visit: SimpleNamespace, **told: Any) -> Recording:
+def walked_again(visit: SimpleNamespace, **reported: Any) -> Recording:
     """A walk more with the first alignment, which is one as before."""
-    again = recording(4, "A", **told)
+    again = recording(4, "A", **reported)
     every = [*visit.recordings.every, SimpleNamespace(details=again)]
     visit.recordings.every = visit.recordings.walks = every
     evaluation = visit.evaluation
@@ -248,7 +250,7 @@ def sentence_of(bench: Bench, number: int) -> str:
     return state.answer.first
 
 
-def test_a_walk_after_the_return_stands_beside_the_first_and_changes_nothing_that_was_shown(
+def test_a_walk_after_the_return_is_beside_the_first_and_changes_nothing_that_was_shown(
     bench: Bench, visit: SimpleNamespace
 ) -> None:
     before = sentence_of(bench, 1)
@@ -267,17 +269,17 @@ def test_a_walk_after_the_return_stands_beside_the_first_and_changes_nothing_tha
 
 
 @pytest.mark.parametrize(
-    "told",
+    "reported",
     [
         {"test": PlannedTest(TimedProtocol.TEN_METRES)},
         {"note": "target knee_swing_peak left 60 deg: 5 of 12 strides"},
     ],
 )
 def test_a_timed_test_and_a_walk_towards_a_target_are_none_of_an_alignment(
-    bench: Bench, visit: SimpleNamespace, told: dict[str, Any]
+    bench: Bench, visit: SimpleNamespace, reported: dict[str, Any]
 ) -> None:
     before = sentence_of(bench, 1)
-    walked_again(visit, **told)
+    walked_again(visit, **reported)
     state = bench.state()
     assert state is not None
     assert [row.letter for row in state.rows] == ["A", "B", "C"]
@@ -286,7 +288,7 @@ def test_a_timed_test_and_a_walk_towards_a_target_are_none_of_an_alignment(
     assert [(part.letter, part.is_apart) for part in every][-1] == ("A2", True)
 
 
-def test_where_only_tests_were_walked_the_bench_says_what_to_do(bench: Bench, visit: SimpleNamespace) -> None:
+def test_where_only_tests_were_walked_the_bench_states_what_to_do(bench: Bench, visit: SimpleNamespace) -> None:
     tests = tuple(replace(one, test=PlannedTest(TimedProtocol.TEN_METRES)) for one in WALKED)
     visit.evaluation.session = Session(tests)
     state = bench.state()
@@ -304,7 +306,7 @@ def test_a_discarded_walk_after_the_return_leaves_the_prosthesis_as_it_is(bench:
     assert bench.chain.base == "Alignment C"
 
 
-def test_a_discarded_walks_change_is_told_again_of_the_next(bench: Bench, visit: SimpleNamespace) -> None:
+def test_a_discarded_walks_change_is_reported_again_of_the_next(bench: Bench, visit: SimpleNamespace) -> None:
     change = AlignmentChange("Alignment C", (PartChange(PYLON, turns=1.0),))
     walk = recording(4, "D", change, is_kept=False)
     visit.recordings.walks = visit.recordings.every = [*visit.recordings.every, SimpleNamespace(details=walk)]
@@ -335,7 +337,7 @@ def test_the_next_alignment_is_called_by_its_letter_and_never_as_one_before(benc
     assert new_alignment("B", ["Alignment A", "Alignment B"]) == "Alignment C"
 
 
-def test_while_a_walk_is_analysed_nothing_is_said_of_the_ones_before(bench: Bench, visit: SimpleNamespace) -> None:
+def test_while_a_walk_is_analysed_nothing_is_stated_of_the_ones_before(bench: Bench, visit: SimpleNamespace) -> None:
     visit.evaluation.is_busy = True
     state = bench.state()
     assert state is not None
@@ -346,7 +348,7 @@ def test_while_a_walk_is_analysed_nothing_is_said_of_the_ones_before(bench: Benc
     assert "10.0° more than with A" in state.answer.first
 
 
-def test_a_walk_whose_analysis_ended_early_is_not_said_to_be_analysed(bench: Bench, visit: SimpleNamespace) -> None:
+def test_a_walk_whose_analysis_ended_early_is_not_stated_to_be_analysed(bench: Bench, visit: SimpleNamespace) -> None:
     visit.evaluation.session = Session(WALKED[:2])
     visit.evaluation.has_failed = True
     state = bench.state()
@@ -402,7 +404,7 @@ def test_the_page_shows_the_chain_the_curves_and_the_differences(page: WalkingPa
     assert page.charts.isVisible()
 
 
-def test_each_curve_says_what_may_be_read_of_it(page: WalkingPage, bench: Bench) -> None:
+def test_each_curve_states_what_may_be_read_of_it(page: WalkingPage, bench: Bench) -> None:
     state = bench.state()
     assert state is not None
     page.bench.show_state(state)
@@ -414,9 +416,9 @@ def test_each_curve_says_what_may_be_read_of_it(page: WalkingPage, bench: Bench)
     assert [frame.verdict.text() for frame in page.bench.frames] == ["Caution", "Good"]
 
 
-def test_the_next_change_is_told_by_keys_and_reads_as_it_prints(page: WalkingPage, bench: Bench) -> None:
+def test_the_next_change_is_reported_by_keys_and_reads_as_it_prints(page: WalkingPage, bench: Bench) -> None:
     card = page.bench.alignments
-    page.bench.told.connect(lambda: page.bench.show_entry(bench.next_title))
+    page.bench.reported.connect(lambda: page.bench.show_entry(bench.next_title))
     assert card.written.text() == "Nothing changed yet."
     for name, key, times in (
         ("turns", Qt.Key.Key_Plus, 4),
@@ -471,7 +473,7 @@ def test_as_the_window_widens_the_cards_come_apart_once(page: WalkingPage) -> No
     assert set(is_tabbed) == {False, True}
 
 
-def test_in_a_small_window_the_next_change_is_told_without_scrolling(page: WalkingPage) -> None:
+def test_in_a_small_window_the_next_change_is_reported_without_scrolling(page: WalkingPage) -> None:
     """896 x 420 is what 960 x 600 leaves of the window between header and a bar of two rows."""
     page.set_compact(True)
     page.resize(896, 420)
@@ -485,18 +487,18 @@ def test_in_a_small_window_the_next_change_is_told_without_scrolling(page: Walki
 def test_a_walk_that_begins_shows_no_strides_of_the_one_before(page: WalkingPage) -> None:
     page.show_view(WalkingReadout(now_s=20.0, strides={Side.LEFT: 13, Side.RIGHT: 12}, cadence_steps_min=104.0))
     assert page.figures.in_words.startswith("13 strides.")
-    page.count_anew()
+    page.count_again()
     assert page.figures.in_words.startswith("0 strides. Left 0. Right 0.")
     assert "104" not in page.figures.in_words
 
 
-def test_the_simulated_prosthesis_is_told_by_what_it_differs_from_the_first() -> None:
+def test_the_simulated_prosthesis_is_reported_by_what_it_differs_from_the_first() -> None:
     chain = chain_of(WALKED, "")
     assert chain.set_so("Alignment A", None) == ()
     assert chain.set_so("Alignment B", OF_B) == (NetChange(PYLON, height_mm=3.0),)
     turned = AlignmentChange("Alignment C", (PartChange(ProsthesisPart.KNEE_UNIT, turns=-1.0),))
-    wanted = (NetChange(ProsthesisPart.KNEE_UNIT, turns=-1.0), NetChange(PYLON, height_mm=2.0))
-    assert chain.set_so("Alignment D", turned) == wanted
+    required = (NetChange(ProsthesisPart.KNEE_UNIT, turns=-1.0), NetChange(PYLON, height_mm=2.0))
+    assert chain.set_so("Alignment D", turned) == required
     assert chain_of((), "").set_so("Alignment A", None) == ()
 
 

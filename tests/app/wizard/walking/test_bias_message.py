@@ -1,4 +1,4 @@
-"""A gyroscope bias that was set anew is said, with its sensor; none, nothing."""
+"""A gyroscope bias that was set again is stated, with its sensor; none, nothing."""
 
 from app.wizard.losses import NOTHING
 from app.wizard.walk_messages import bias_message
@@ -12,5 +12,5 @@ def test_the_sensor_whose_bias_was_corrected_is_named() -> None:
     assert "standing again" in action
 
 
-def test_nothing_is_said_where_every_bias_held() -> None:
+def test_nothing_is_stated_where_every_bias_held() -> None:
     assert bias_message([]) == NOTHING

@@ -88,7 +88,7 @@ def this_visit(time_s: float) -> Course:
     return Course(None, timed_tests_of(analysis(walk), recordings((walk, SHOES))))
 
 
-def test_the_result_tells_what_has_changed_and_draws_it(qtbot: QtBot, look: ThemeNotifier) -> None:
+def test_the_result_shows_what_has_changed_and_draws_it(qtbot: QtBot, look: ThemeNotifier) -> None:
     view = results(look, 14.1, 9.4, 8.9)
     qtbot.addWidget(view)
     view.show()
@@ -101,7 +101,7 @@ def test_the_result_tells_what_has_changed_and_draws_it(qtbot: QtBot, look: Them
     assert "beyond error (0.20 †)" in [text.text() for text in view.course.findChildren(Text)]
 
 
-def test_a_first_test_has_no_course_and_nothing_is_said_of_a_change(qtbot: QtBot, look: ThemeNotifier) -> None:
+def test_a_first_test_has_no_course_and_nothing_is_stated_of_a_change(qtbot: QtBot, look: ThemeNotifier) -> None:
     view = results(look, 8.9)
     qtbot.addWidget(view)
     view.show()

@@ -25,11 +25,11 @@ def estimator_of(dressed: Worn) -> WalkingEstimator:
 
 
 def fed(estimator: WalkingEstimator, streams: dict[str, ImuBlock], block_s: float = 0.03) -> list[WalkingReadout]:
-    told = []
+    reported = []
     for block in in_blocks(streams, block_s):
         estimator.update(block)
-        told.append(estimator.state)
-    return told
+        reported.append(estimator.state)
+    return reported
 
 
 @pytest.fixture(scope="module")
@@ -62,10 +62,10 @@ def test_lanes_hold_whole_phases_in_their_order_and_the_last_one_lasts(usual: li
             assert two.phase is ORDER[(ORDER.index(one.phase) + 1) % len(ORDER)]
         assert spans[0].end_s is not None
         assert spans[0].end_s >= walking.now_s - KEPT_S
-    assert [span.phase for span in usual[-1].lanes[Side.LEFT].spans][-1] is Phase.FOOT_FLAT  # stands again
+    assert [span.phase for span in usual[-1].lanes[Side.LEFT].spans][-1] is Phase.FOOT_FLAT  # is again
 
 
-def test_strides_and_cadence_are_told_while_somebody_walks(usual: list[WalkingReadout]) -> None:
+def test_strides_and_cadence_are_reported_while_somebody_walks(usual: list[WalkingReadout]) -> None:
     assert math.isnan(usual[5].cadence_steps_min)
     assert usual[len(usual) // 2].cadence_steps_min == pytest.approx(112.0, abs=8.0)
     assert math.isnan(usual[-1].cadence_steps_min)
@@ -93,8 +93,8 @@ def test_the_size_of_the_blocks_changes_nothing(dressed: Worn, usual: list[Walki
 
 def test_a_foot_that_falls_silent_is_missing_and_leaves_a_gap(dressed: Worn) -> None:
     name, (from_s, to_s) = dressed.name_at(Site.RIGHT_FOOT), (BEGIN_S + 6.0, BEGIN_S + 8.0)
-    told = fed(estimator_of(dressed), {**dressed.walk, name: without(dressed.walk[name], from_s, to_s)})
-    amid = next(state for state in told if state.now_s > to_s - 0.2)
+    reported = fed(estimator_of(dressed), {**dressed.walk, name: without(dressed.walk[name], from_s, to_s)})
+    amid = next(state for state in reported if state.now_s > to_s - 0.2)
     assert amid.missing == (Site.RIGHT_FOOT,)
     lane = amid.lanes[Side.RIGHT]
     ((silent_from_s, silent_to_s),) = lane.silent_s
@@ -103,8 +103,8 @@ def test_a_foot_that_falls_silent_is_missing_and_leaves_a_gap(dressed: Worn) -> 
     assert lane.spans[-1].end_s == pytest.approx(from_s, abs=0.02)
     assert amid.joints[Joint.RIGHT_ANKLE].time_s[-1] < from_s
     assert amid.joints[Joint.RIGHT_KNEE].time_s[-1] > to_s - 0.4
-    assert math.isfinite(amid.cadence_steps_min)  # the other foot tells
-    last = told[-1]
+    assert math.isfinite(amid.cadence_steps_min)  # the other foot reports
+    last = reported[-1]
     assert last.missing == ()
     ((then_from_s, then_to_s),) = last.lanes[Side.RIGHT].silent_s
     assert then_from_s == silent_from_s
@@ -139,7 +139,7 @@ def test_a_leg_of_one_joint_has_one_curve_and_no_lane(dressed: Worn) -> None:
     estimator = WalkingEstimator(
         {name: dressed.site_of[name] for name in streams}, dressed.live_sensors, dressed.calibration
     )
-    last = fed(estimator, dict(dressed.walk))[-1]  # the others are heard, and not dressed
+    last = fed(estimator, dict(dressed.walk))[-1]  # the others are received, and not dressed
     assert set(last.joints) == {Joint.LEFT_KNEE}
     assert not last.lanes
     assert not last.strides

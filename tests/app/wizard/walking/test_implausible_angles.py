@@ -1,4 +1,4 @@
-"""An angle that no joint has is told and not drawn: on the page, in its figures, and on the patient's screen."""
+"""An angle that no joint has is reported and not drawn: on the page, in its figures, and on the patient's screen."""
 
 from collections.abc import Mapping
 from types import SimpleNamespace
@@ -26,10 +26,10 @@ STEP_S = 0.01
 KNEE = Joint.LEFT_KNEE
 
 
-class ToldWalk:
-    """What the angles and the feet are said to be, in place of what follows from samples."""
+class ReportedWalk:
+    """What the angles and the feet are stated to be, in place of what follows from samples."""
 
-    told: Mapping[Joint, float] = {}
+    reported: Mapping[Joint, float] = {}
 
     def __init__(self, *_args: object) -> None:
         """Nothing is measured."""
@@ -40,15 +40,15 @@ class ToldWalk:
         still = np.zeros(len(time_s))
         joints = {
             joint: LiveJoint(AngleSamples(tick, time_s, np.full(len(time_s), np.deg2rad(deg)), still), False)
-            for joint, deg in self.told.items()
+            for joint, deg in self.reported.items()
         }
         foot = LiveFoot((), (), Phase.UNKNOWN, np.nan, 0)
         return WalkingState(joints, dict.fromkeys(Side, foot))
 
 
 @pytest.fixture
-def walk(monkeypatch: pytest.MonkeyPatch) -> type[ToldWalk]:
-    monkeypatch.setattr(estimator_module, "LiveWalk", ToldWalk)
+def walk(monkeypatch: pytest.MonkeyPatch) -> type[ReportedWalk]:
+    monkeypatch.setattr(estimator_module, "LiveWalk", ReportedWalk)
     monkeypatch.setattr(
         StrideValues,
         "update",
@@ -58,8 +58,8 @@ def walk(monkeypatch: pytest.MonkeyPatch) -> type[ToldWalk]:
             for side in Side
         ),
     )
-    ToldWalk.told = dict.fromkeys(LEG_JOINTS, 20.0)
-    return ToldWalk
+    ReportedWalk.reported = dict.fromkeys(LEG_JOINTS, 20.0)
+    return ReportedWalk
 
 
 def an_estimator() -> WalkingEstimator:
@@ -83,9 +83,9 @@ def peaks(view: WalkingReadout) -> set[Side]:
 
 
 @pytest.mark.parametrize("deg", [-150.0, -41.0, 161.0])
-def test_an_angle_that_no_knee_has_is_no_curve_and_no_figure(walk: type[ToldWalk], deg: float) -> None:
+def test_an_angle_that_no_knee_has_is_no_curve_and_no_figure(walk: type[ReportedWalk], deg: float) -> None:
     estimator = an_estimator()
-    walk.told = {**walk.told, KNEE: deg}
+    walk.reported = {**walk.reported, KNEE: deg}
     view = second(estimator, 0.0)
     assert view.implausible == (KNEE,)
     assert set(view.joints) == set(LEG_JOINTS) - {KNEE}
@@ -94,19 +94,19 @@ def test_an_angle_that_no_knee_has_is_no_curve_and_no_figure(walk: type[ToldWalk
 
 
 @pytest.mark.parametrize("deg", [-39.0, 0.0, 159.0])
-def test_an_angle_that_a_knee_may_have_is_drawn(walk: type[ToldWalk], deg: float) -> None:
-    walk.told = {**walk.told, KNEE: deg}
+def test_an_angle_that_a_knee_may_have_is_drawn(walk: type[ReportedWalk], deg: float) -> None:
+    walk.reported = {**walk.reported, KNEE: deg}
     view = second(an_estimator(), 0.0)
     assert (view.implausible, set(view.joints)) == ((), set(LEG_JOINTS))
     assert peaks(view) == set(Side)
 
 
-def test_a_few_samples_that_cannot_be_are_left_out_of_the_curve(walk: type[ToldWalk]) -> None:
+def test_a_few_samples_that_cannot_be_are_left_out_of_the_curve(walk: type[ReportedWalk]) -> None:
     estimator = an_estimator()
     second(estimator, 0.0)
-    walk.told = {**walk.told, KNEE: -48.0}
+    walk.reported = {**walk.reported, KNEE: -48.0}
     feed(estimator, 1.0 + np.arange(0.0, 0.2, STEP_S))
-    walk.told = {**walk.told, KNEE: 20.0}
+    walk.reported = {**walk.reported, KNEE: 20.0}
     view = second(estimator, 1.2)
     assert view.implausible == ()
     angle_rad = view.joints[KNEE].angle_rad
@@ -114,16 +114,16 @@ def test_a_few_samples_that_cannot_be_are_left_out_of_the_curve(walk: type[ToldW
     assert np.nanmin(angle_rad) > 0.0
 
 
-def test_it_is_drawn_again_once_all_that_is_in_sight_can_be(walk: type[ToldWalk]) -> None:
+def test_it_is_drawn_again_once_all_that_is_in_sight_can_be(walk: type[ReportedWalk]) -> None:
     estimator = an_estimator()
-    walk.told = {**walk.told, KNEE: -150.0}
+    walk.reported = {**walk.reported, KNEE: -150.0}
     assert second(estimator, 0.0).implausible == (KNEE,)
-    walk.told = {**walk.told, KNEE: 20.0}
+    walk.reported = {**walk.reported, KNEE: 20.0}
     assert second(estimator, 1.0).implausible == (KNEE,)
     assert second(estimator, KEPT_S + 2.0).implausible == ()
 
 
-def test_it_is_said_above_the_walks_while_one_goes_on() -> None:
+def test_it_is_stated_above_the_walks_while_one_goes_on() -> None:
     ongoing = SimpleNamespace(began_s=0.0)
     recordings = SimpleNamespace(
         ongoing=ongoing, is_recording=True, has_begun=True, standstill_message=lambda _worn: NOTHING

@@ -1,4 +1,5 @@
-"""Live lanes: moved on by pixels they look as if drawn anew, also where a phase was told late; silence is said."""
+"""Live lanes: moved on by pixels they look as if drawn again, also where a phase was reported late; silence is
+stated."""
 
 import numpy as np
 import pytest
@@ -28,13 +29,14 @@ def lanes(qtbot: QtBot, look: ThemeNotifier) -> LiveLanes:
 
 
 def lane(now_s: float, shift_s: float = 0.0) -> LiveLane:
-    """Strides of a second each, as known at `now_s`: an event is told 0.1 s late, and until then the phase goes on."""
+    """Strides of a second each, as known at `now_s`: an event is reported 0.1 s late, and until then the phase goes
+    on."""
     spans = []
-    told_s = now_s - 0.1
+    reported_s = now_s - 0.1
     for start_s in np.arange(np.floor(now_s - 15), now_s + 1) + shift_s:
         for phase, begin, end in SHARES:
-            if start_s + begin < told_s:
-                is_over = start_s + end < told_s
+            if start_s + begin < reported_s:
+                is_over = start_s + end < reported_s
                 spans.append(PhaseSpan(phase, float(start_s + begin), float(start_s + end) if is_over else None))
     return LiveLane(tuple(spans))
 
@@ -54,7 +56,7 @@ def colour_at(lanes: LiveLanes, ago_s: float, side: Side) -> str:
     return picture(lanes).pixelColor(QPoint(round(x), 6 if side is Side.LEFT else 40)).name()
 
 
-def test_lanes_that_moved_on_look_as_if_drawn_anew(lanes: LiveLanes) -> None:
+def test_lanes_that_moved_on_look_as_if_drawn_again(lanes: LiveLanes) -> None:
     walk(lanes, 20.0, 31.0)
     moved = picture(lanes)
     lanes.redraw()
@@ -70,7 +72,7 @@ def test_each_phase_has_its_look(lanes: LiveLanes, look: ThemeNotifier) -> None:
     assert colour_at(lanes, ago_s - 0.5 - 0.06, Side.RIGHT) == look.theme.curve(Side.RIGHT).name()
 
 
-def test_a_phase_told_late_is_mended(lanes: LiveLanes, look: ThemeNotifier) -> None:
+def test_a_phase_reported_late_is_mended(lanes: LiveLanes, look: ThemeNotifier) -> None:
     lanes.show_lanes(10.0, {Side.LEFT: LiveLane((PhaseSpan(FLAT, 7.0, None),))})
     assert colour_at(lanes, 0.5, Side.LEFT) == look.theme.soft(Side.LEFT).name()
     mended = (PhaseSpan(FLAT, 7.0, 9.0), PhaseSpan(LOADING, 9.0, None))
@@ -79,7 +81,7 @@ def test_a_phase_told_late_is_mended(lanes: LiveLanes, look: ThemeNotifier) -> N
     assert colour_at(lanes, 1.5, Side.LEFT) == look.theme.soft(Side.LEFT).name()
 
 
-def test_a_silent_foot_is_said_in_its_lane(lanes: LiveLanes, look: ThemeNotifier) -> None:
+def test_a_silent_foot_is_stated_in_its_lane(lanes: LiveLanes, look: ThemeNotifier) -> None:
     silent = LiveLane((PhaseSpan(FLAT, 5.0, 9.8),), ((9.8, None),))
     lanes.show_lanes(10.0, {Side.LEFT: silent})
     assert colour_at(lanes, 0.7, Side.LEFT) == look.theme.colours.caution.lower()  # the words take the room they need
@@ -105,7 +107,7 @@ def test_lanes_come_back_from_what_they_show(lanes: LiveLanes, look: ThemeNotifi
     else:
         lanes.set_seconds(4.0)
     image = picture(lanes)
-    wanted = look.theme.curve(Side.LEFT).name()
-    columns = [x for x in range(image.width()) if image.pixelColor(x, 6).name() == wanted]
+    required = look.theme.curve(Side.LEFT).name()
+    columns = [x for x in range(image.width()) if image.pixelColor(x, 6).name() == required]
     assert max(columns) > 0.7 * lanes.width()
     assert min(column for column in columns if column > 40) < 0.3 * lanes.width()

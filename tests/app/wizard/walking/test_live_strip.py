@@ -1,4 +1,5 @@
-"""Live strips: moved on by pixels they look as if drawn anew; dashes stand still; gaps are empty and said in words."""
+"""Live strips: moved on by pixels they look as if drawn again; dashes stand still; gaps are empty and stated in
+words."""
 
 import numpy as np
 import pytest
@@ -71,7 +72,7 @@ def coloured(pixels: IntArray, colour: str) -> IntArray:
     return np.argwhere(np.abs(pixels - blue_green_red).max(axis=2) < 24)
 
 
-def test_a_strip_that_moved_on_looks_as_if_drawn_anew(strip: LiveStrip, look: ThemeNotifier) -> None:
+def test_a_strip_that_moved_on_looks_as_if_drawn_again(strip: LiveStrip, look: ThemeNotifier) -> None:
     walk(strip, 0.0, 13.0, gap_s=(8.0, 10.0))
     moved = picture(strip)
     look.changed.emit()  # everything is drawn from the history
@@ -94,7 +95,7 @@ def test_dashes_stand_still_in_time(strip: LiveStrip, look: ThemeNotifier) -> No
     pytest.fail("the dashes of 2 s ago are not where they were drawn")
 
 
-def test_a_gap_stays_empty_and_is_said(strip: LiveStrip, look: ThemeNotifier) -> None:
+def test_a_gap_stays_empty_and_is_stated(strip: LiveStrip, look: ThemeNotifier) -> None:
     walk(strip, 0.0, 11.0, gap_s=(7.0, 9.0))
     assert rounded(strip) == [(Side.RIGHT, 7.0, 9.0)]
     pixels = picture(strip)
@@ -105,7 +106,7 @@ def test_a_gap_stays_empty_and_is_said(strip: LiveStrip, look: ThemeNotifier) ->
     assert len(coloured(pixels[:, left + 3 : right - 2], look.theme.colours.left)) > 100
 
 
-def test_a_leg_that_falls_silent_is_told_until_it_is_back(strip: LiveStrip) -> None:
+def test_a_leg_that_falls_silent_is_reported_until_it_is_back(strip: LiveStrip) -> None:
     walk(strip, 0.0, 5.0, gap_s=(4.0, 90.0))
     assert rounded(strip) == [(Side.RIGHT, 4.0, None)]
     walk(strip, 5.0, 5.5, gap_s=(4.0, 5.2))
@@ -167,7 +168,7 @@ def test_axes_stay_until_a_walk_leaves_them_and_then_stay_wider(qtbot: QtBot, lo
     assert strip.range_deg == ANKLE_DEG
 
 
-def test_a_clock_that_goes_back_begins_anew(strip: LiveStrip) -> None:
+def test_a_clock_that_goes_back_begins_again(strip: LiveStrip) -> None:
     walk(strip, 0.0, 5.0, gap_s=(2.0, 3.0))
     walk(strip, 0.0, 0.5)
     assert rounded(strip) == []

@@ -12,7 +12,7 @@ from core.live.walking import LiveFoot
 
 
 def contact(time_s: float) -> LiveFoot:
-    """What a foot tells when it touches the floor."""
+    """What a foot gives when it touches the floor."""
     event = LiveEvent(FootEvent.INITIAL_CONTACT, time_s, time_s)
     return LiveFoot((event,), (PhaseChange(Phase.LOADING, time_s, time_s),), Phase.LOADING, 100.0, 0)
 

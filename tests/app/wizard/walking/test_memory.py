@@ -145,7 +145,7 @@ def test_a_walk_may_be_fetched_later_and_a_lost_sensor_is_named_and_tried_again(
 
 
 @pytest.mark.endurance
-def test_a_walk_that_is_fetched_later_holds_up_no_live_one_and_stands_before_it(
+def test_a_walk_that_is_fetched_later_holds_up_no_live_one_and_is_before_it(
     qtbot: QtBot, visit: Visit, walking: Callable[[int], WalkingStep]
 ) -> None:
     step = walking(120)
@@ -213,7 +213,7 @@ def test_a_failure_before_walks_is_named_and_walks_may_be_sent_live_instead(
 
 
 @pytest.mark.endurance
-def test_sensors_strapped_anew_are_live_before_they_stand_still(
+def test_sensors_strapped_again_are_live_before_they_stand_still(
     qtbot: QtBot, visit: Visit, walking: Callable[[int], WalkingStep]
 ) -> None:
     step = walking(60)

@@ -31,7 +31,7 @@ LABELS = ("Barefoot", "Shoes", "AFO")
 @pytest.fixture
 def page(qtbot: QtBot, look: ThemeNotifier, request: pytest.FixtureRequest) -> WalkingPage:
     if "pseudo_language" in request.fixturenames:
-        request.getfixturevalue("pseudo_language")  # before anything is said
+        request.getfixturevalue("pseudo_language")  # before anything is stated
     page = WalkingPage(look)
     qtbot.addWidget(page)
     page.resize(1064, 600)
@@ -128,7 +128,7 @@ def texts(page: WalkingPage) -> list[str]:
     return labels + [button.text() for button in page.findChildren(QAbstractButton) if button.isVisible()]
 
 
-def test_before_the_first_walk_it_says_what_to_do(page: WalkingPage) -> None:
+def test_before_the_first_walk_it_states_what_to_do(page: WalkingPage) -> None:
     assert "Choose a condition, then press Space." in texts(page)
     assert not page.charts.isVisible()
     assert "Next condition: A" in texts(page)
@@ -257,20 +257,20 @@ def test_a_second_walk_of_a_condition_keeps_its_letter_and_what_is_discarded_has
     ]
 
 
-def test_sensors_strapped_anew_begin_a_letter(page: WalkingPage) -> None:
+def test_sensors_strapped_again_begin_a_letter(page: WalkingPage) -> None:
     page.show_walks((replace(KEPT, is_of_old_straps=True),))
     page.choose_digit(1)
     assert "Next condition: B" in texts(page)
 
 
-def test_sensors_strapped_anew_are_told_with_the_consequence(page: WalkingPage, qtbot: QtBot) -> None:
+def test_sensors_strapped_again_are_reported_with_the_consequence(page: WalkingPage, qtbot: QtBot) -> None:
     page.show_walks((KEPT,))
     assert "Standing still and free motion must then be repeated." in page.walks.restrapped.accessibleDescription()
     with qtbot.waitSignal(page.restrapped_pressed):
         QTest.keyClick(page.walks.restrapped, Qt.Key.Key_Return)
 
 
-def test_charts_are_told_in_words(page: WalkingPage) -> None:
+def test_charts_are_reported_in_words(page: WalkingPage) -> None:
     page.show_walks((RECORDING,))
     page.show_view(live(5.0))
     assert page.charts.accessibleDescription() == (
@@ -282,7 +282,7 @@ def test_charts_are_told_in_words(page: WalkingPage) -> None:
     assert "Left knee 50°" in page.charts.accessibleDescription()
 
 
-def test_a_provisional_ankle_is_said(page: WalkingPage) -> None:
+def test_a_provisional_ankle_is_stated(page: WalkingPage) -> None:
     page.show_walks((RECORDING,))
     page.show_view(live(is_provisional=True))
     assert "L provisional until five strides" in texts(page)
@@ -297,7 +297,7 @@ def test_rows_are_read_with_their_state(page: WalkingPage) -> None:
 
 
 @pytest.mark.parametrize("is_compact", [False, True])
-def test_simulated_is_said_over_knee_ankle_and_phases(page: WalkingPage, is_compact: bool) -> None:
+def test_simulated_is_stated_over_knee_ankle_and_phases(page: WalkingPage, is_compact: bool) -> None:
     page.show_walks((RECORDING,))
     page.set_compact(is_compact)
     page.set_simulated(True)

@@ -30,18 +30,18 @@ ALL = LEG_SITES
 WORN = {f"DEMO-{site}": site for site in LEG_SITES}
 
 
-class Told:
-    """An estimator that tells what the test says, from a thread of its own as the real one does."""
+class Reported:
+    """An estimator that gives what the test states, from a thread of its own as the real one does."""
 
     def __init__(self) -> None:
         self.state = WalkingReadout(now_s=1.0)
         self.on_value: Any = None
 
-    def tell(self, *values: tuple[TargetMeasure, Side, float], **changes: Any) -> None:
+    def show_message(self, *values: tuple[TargetMeasure, Side, float], **changes: Any) -> None:
         new = tuple(StrideValue(measure, side, value, 1.0, 1.0) for measure, side, value in values)
         every = (*self.state.stride_values, *new)[-64:]
-        total = self.state.values_told + len(new)
-        self.state = replace(self.state, stride_values=every, values_told=total, **changes)
+        total = self.state.values_reported + len(new)
+        self.state = replace(self.state, stride_values=every, values_reported=total, **changes)
         if new and self.on_value is not None:
             thread = threading.Thread(target=self.on_value)
             thread.start()
@@ -49,19 +49,21 @@ class Told:
 
 
 @pytest.fixture
-def heard(monkeypatch: pytest.MonkeyPatch) -> list[Sound]:
-    heard: list[Sound] = []
-    monkeypatch.setattr(sounds, "play", heard.append)
-    return heard
+def received(monkeypatch: pytest.MonkeyPatch) -> list[Sound]:
+    received: list[Sound] = []
+    monkeypatch.setattr(sounds, "play", received.append)
+    return received
 
 
 @pytest.fixture
-def estimator() -> Told:
-    return Told()
+def estimator() -> Reported:
+    return Reported()
 
 
 @pytest.fixture
-def feedback(qtbot: QtBot, look: ThemeNotifier, estimator: Told, heard: list[Sound]) -> Iterator[PatientFeedback]:
+def feedback(
+    qtbot: QtBot, look: ThemeNotifier, estimator: Reported, received: list[Sound]
+) -> Iterator[PatientFeedback]:
     page = QWidget()
     qtbot.addWidget(page)
     card = ControlsCard(look)
@@ -71,8 +73,8 @@ def feedback(qtbot: QtBot, look: ThemeNotifier, estimator: Told, heard: list[Sou
     visit: Any = SimpleNamespace(sensors=sensors, calibration=SURE, prosthetic_sides=frozenset(), rests=WORN)
     feedback = PatientFeedback(look, visit, card, page)
     feedback.toggle()
-    told: Any = estimator
-    feedback.watch(told)
+    reported: Any = estimator
+    feedback.watch(reported)
     card.target_set.emit(KNEE)
     yield feedback
     feedback.watch(None)
@@ -91,26 +93,26 @@ def knee(*values: float, side: Side = Side.LEFT) -> list[tuple[TargetMeasure, Si
 
 
 def test_each_stride_of_what_is_aimed_at_is_shown_and_sounds_where_it_reached(
-    qtbot: QtBot, feedback: PatientFeedback, estimator: Told, heard: list[Sound]
+    qtbot: QtBot, feedback: PatientFeedback, estimator: Reported, received: list[Sound]
 ) -> None:
-    estimator.tell(*knee(54.4))
+    estimator.show_message(*knee(54.4))
     qtbot.waitUntil(lambda: feedback.view.last == (54,))
-    assert heard == []
-    estimator.tell(*knee(54.6), *knee(70.0, side=Side.RIGHT), (TargetMeasure.FOOT_STRIKE, Side.LEFT, 60.0))
+    assert received == []
+    estimator.show_message(*knee(54.6), *knee(70.0, side=Side.RIGHT), (TargetMeasure.FOOT_STRIKE, Side.LEFT, 60.0))
     qtbot.waitUntil(lambda: feedback.view.last == (54, 55))
-    assert heard == [Sound.REACHED]
+    assert received == [Sound.REACHED]
     assert feedback.window is not None
     assert feedback.window.view == feedback.view
 
 
 def test_the_last_ten_are_kept_and_strides_of_either_foot_count_for_the_cadence(
-    qtbot: QtBot, feedback: PatientFeedback, estimator: Told
+    qtbot: QtBot, feedback: PatientFeedback, estimator: Reported
 ) -> None:
-    estimator.tell(*knee(*range(40, 52)))
+    estimator.show_message(*knee(*range(40, 52)))
     qtbot.waitUntil(lambda: feedback.view.last == tuple(range(42, 52)))
     card_of(feedback).target_set.emit(BEAT)
     assert feedback.view.last == ()
-    estimator.tell((TargetMeasure.CADENCE, Side.LEFT, 109.0), (TargetMeasure.CADENCE, Side.RIGHT, 111.0))
+    estimator.show_message((TargetMeasure.CADENCE, Side.LEFT, 109.0), (TargetMeasure.CADENCE, Side.RIGHT, 111.0))
     qtbot.waitUntil(lambda: feedback.view.last == (109, 111))
 
 
@@ -119,66 +121,66 @@ def test_the_last_ten_are_kept_and_strides_of_either_foot_count_for_the_cadence(
     [{"missing": (Site.LEFT_SHANK,)}, {"missing": (Site.LEFT_FOOT,)}, {"slips": (Slip(Site.LEFT_THIGH, 1.0, 0.3),)}],
 )
 def test_a_silent_sensor_or_a_slipped_strap_of_that_leg_lets_it_wait_without_a_value(
-    qtbot: QtBot, feedback: PatientFeedback, estimator: Told, heard: list[Sound], gated: dict[str, Any]
+    qtbot: QtBot, feedback: PatientFeedback, estimator: Reported, received: list[Sound], gated: dict[str, Any]
 ) -> None:
-    estimator.tell(*knee(60.0))
+    estimator.show_message(*knee(60.0))
     qtbot.waitUntil(lambda: feedback.view.last == (60,))
-    estimator.tell(**gated)
+    estimator.show_message(**gated)
     feedback.judge(estimator.state)  # as thirty times a second
     assert feedback.view.is_waiting
     assert feedback.view.last == ()
-    estimator.tell(*knee(61.0))
+    estimator.show_message(*knee(61.0))
     qtbot.wait(20)
     assert feedback.view.last == ()
-    assert heard == [Sound.REACHED]
-    estimator.tell(*knee(62.0), missing=(), slips=())
+    assert received == [Sound.REACHED]
+    estimator.show_message(*knee(62.0), missing=(), slips=())
     qtbot.waitUntil(lambda: feedback.view.last == (62,))
     assert not feedback.view.is_waiting
 
 
-def test_what_befalls_the_other_leg_does_not_matter(feedback: PatientFeedback, estimator: Told) -> None:
-    estimator.tell(missing=(Site.RIGHT_SHANK,), slips=(Slip(Site.RIGHT_FOOT, 1.0, 0.3),))
+def test_what_befalls_the_other_leg_does_not_matter(feedback: PatientFeedback, estimator: Reported) -> None:
+    estimator.show_message(missing=(Site.RIGHT_SHANK,), slips=(Slip(Site.RIGHT_FOOT, 1.0, 0.3),))
     feedback.judge(estimator.state)
     assert not feedback.view.is_waiting
 
 
-def test_cadence_waits_only_where_no_foot_is_heard(feedback: PatientFeedback, estimator: Told) -> None:
+def test_cadence_waits_only_where_no_foot_is_received(feedback: PatientFeedback, estimator: Reported) -> None:
     card_of(feedback).target_set.emit(BEAT)
-    estimator.tell(missing=(Site.RIGHT_FOOT,))
+    estimator.show_message(missing=(Site.RIGHT_FOOT,))
     feedback.judge(estimator.state)
     assert not feedback.view.is_waiting
-    estimator.tell(missing=(Site.RIGHT_FOOT, Site.LEFT_FOOT))
+    estimator.show_message(missing=(Site.RIGHT_FOOT, Site.LEFT_FOOT))
     feedback.judge(estimator.state)
     assert feedback.view.is_waiting
 
 
-def test_cadence_waits_where_the_only_foot_that_is_heard_disagrees_with_its_knee(
-    feedback: PatientFeedback, estimator: Told
+def test_cadence_waits_where_the_only_foot_that_is_received_disagrees_with_its_knee(
+    feedback: PatientFeedback, estimator: Reported
 ) -> None:
     card_of(feedback).target_set.emit(BEAT)
-    estimator.tell(missing=(Site.RIGHT_FOOT,), doubtful=(Site.LEFT_FOOT,))
+    estimator.show_message(missing=(Site.RIGHT_FOOT,), doubtful=(Site.LEFT_FOOT,))
     feedback.judge(estimator.state)
     assert feedback.view.is_waiting
 
 
 def test_a_walk_counts_its_own_strides_for_each_target(
-    qtbot: QtBot, feedback: PatientFeedback, estimator: Told
+    qtbot: QtBot, feedback: PatientFeedback, estimator: Reported
 ) -> None:
-    estimator.tell(*knee(60.0))
+    estimator.show_message(*knee(60.0))
     qtbot.waitUntil(lambda: feedback.view.last == (60,))
     feedback.begin_walk()
     assert feedback.view.last == ()
-    estimator.tell(*knee(54.0, 55.0, 56.0))
+    estimator.show_message(*knee(54.0, 55.0, 56.0))
     qtbot.waitUntil(lambda: len(feedback.view.last) == 3)
     card_of(feedback).target_set.emit(BEAT)
-    estimator.tell((TargetMeasure.CADENCE, Side.LEFT, 100.0))
+    estimator.show_message((TargetMeasure.CADENCE, Side.LEFT, 100.0))
     qtbot.waitUntil(lambda: feedback.view.last == (100,))
     assert feedback.end_walk() == (TargetTally(KNEE, 2, 3), TargetTally(BEAT, 0, 1))
     assert feedback.end_walk() == ()
 
 
 def test_closed_it_neither_sounds_nor_counts(
-    qtbot: QtBot, feedback: PatientFeedback, estimator: Told, heard: list[Sound]
+    qtbot: QtBot, feedback: PatientFeedback, estimator: Reported, received: list[Sound]
 ) -> None:
     feedback.begin_walk()
     window = feedback.window
@@ -186,9 +188,9 @@ def test_closed_it_neither_sounds_nor_counts(
     with qtbot.waitSignal(window.closed):
         window.close()
     assert not window.isVisible()
-    estimator.tell(*knee(60.0))
+    estimator.show_message(*knee(60.0))
     qtbot.wait(20)
-    assert heard == []
+    assert received == []
     assert feedback.end_walk() == ()
     feedback.toggle()
     assert feedback.window is not window
@@ -200,10 +202,10 @@ def test_the_patient_is_not_named_on_it(feedback: PatientFeedback) -> None:
     assert feedback.window.windowTitle() == "Patient screen"
 
 
-def test_reasons_are_said_in_words_of_what_is_gated_only() -> None:
+def test_reasons_are_stated_in_words_of_what_is_gated_only() -> None:
     assert reasons_against(LEG_SITES, ALL, SURE, frozenset()) == {}
-    told = {**SURE, Joint.LEFT_KNEE: replace(SURE[Joint.LEFT_KNEE], zero=ZeroKind.NONE)}
-    reasons = reasons_against(LEG_SITES, ALL, told, frozenset({Side.RIGHT}))
+    reported = {**SURE, Joint.LEFT_KNEE: replace(SURE[Joint.LEFT_KNEE], zero=ZeroKind.NONE)}
+    reasons = reasons_against(LEG_SITES, ALL, reported, frozenset({Side.RIGHT}))
     assert reasons[TargetMeasure.KNEE_SWING_PEAK, Side.LEFT].startswith(
         "There is no standing reference, so absolute angles are not reported"
     )

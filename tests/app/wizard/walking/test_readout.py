@@ -1,4 +1,4 @@
-"""While no sensor is heard, time goes on on the screen, and nothing is made up."""
+"""While no sensor is received, time goes on on the screen, and nothing is made up."""
 
 import math
 
@@ -21,7 +21,7 @@ SEEN = WalkingReadout(
 SITES = (Site.LEFT_FOOT, Site.LEFT_SHANK)
 
 
-def test_time_goes_on_and_what_lasted_ends_when_it_was_last_heard() -> None:
+def test_time_goes_on_and_what_lasted_ends_when_it_was_last_received() -> None:
     shown = SEEN.while_silent(14.5, SITES)
     assert shown.now_s == 14.5
     assert shown.lanes[Side.LEFT].spans[-1] == PhaseSpan(Phase.FOOT_FLAT, 11.4, 12.0)

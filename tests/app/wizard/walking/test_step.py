@@ -1,4 +1,4 @@
-"""The Walking step on the demonstration patient: Space starts and stops, walks are kept or not, losses are said."""
+"""The Walking step on the demonstration patient: Space starts and stops, walks are kept or not, losses are stated."""
 
 from collections.abc import Iterator
 from dataclasses import replace
@@ -96,7 +96,7 @@ def test_space_starts_and_stops_and_keeps(
     calibrate(qtbot, visit, patient_time)
     primary = step.bar().primary
     assert primary is not None
-    assert (primary.text, primary.is_wished) == ("Start walk", True)
+    assert (primary.text, primary.is_requested) == ("Start walk", True)
     with qtbot.waitSignal(visit.recordings.begun, timeout=PATIENCE_MS):
         step.on_intent(RUN)
     recording = step.bar().recording
@@ -127,7 +127,7 @@ def test_space_starts_and_stops_and_keeps(
         step.on_intent(RUN)
     turned = AlignmentChange("Alignment A", (PartChange(ProsthesisPart.FOOT_FRONT_SCREW, turns=0.25),))
     assert [one.stored.details.alignment for one in visit.recordings.walks] == [None, turned]
-    assert not bar_says_change(step)
+    assert not bar_states_change(step)
     assert next_label(step) == "Next: Alignment C"
     press(step, "Return to A")
     assert next_label(step) == "Next: Alignment A"
@@ -137,10 +137,10 @@ def test_space_starts_and_stops_and_keeps(
 
 
 def next_label(step: WalkingStep) -> str:
-    """What the bar beside the list of walks says of the next walk."""
-    step.bench.is_wished = False
+    """What the bar beside the list of walks states of the next walk."""
+    step.bench.is_requested = False
     note = step.bar().note
-    step.bench.is_wished = True
+    step.bench.is_requested = True
     return note
 
 
@@ -161,17 +161,17 @@ def test_what_the_patient_reached_is_shown_and_kept_with_the_walk(
     assert step.on_intent(Intent(KeyAction.PATIENT_SCREEN))
     assert knee.isEnabled()
     (window,) = [one for one in QApplication.topLevelWidgets() if isinstance(one, PatientWindow) and one.isVisible()]
-    wanted = Target(TargetMeasure.KNEE_SWING_PEAK, Side.LEFT, 45)
-    controls.target_set.emit(wanted)
+    required = Target(TargetMeasure.KNEE_SWING_PEAK, Side.LEFT, 45)
+    controls.target_set.emit(required)
     walk(qtbot, step, visit, patient_time, 11.0)  # the replay's walk goes on beyond
     assert len(window.view.last) >= 3
     shown = window.view.last
     assert all(50 <= peak <= 75 for peak in shown[-3:])  # its pose jumped as the walk was asked for
     qtbot.waitUntil(lambda: visit.recordings.walks[0].details.note != "", timeout=PATIENCE_MS)
     (tally,) = tallies_of(visit.recordings.walks[0].details.note)
-    assert tally.target == wanted
+    assert tally.target == required
     assert tally.strides >= len(shown)
-    assert tally.strides >= tally.reached >= max(3, sum(peak >= wanted.value for peak in shown))
+    assert tally.strides >= tally.reached >= max(3, sum(peak >= required.value for peak in shown))
     assert step.on_intent(Intent(KeyAction.LEAVE))
     assert not controls.isVisible()
     walk(qtbot, step, visit, patient_time, 4.0)  # without the screen: nothing is noted
@@ -179,11 +179,11 @@ def test_what_the_patient_reached_is_shown_and_kept_with_the_walk(
     qtbot.waitUntil(lambda: not visit.evaluation.is_busy, timeout=PATIENCE_MS)
 
 
-def bar_says_change(step: WalkingStep) -> bool:
+def bar_states_change(step: WalkingStep) -> bool:
     return any(one.text.startswith("Walk with") for one in step.bar().others)
 
 
-def test_five_strides_find_the_ankles_axes_anew(
+def test_five_strides_find_the_ankles_axes_again(
     qtbot: QtBot, look: ThemeNotifier, step: WalkingStep, visit: Visit, patient_time: PatientTime
 ) -> None:
     calibrate(qtbot, visit, patient_time)
@@ -196,7 +196,7 @@ def test_five_strides_find_the_ankles_axes_anew(
     )
     looked_at = visit.evaluation.session
     assert looked_at is not None
-    assert looked_at.recordings[-1].condition == "Alignment A"  # a part of it stands at the bench under its own name
+    assert looked_at.recordings[-1].condition == "Alignment A"  # a part of it is at the bench under its own name
     with qtbot.waitSignal(visit.recordings.ended, timeout=PATIENCE_MS):
         step.on_intent(RUN)
     results = ResultsStep(look, visit)
@@ -251,7 +251,7 @@ def test_space_pressed_twice_at_the_end_keeps_what_the_patient_reached(
     qtbot.waitUntil(lambda: not visit.evaluation.is_busy, timeout=PATIENCE_MS)
 
 
-def test_a_walk_that_is_refused_ends_its_test_and_leaves_what_was_told_of_the_prosthesis(
+def test_a_walk_that_is_refused_ends_its_test_and_leaves_what_was_reported_of_the_prosthesis(
     qtbot: QtBot, step: WalkingStep, visit: Visit, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     def refuse(*_arguments: object, **_more: object) -> None:
@@ -285,7 +285,7 @@ def test_digits_choose_what_the_next_walk_is_called(
     qtbot.waitUntil(lambda: not visit.evaluation.is_busy, timeout=PATIENCE_MS)
 
 
-def test_a_silent_sensor_is_said_and_so_is_its_return(
+def test_a_silent_sensor_is_stated_and_so_is_its_return(
     qtbot: QtBot, step: WalkingStep, visit: Visit, source: ReplaySource
 ) -> None:
     with qtbot.waitSignal(visit.recordings.begun, timeout=PATIENCE_MS):
@@ -300,7 +300,7 @@ def test_a_silent_sensor_is_said_and_so_is_its_return(
     qtbot.waitUntil(lambda: not visit.evaluation.is_busy, timeout=PATIENCE_MS)
 
 
-def test_sensors_strapped_anew_go_back_to_standing(qtbot: QtBot, step: WalkingStep, visit: Visit) -> None:
+def test_sensors_strapped_again_go_back_to_standing(qtbot: QtBot, step: WalkingStep, visit: Visit) -> None:
     with qtbot.waitSignal(step.jumped) as jumped:
         step.page.walks.restrapped.click()
     assert jumped.args == [StepId.STAND_STILL]
@@ -319,7 +319,7 @@ def test_who_left_before_the_sensors_were_live_again_is_not_fetched_back(
         step.memory.lives.emit()  # as when walks are sent live on the sensors' step
 
 
-def test_while_no_sensor_is_heard_the_charts_go_on_with_a_gap(
+def test_while_no_sensor_is_received_the_charts_go_on_with_a_gap(
     qtbot: QtBot, step: WalkingStep, visit: Visit, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     press(step)
@@ -337,7 +337,7 @@ def test_while_no_sensor_is_heard_the_charts_go_on_with_a_gap(
     qtbot.waitUntil(lambda: not visit.evaluation.is_busy, timeout=PATIENCE_MS)
 
 
-def test_while_no_sensor_is_heard_no_walk_is_started(
+def test_while_no_sensor_is_received_no_walk_is_started(
     qtbot: QtBot, step: WalkingStep, visit: Visit, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     primary = step.bar().primary
@@ -353,8 +353,8 @@ def test_while_no_sensor_is_heard_no_walk_is_started(
     assert primary is not None
     assert not primary.is_enabled
     assert step.bar().note.startswith("Switch them on, or move the receiver closer")
-    one_heard = {**silent, next(iter(silent)): replace(next(iter(silent.values())), silent_s=0.0)}
-    monkeypatch.setattr(acquisition, "status", lambda: one_heard)
+    one_received = {**silent, next(iter(silent)): replace(next(iter(silent.values())), silent_s=0.0)}
+    monkeypatch.setattr(acquisition, "status", lambda: one_received)
     with qtbot.waitSignal(step.changed, timeout=5000):
         pass
     primary = step.bar().primary

@@ -41,7 +41,7 @@ def test_one_attempt_has_no_mean(qtbot: QtBot) -> None:
     assert len(shown(qtbot, attempt(1, 9.0), attempt(2, 20.0, is_kept=False))) == 2
 
 
-def test_what_an_analysis_that_ended_early_left_open_is_not_said_to_be_analysed(qtbot: QtBot) -> None:
+def test_what_an_analysis_that_ended_early_left_open_is_not_stated_to_be_analysed(qtbot: QtBot) -> None:
     view = TimedResultView(ThemeNotifier())
     qtbot.addWidget(view)
     open_still = TimedResult([replace(attempt(1, 9.0), found=None)], ["A1 Shoes"])

@@ -23,7 +23,7 @@ RUN, NEXT_TEST = Intent(KeyAction.RUN), Intent(KeyAction.NEXT_TEST)
 
 @pytest.fixture(scope="module")
 def simulated_session() -> Session:
-    """A patient who stands a while before each walk."""
+    """A patient who is a while before each walk."""
     walk = Walk(strides=14, standing_before_s=3.0)
     played = (Standing(duration_s=10.0), walk, replace(walk, name="walk 2"))
     return simulate(replace(DEMONSTRATION, recordings=played)).session

@@ -1,4 +1,4 @@
-"""The view of a running test: what it shows and says, and that no figure moves as it counts."""
+"""The view of a running test: what it shows and states, and that no figure moves as it counts."""
 
 import math
 from dataclasses import replace
@@ -23,7 +23,7 @@ TIMING = TimedViewState(LiveReadout(TEN, 8.0, 3.0, distance_m=6.12), "Shoes, att
 @pytest.mark.parametrize(
     ("elapsed_s", "text"), [(0.0, "0.0"), (5.49, "5.4"), (99.94, "99.9"), (100.0, "1:40"), (214.9, "3:34")]
 )
-def test_the_time_is_cut_to_tenths_and_told_in_minutes_from_100_s(elapsed_s: float, text: str) -> None:
+def test_the_time_is_cut_to_tenths_and_reported_in_minutes_from_100_s(elapsed_s: float, text: str) -> None:
     assert time_text(elapsed_s) == text
 
 
@@ -36,7 +36,7 @@ def test_what_the_test_is_doing_is_a_word() -> None:
     assert status_words(replace(TIMING, end_s=12.0)) == "Finished"
 
 
-def test_a_distance_that_cannot_be_told_is_a_dash_with_its_reason() -> None:
+def test_a_distance_that_cannot_be_reported_is_a_dash_with_its_reason() -> None:
     assert distance_words(WAITING) == ("0.0", "")
     assert distance_words(TIMING) == ("6.1", "")
     silent = replace(TIMING, readout=replace(TIMING.readout, silent=(Site.LEFT_FOOT,)))
@@ -80,7 +80,7 @@ def test_every_digit_has_a_cell_of_its_own(qtbot: QtBot) -> None:
     assert view.time.text == "22.0"
 
 
-def test_who_listens_is_told_once_a_second_and_the_end(qtbot: QtBot) -> None:
+def test_who_listens_is_reported_once_a_second_and_the_end(qtbot: QtBot) -> None:
     view = TimedView(ThemeNotifier())
     qtbot.addWidget(view)
     view.show_state(replace(TIMING, now_s=4.2))

@@ -29,15 +29,15 @@ def visit() -> Any:
     visit = bench_visit()
     for one in visit.recordings.walks:
         one.is_decided, one.stored = one is not visit.recordings.walks[-1], SimpleNamespace(state=RecordingState.CLOSED)
-    told: dict[str, Any] = {
+    reported: dict[str, Any] = {
         "is_recording": False,
         "is_stopping": False,
         "ongoing": None,
         "must_move": False,
         "called": str,
     }
-    told |= {"shown_names": shown_names(WALKED), "has_moved": True}
-    visit.recordings = SimpleNamespace(**vars(visit.recordings), **told)
+    reported |= {"shown_names": shown_names(WALKED), "has_moved": True}
+    visit.recordings = SimpleNamespace(**vars(visit.recordings), **reported)
     visit.cannot_record, visit.sensors = "", SimpleNamespace(site_of={"a": "left_foot"})
     return visit
 
@@ -75,21 +75,21 @@ def bar(visit: Any, walks: SimpleNamespace, bench: Bench, timed: SimpleNamespace
     )
 
 
-def told(bar: WalkingBar) -> list[str]:
+def reported(bar: WalkingBar) -> list[str]:
     return [action.text for action in bar.state("Shoes").quiet]
 
 
 def test_at_the_bench_discard_discards_also_while_clocks_drift(
     visit: Any, walks: SimpleNamespace, bar: WalkingBar
 ) -> None:
-    assert told(bar) == ["Walks", "Exclude"]
+    assert reported(bar) == ["Walks", "Exclude"]
     bar.state("Shoes").quiet[1].run()
     assert walks.pressed == ["discard"]
     visit.recordings.walks[-1].is_decided = True
-    assert told(bar) == ["Walks"]
+    assert reported(bar) == ["Walks"]
 
 
-def test_at_the_bench_it_says_what_the_next_walk_is_walked_with(visit: Any, bench: Bench, bar: WalkingBar) -> None:
+def test_at_the_bench_it_states_what_the_next_walk_is_walked_with(visit: Any, bench: Bench, bar: WalkingBar) -> None:
     visit.recordings.walks[-1].is_decided = True
     again = bar.state("Shoes")
     assert [one.text for one in again.others] == ["Return to A", "Repeat C"]
@@ -102,9 +102,9 @@ def test_at_the_bench_it_says_what_the_next_walk_is_walked_with(visit: Any, benc
 
 
 def test_beside_the_list_of_walks_the_clocks_can_be_synchronised(visit: Any, bench: Bench, bar: WalkingBar) -> None:
-    bench.is_wished = False
+    bench.is_requested = False
     visit.recordings.walks[-1].is_decided = True
-    assert told(bar) == ["Alignment", "Synchronise again", "Patient screen"]
+    assert reported(bar) == ["Alignment", "Synchronise again", "Patient screen"]
     assert bar.state("Shoes").quiet[1] is SYNCHRONISE
 
 
@@ -130,7 +130,7 @@ def test_what_another_step_recorded_is_not_called_a_walk(
 
 @pytest.mark.parametrize("is_bench", [True, False])
 @pytest.mark.parametrize("is_asked", [True, False])
-def test_a_timed_test_that_the_next_walk_is_stands_on_the_bar(
+def test_a_timed_test_that_the_next_walk_is_is_on_the_bar(
     visit: Any, bench: Bench, bar: WalkingBar, timed: SimpleNamespace, is_bench: bool, is_asked: bool
 ) -> None:
     """T chooses one also where the chooser is not in sight."""
@@ -141,7 +141,7 @@ def test_a_timed_test_that_the_next_walk_is_stands_on_the_bar(
         key = [action.text for action in (state.primary, *state.others) if action.key == "Space"]
         return key[0], state.note
 
-    bench.is_wished, visit.recordings.walks[-1].is_decided = is_bench, not is_asked
+    bench.is_requested, visit.recordings.walks[-1].is_decided = is_bench, not is_asked
     assert "10-metre" not in words()[0]
     timed.planned = PlannedTest(TimedProtocol.TEN_METRES)
     label = "Alignment C" if is_bench else "Alignment D"

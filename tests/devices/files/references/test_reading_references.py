@@ -1,4 +1,4 @@
-"""Is what stands in a reference file what is read of it, by the process that reads files of others?
+"""Is what is in a reference file what is read of it, by the process that reads files of others?
 
 No recording of a laboratory is at hand for these formats: the fixtures are built from their published descriptions, the
 C3D by the library that reads them elsewhere, too.
@@ -36,7 +36,7 @@ def limited() -> Iterator[LimitedReading]:
 
 @pytest.fixture
 def read(tmp_path: Path, limited: LimitedReading) -> Read:
-    """Read a content under a name that says nothing: here, and by the process, which says the same."""
+    """Read a content under a name that gives nothing: here, and by the process, which states the same."""
 
     def of(content: str | bytes) -> ReferenceFile:
         path = tmp_path / "reference"
@@ -99,7 +99,7 @@ def test_events_and_strides_have_tables_of_their_own(read: Read) -> None:
 
 
 @pytest.mark.parametrize(
-    ("content", "said"),
+    ("content", "stated"),
     [
         ("time_s,hip\n0,1\n", r'its columns are neither angles nor events nor strides \("time_s, hip"\)\. Name them'),
         ("time_s,left_knee\n0.0,1\n0.2,2\n0.1,3\n", r"in row 3 time goes from 0\.2 s to 0\.1 s\. Export it again"),
@@ -111,8 +111,8 @@ def test_events_and_strides_have_tables_of_their_own(read: Read) -> None:
         ("", "this is not a recognised reference file"),
     ],
 )
-def test_what_is_no_reference_is_refused_with_what_where_and_what_to_do(read: Read, content: str, said: str) -> None:
-    with pytest.raises(FileRefusedError, match=said) as refused:
+def test_what_is_no_reference_is_refused_with_what_where_and_what_to_do(read: Read, content: str, stated: str) -> None:
+    with pytest.raises(FileRefusedError, match=stated) as refused:
         read(content)
     assert str(refused.value).startswith("reference")
     assert "\n" not in str(refused.value)
@@ -135,7 +135,7 @@ def motion(in_degrees: str = "yes", names: str = "time\tpelvis_tilt\tknee_angle_
 
 
 @pytest.mark.parametrize("in_degrees", ["yes", "no"])
-def test_opensim_says_whether_it_is_degrees(read: Read, in_degrees: str) -> None:
+def test_opensim_states_whether_it_is_degrees(read: Read, in_degrees: str) -> None:
     found = read(motion(in_degrees))
     assert found.format == "opensim"
     np.testing.assert_allclose(degrees(found, Joint.RIGHT_KNEE), KNEE_DEG, atol=1e-5)
@@ -150,7 +150,7 @@ def test_a_state_is_named_by_its_path(read: Read) -> None:
 
 
 @pytest.mark.parametrize(
-    ("content", "said"),
+    ("content", "stated"),
     [
         (
             motion(names="time\tpelvis_tilt\tpelvis_list\tlumbar"),
@@ -165,8 +165,8 @@ def test_a_state_is_named_by_its_path(read: Read) -> None:
         ("Coordinates\nendheader\ntime\tknee_angle_r\n", "there are no rows below the header"),
     ],
 )
-def test_an_opensim_file_without_angles_is_refused(read: Read, content: str, said: str) -> None:
-    with pytest.raises(FileRefusedError, match=said):
+def test_an_opensim_file_without_angles_is_refused(read: Read, content: str, stated: str) -> None:
+    with pytest.raises(FileRefusedError, match=stated):
         read(content)
 
 
@@ -198,15 +198,15 @@ def test_visual3d_has_trials_beside_one_another(read: Read) -> None:
 
 
 @pytest.mark.parametrize(
-    ("content", "said"),
+    ("content", "stated"),
     [
         (visual3d(time="FRAMES"), "signal TIME is missing, so the frames have no times. Include TIME in the export"),
         (visual3d(knee="RElbowAngle"), "no signal is a hip, knee or ankle angle"),
         (visual3d() + "61\t0.1\n", "line 66: the line has 2 columns, the header 5"),
     ],
 )
-def test_a_visual3d_text_that_lacks_something_is_refused(read: Read, content: str, said: str) -> None:
-    with pytest.raises(FileRefusedError, match=said):
+def test_a_visual3d_text_that_lacks_something_is_refused(read: Read, content: str, stated: str) -> None:
+    with pytest.raises(FileRefusedError, match=stated):
         read(content)
 
 
@@ -230,7 +230,7 @@ def test_a_visual3d_text_that_lacks_something_is_refused(read: Read, content: st
         ("Left Right Knee", None),
     ],
 )
-def test_a_signal_is_told_by_its_name(name: str, joint: Joint | None) -> None:
+def test_a_signal_is_reported_by_its_name(name: str, joint: Joint | None) -> None:
     assert joint_of_name(name) is joint
 
 
@@ -317,7 +317,7 @@ def test_a_c3d_of_other_points_and_a_broken_one_are_refused(read: Read, tmp_path
             read(content[:length])
 
 
-def test_without_the_library_a_c3d_says_what_to_install(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
+def test_without_the_library_a_c3d_states_what_to_install(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
     monkeypatch.setattr(c3d_angles, "find_spec", lambda _name: None)
     with pytest.raises(FileRefusedError, match=r"Install gaitwright\[imports\]"):
         c3d_angles.read_c3d(tmp_path / "any.c3d")

@@ -10,7 +10,7 @@ depends_on = None
 
 SITES = ("left_thigh", "left_shank", "left_foot", "right_thigh", "right_shank", "right_foot")
 JOINTS = ("left_knee", "left_ankle", "right_knee", "right_ankle")
-# what SQLite forgets of the other columns when a table is made anew
+# what SQLite forgets of the other columns when a table is made again
 OTHERS = {
     "placed_sensors": {"rate_kind": "rate_kind IN ('instantaneous', 'averaged')"},
     "joints": {"turned_sign": "turned_sign IN (-1, 1)"},

@@ -1,4 +1,4 @@
-"""What was heard of one sensor: its last seconds, and what is missing of them."""
+"""What was known of one sensor: its last seconds, and what is missing of them."""
 
 from collections import deque
 from dataclasses import dataclass
@@ -11,8 +11,8 @@ from devices.live import SensorDetails
 from devices.source import SensorCounts
 
 KEPT_S = 30.0
-MOST_RATE_HZ = 400.0  # of a sensor that does not tell its rate
-HEARD_S, MOVEMENT_S, LOST_S = 2.0, 1.0, 10
+MOST_RATE_HZ = 400.0  # of a sensor that does not report its rate
+RECEIVED_S, MOVEMENT_S, LOST_S = 2.0, 1.0, 10
 ROUNDING_S = 1e-6
 ON_ITS_WAY_S = 0.25  # so much later than measured a sample may come before anything is missed
 
@@ -25,14 +25,14 @@ class SensorStatus:
     ----------
     source
         Index of its source.
-    heard_hz
+    received_hz
         Samples per second over the last two.
     silent_s
         Since something came last; 0 of one that is to send nothing.
     movement_rad_s
         Spread of the angular rate over the last second, all axes together.
     counts
-        Since it was first heard, as they came; a recording's own come from its journal.
+        Since it was first received, as they came; a recording's own come from its journal.
     lost_share
         Of the last ten seconds: what the radio does now, not what was lost while the sensor was off.
     """
@@ -40,36 +40,36 @@ class SensorStatus:
     sensor: str
     source: int
     details: SensorDetails
-    heard_hz: float
+    received_hz: float
     silent_s: float
     movement_rad_s: float
     counts: SensorCounts
     lost_share: float
 
 
-class HeardSensor:
+class SensorStream:
     """Not for two threads at once. All times in seconds on the acquisition's clock."""
 
     def __init__(self, name: str, rate_hz: float | None, now_s: float) -> None:
         self.name, self.rate_hz = name, rate_hz
         self.usual_hz = rate_hz or MOST_RATE_HZ
         self.ring = RingBuffer(name, round(KEPT_S * self.usual_hz))
-        self._heard_at_s = now_s
+        self._received_at_s = now_s
         self._received = self._lost = self._damaged = self._doubled = self._late = 0
-        self._begins_anew = False
+        self._begins_again = False
         self._noted_s = now_s
         self._noted: deque[tuple[int, int]] = deque([(0, 0)], maxlen=LOST_S + 1)  # received and lost, second by second
 
     def hear(self, block: ImuBlock, time_s: FloatArray, now_s: float) -> None:
         """Take a block's samples, stamped `time_s` (n,); those that come late are counted, and not shown."""
-        self._heard_at_s = now_s
+        self._received_at_s = now_s
         if now_s - self._noted_s >= 1.0:
             self._noted_s = now_s
             self._noted.append((self._received, self._lost))
         last_s = self.ring.last_s
         step_s = _steps_s(time_s, last_s)
-        if self._begins_anew and (step_s > 0).all():
-            self._begins_anew, step_s[0] = False, 1.0 / self.usual_hz  # what lies between was not sent
+        if self._begins_again and (step_s > 0).all():
+            self._begins_again, step_s[0] = False, 1.0 / self.usual_hz  # what lies between was not sent
         if not (step_s > 0).all():  # neither of NaN
             is_new = _is_later(time_s, last_s)
             self._count(_steps_s(time_s[is_new], last_s))
@@ -79,22 +79,22 @@ class HeardSensor:
         self._count(step_s)
         self.ring.add(time_s, block.gyr_rad_s, block.acc_m_s2)
 
-    def begin_anew(self) -> None:
+    def begin_again(self) -> None:
         """What comes next does not follow what came before, and nothing between is missing."""
-        self._begins_anew = True
+        self._begins_again = True
 
     @property
     def lost(self) -> int:
-        """How many samples are missing since it was first heard; none of a sensor whose rate is not known."""
+        """How many samples are missing since it was first received; none of a sensor whose rate is not known."""
         return self._lost
 
-    def status(self, source: int, told: SensorDetails, now_s: float) -> SensorStatus:
+    def status(self, source: int, reported: SensorDetails, now_s: float) -> SensorStatus:
         return SensorStatus(
             sensor=self.name,
             source=source,
-            details=told,
-            heard_hz=self._heard_hz(now_s),
-            silent_s=max(now_s - self._heard_at_s, 0.0) if told.quiet is None else 0.0,
+            details=reported,
+            received_hz=self._received_hz(now_s),
+            silent_s=max(now_s - self._received_at_s, 0.0) if reported.quiet is None else 0.0,
             movement_rad_s=self._movement_rad_s(now_s),
             counts=SensorCounts(self._received, self._lost, self._damaged, self._doubled, self._late),
             lost_share=self._lost_share(),
@@ -104,10 +104,10 @@ class HeardSensor:
         received, lost = self._received - self._noted[0][0], max(self._lost - self._noted[0][1], 0)
         return lost / (received + lost) if received + lost else 0.0
 
-    def _heard_hz(self, now_s: float) -> float:
+    def _received_hz(self, now_s: float) -> float:
         last_s = self.ring.last_s
         end_s = last_s if now_s - last_s < ON_ITS_WAY_S else now_s
-        return self.ring.count_since(end_s - HEARD_S + ROUNDING_S) / HEARD_S
+        return self.ring.count_since(end_s - RECEIVED_S + ROUNDING_S) / RECEIVED_S
 
     def _movement_rad_s(self, now_s: float) -> float:
         rate = self.ring.rates_since(now_s - MOVEMENT_S)

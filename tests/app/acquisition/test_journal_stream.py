@@ -1,9 +1,9 @@
-"""A journal tells what was sent to a sensor: the settings it measures with, before what it says under them."""
+"""A journal gives what was sent to a sensor: the settings it measures with, before what it states under them."""
 
 from collections.abc import Sequence
 from pathlib import Path
 
-from app.acquisition.source_tape import SourceTape
+from app.acquisition.journal_stream import JournalStream
 from app.storage.journal.reader import JournalReader
 from app.storage.journal.records import Record, RecordKind
 from devices.drivers.ximu3 import Ximu3, command
@@ -28,14 +28,14 @@ def sent(*written: bytes) -> Sequence[tuple[RecordKind, bytes]]:
     return [(RecordKind.SENT, one) for one in written]
 
 
-def test_what_was_sent_stands_before_what_came_of_it_and_again_after_a_loss(tmp_path: Path) -> None:
+def test_what_was_sent_is_before_what_came_of_it_and_again_after_a_loss(tmp_path: Path) -> None:
     channel = ScriptedChannel(answers=answers)
     source = ByteSource(Ximu3(), channel)
     source.open()
     greeting = list(channel.written)
     assert len(greeting) == 3
     writer = open_journal(tmp_path, ID)
-    tape = SourceTape(writer, source)
+    tape = JournalStream(writer, source)
     tape.keep_bytes(b"one")
     source.identify("A")
     tape.keep_bytes(b"two")

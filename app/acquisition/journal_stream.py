@@ -1,4 +1,5 @@
-"""How does one source get into a recording's journal? Its sensors one by one, each told of before its first sample."""
+"""How does one source get into a recording's journal? Its sensors one by one, each informed of before its first
+sample."""
 
 from dataclasses import replace
 
@@ -9,23 +10,23 @@ from devices.live import LiveSource
 from devices.source import SourceInfo
 
 Shape = tuple[bool, bool, bool, tuple[str, ...]]
-BYTES = ""  # the name that a source's bytes are told of by
+BYTES = ""  # the name that a source's bytes are given of by
 
 
-class SourceTape:
+class JournalStream:
     """Puts what one source sends into a journal; waits for nothing. Not for two threads at once."""
 
     def __init__(self, writer: JournalWriter, source: LiveSource) -> None:
         self._writer, self._source = writer, source
         self._begin_s = writer.header.opened_ns / 1e9
-        self._told: dict[str, tuple[int, SourceInfo, SampleLayout | None]] = {}
+        self._reported: dict[str, tuple[int, SourceInfo, SampleLayout | None]] = {}
         self._shapes: dict[str, Shape] = {}
         self._sent = 0  # how much of what was written to the source is kept
 
     def keep_bytes(self, data: bytes) -> None:
-        if BYTES not in self._told:
-            self._tell(BYTES, self._source.info, None)
-        number, sent = self._told[BYTES][0], self._source.sent
+        if BYTES not in self._reported:
+            self._show_message(BYTES, self._source.info, None)
+        number, sent = self._reported[BYTES][0], self._source.sent
         for written in sent[self._sent :]:
             self._writer.sent(number, written)
         self._sent = len(sent)
@@ -41,26 +42,26 @@ class SourceTape:
         """The source was lost and is there again: its settings may be others, and bytes do not join those before."""
         self._shapes.clear()
         self._sent = 0
-        if BYTES in self._told:
-            self._tell(BYTES, self._source.info, None, is_cut=True)
+        if BYTES in self._reported:
+            self._show_message(BYTES, self._source.info, None, is_cut=True)
 
     def _number(self, block: ImuBlock, rate_hz: float | None) -> int:
         """What the journal calls the block's sensor."""
         name = block.sensor
         shape = block.q_earth_from_sensor is None, block.mag is None, block.is_rate_derived, tuple(block.unknown)
         if self._shapes.get(name) != shape:
-            self._tell(name, replace(self._source.info, sensors=(name,)), layout_of(block, rate_hz))
+            self._show_message(name, replace(self._source.info, sensors=(name,)), layout_of(block, rate_hz))
             self._shapes[name] = shape
-        return self._told[name][0]
+        return self._reported[name][0]
 
-    def _tell(self, name: str, info: SourceInfo, layout: SampleLayout | None, is_cut: bool = False) -> None:
-        if name not in self._told:
+    def _show_message(self, name: str, info: SourceInfo, layout: SampleLayout | None, is_cut: bool = False) -> None:
+        if name not in self._reported:
             number = self._writer.source(info, layout)
         else:
-            number, *before = self._told[name]
+            number, *before = self._reported[name]
             if is_cut or before != [info, layout]:
                 self._writer.change(number, info, layout)
-        self._told[name] = number, info, layout
+        self._reported[name] = number, info, layout
 
 
 def _from(block: ImuBlock, begin_s: float) -> ImuBlock:

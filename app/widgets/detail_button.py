@@ -22,8 +22,8 @@ LEAST_WIDTH = 320
 
 
 @dataclass(frozen=True, slots=True)
-class DoorWords:
-    """`details`: how much stands behind it. `is_caution`: it is yellow, for something is taken away."""
+class DetailText:
+    """`details`: how much is behind it. `is_caution`: it is yellow, for something is taken away."""
 
     verdict: Verdict
     first: str
@@ -32,12 +32,12 @@ class DoorWords:
     is_caution: bool = False
 
 
-class Door(PaintedButton):
-    """What does not fit is cut short on the screen, and heard whole."""
+class DetailButton(PaintedButton):
+    """What does not fit is cut short on the screen, and received whole."""
 
     def __init__(self, look: ThemeNotifier, key: str) -> None:
         super().__init__(look)
-        self._key, self._shown = key, DoorWords(Verdict.READ, "")
+        self._key, self._shown = key, DetailText(Verdict.READ, "")
         self.setFocusPolicy(Qt.FocusPolicy.StrongFocus)
         self.setSizePolicy(QSizePolicy.Policy.Expanding, QSizePolicy.Policy.Fixed)
         self.setAccessibleDescription(tr("Key {key}").format(key=key))
@@ -46,7 +46,7 @@ class Door(PaintedButton):
     def words(self) -> str:
         return " ".join(filter(None, [self._shown.first, self._shown.then]))
 
-    def tell(self, shown: DoorWords) -> None:
+    def show_message(self, shown: DetailText) -> None:
         self._shown = shown
         self.setAccessibleName(tr("Data quality: {words}").format(words=f"{self.words} {self._details}"))
         self.setToolTip(self.words)

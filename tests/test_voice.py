@@ -1,0 +1,94 @@
+"""The words that the voice of Gaitwright does not use: in sentences, docstrings and names."""
+
+import ast
+import re
+from collections.abc import Iterator
+from pathlib import Path
+
+import pytest
+from babel.messages.pofile import read_po
+
+ROOT = Path(__file__).parents[1]
+TEMPLATE = ROOT / "resources" / "locale" / "gaitwright.pot"
+BANNED = {
+    *("told", "tell", "tells", "said", "says", "heard", "hears", "anew", "upon", "wished", "wanted"),
+    *("stands", "withheld", "neighbour", "neighbours"),
+}
+# keys and columns of files, and what other libraries call so
+ALLOWED_NAMES = frozenset({"withheld", "tell"})
+# of people, who may stand and tell
+ALLOWED_SENTENCES = re.compile(r"The patient stands near this computer meanwhile")
+WORD = re.compile(r"[A-Z]?[a-z]+|[A-Z]+(?![a-z])")
+CODE = re.compile(r"`[^`]*`|\"[^\"]*\"|{\w*[^{}]*}")
+
+
+def banned_in_text(text: str) -> set[str]:
+    return set(re.findall(r"[a-z]+", CODE.sub(" ", text).lower())) & BANNED
+
+
+def banned_in_name(name: str) -> set[str]:
+    return {word.lower() for word in WORD.findall(name)} & BANNED if name not in ALLOWED_NAMES else set()
+
+
+def python_files() -> list[Path]:
+    folders = ("app", "core", "devices", "packaging", "tests")
+    return sorted(file for folder in folders for file in (ROOT / folder).rglob("*.py"))
+
+
+def names_of(tree: ast.AST) -> Iterator[tuple[str, int]]:
+    for node in ast.walk(tree):
+        match node:
+            case ast.Name(id=name) | ast.Attribute(attr=name):
+                yield name, node.lineno
+            case ast.FunctionDef(name=name) | ast.AsyncFunctionDef(name=name) | ast.ClassDef(name=name):
+                yield name, node.lineno
+            case ast.arg(arg=name):
+                yield name, node.lineno
+            case ast.keyword(arg=str(name)):
+                yield name, node.lineno
+
+
+def docstrings_of(tree: ast.AST) -> Iterator[tuple[str, int]]:
+    for node in ast.walk(tree):
+        if isinstance(node, ast.Module | ast.ClassDef | ast.FunctionDef | ast.AsyncFunctionDef):
+            text = ast.get_docstring(node)
+            if text:
+                yield text, node.body[0].lineno
+
+
+@pytest.mark.parametrize("folder", ["app", "core", "devices", "packaging", "tests"])
+def test_names_and_docstrings_use_the_words_of_the_field(folder: str) -> None:
+    found = []
+    for file in (file for file in python_files() if file.is_relative_to(ROOT / folder)):
+        tree, place = ast.parse(file.read_text(encoding="utf-8")), file.relative_to(ROOT).as_posix()
+        found += [f"{place}:{line} {name}" for name, line in names_of(tree) if banned_in_name(name)]
+        found += [
+            f"{place}:{line} {sorted(words)}" for text, line in docstrings_of(tree) if (words := banned_in_text(text))
+        ]
+    assert found == []
+
+
+def test_sentences_use_the_words_of_the_clinic() -> None:
+    with TEMPLATE.open("rb") as file:
+        messages = [message.id for message in read_po(file) if message.id]
+    texts = [text for one in messages for text in ((one,) if isinstance(one, str) else one)]
+    found = [text for text in texts if banned_in_text(ALLOWED_SENTENCES.sub("", text))]
+    assert found == []
+    assert [text for text in texts if text.endswith("!") or re.search(r"\bplease\b", text, re.IGNORECASE)] == []
+
+
+@pytest.mark.parametrize(
+    ("text", "words"),
+    [
+        ("What is told of a walk.", {"told"}),
+        ('Sensors that are `heard` stay, as "withheld" in a file does, and {wanted}.', set()),
+        ("Begin anew, says Neighbours.", {"anew", "says", "neighbours"}),
+    ],
+)
+def test_a_banned_word_is_found(text: str, words: set[str]) -> None:
+    assert banned_in_text(text) == words
+
+
+def test_a_banned_name_is_found() -> None:
+    names = ("is_told", "HeardSensor", "unheard", "NOT_HEARD", "withheld", "told_s", "foretell", "understands")
+    assert [name for name in names if banned_in_name(name)] == ["is_told", "HeardSensor", "NOT_HEARD", "told_s"]
