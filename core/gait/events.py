@@ -57,7 +57,7 @@ class EventSource(StrEnum):
 
 SOURCES = tuple(EventSource)
 EVENTS = ("heel_rise_s", "toe_off_s", "initial_contact_s", "full_contact_s")  # the order of columns
-# Standard deviations, s, of EVENTS by what found them, besides what was extrapolated. Pitch: initial contact and toe-off
+# Standard deviations, s, of EVENTS by what found them, beside what was extrapolated. Pitch: initial contact and toe-off
 # against optics and force plates (10-14 and 3-8 ms), the others on simulated feet; sole: simulated flat, dragging feet
 SD_S = {
     EventSource.PITCH: (0.020, 0.010, 0.012, 0.020),

@@ -27,7 +27,7 @@ from devices.files.stored_findings import finding_tables, findings_of_tables
 FORMAT = "gaitwright-session/1"
 FILE_NAME = "session.toml"
 CORRECT_IT = f"Correct {FILE_NAME}"
-STATES_FORMAT = f'A session folder says format = "{FORMAT}" in its first line'
+STATES_FORMAT = f'The first line of session.toml must be format = "{FORMAT}"'
 SIDES = ("left", "right", "both", "none", "")
 DEEPEST = 50  # tables and lists within each other; ours need four
 
