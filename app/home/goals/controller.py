@@ -127,7 +127,7 @@ class GoalsOfPatient(QObject):
         if edited.contests:
             contest = edited.contests[0]
             now = datetime.datetime.now().astimezone()
-            what = tr("{who} changed {goal} in the meantime. That change stays.")
+            what = tr("{goal} was changed in the meantime ({who}). That change stays.")
             stated = what.format(goal=field_word(contest.field), who=by_words(contest.by, contest.at, now))
             self.reported.emit(stated, tr("Check the current value. Yours is in the history."))
         else:

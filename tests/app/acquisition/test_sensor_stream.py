@@ -22,7 +22,7 @@ def status(sensor: SensorStream, now_s: float) -> SensorStatus:
 
 
 @pytest.mark.parametrize(
-    ("received", "counts"),
+    ("arrived", "counts"),
     [
         ([(0, 1, 2), (3, 4)], SensorCounts(received=5)),
         ([(0, 1, 4), (5, 8)], SensorCounts(received=5, lost=4)),

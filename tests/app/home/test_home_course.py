@@ -238,7 +238,7 @@ def test_a_goal_that_another_changed_meanwhile_is_not_written_over(
     QTest.keyClicks(page.value.line_edit, "1.2")
     page.submit()
     qtbot.waitUntil(lambda: home.banner.isVisible(), timeout=WAIT_MS)
-    assert home.banner.text.startswith("Goal, Walking speed was changed meanwhile (H. Keller, ")
+    assert home.banner.text.startswith("Goal, Walking speed was changed in the meantime (H. Keller, ")
     assert page.rows[0].limit.text() == "at least 0.90\N{NO-BREAK SPACE}m/s"
     assert page.value.text == "1.2"  # what was typed stays
 

@@ -34,7 +34,7 @@ def page(qtbot: QtBot, look: ThemeNotifier) -> HomePage:
     page.show_patients([patient(158), patient(147)])
     page.show_patient("P-0158", "1961, female · left affected · left knee replaced")
     lines = [session(number, "Shoes; Shoes, stick", "report not saved") for number in range(5)]
-    page.show_sessions(lines, VISITS, NextStep("write the report of 14 Nov.", "Open", UUID(int=4)))
+    page.show_sessions(lines, VISITS, NextStep("write the report for 14 Nov.", "Open", UUID(int=4)))
     with qtbot.waitExposed(page):
         page.show()
     return page

@@ -96,8 +96,8 @@ def test_the_other_walk_is_drawn_thin_and_named(page: ResultPage, analysis: Anal
     assert [curve.side for curve in chart.described.beside] == list(Side)
     for curve in chart.described.beside:
         assert np.allclose(curve.angle_deg, other.cycle(Joint(f"{curve.side}_knee")).mean)
-    assert words_beside(page) == ["Thin: B AFO.", "Thin: B AFO."]
-    assert "Thin: B AFO." in chart.accessibleDescription()
+    assert words_beside(page) == ["Thin line: B AFO.", "Thin line: B AFO."]
+    assert "Thin line: B AFO." in chart.accessibleDescription()
     assert (chart.described.band, page.band_words) == (None, "")
     choose(page, Beside.BAND)
     assert (chart.described.beside, words_beside(page)) == ((), ["", ""])
@@ -179,7 +179,7 @@ def test_a_not_reported_joint_has_no_thin_curve_and_no_difference(
     choose(page, "walk 2")
     knee, ankle = page.cycles.charts.frames
     assert [curve.side for curve in knee.chart.described.beside] == [Side.RIGHT]
-    assert words_beside(page) == ["Thin: B AFO. L: not reported in B AFO.", "Thin: B AFO."]
+    assert words_beside(page) == ["Thin line: B AFO. L: not reported in B AFO.", "Thin line: B AFO."]
     assert [curve.side for curve in ankle.chart.described.beside] == list(Side)
     alone = walks_alone(gated, session.recordings)
     found = beside_walk(alone["walk 1"], alone["walk 2"], is_simulated=True)
@@ -197,9 +197,10 @@ def test_without_a_common_zero_shapes_are_laid_over_one_another_and_that_is_stat
     )
     knee, ankle = words_beside(page)
     assert knee == (
-        "Thin: 2026-06-20. No common standing reference: compare range of motion and curve shape, not absolute angles."
+        "Thin line: 2026-06-20. No common standing reference: compare range of motion and curve "
+        "shape, not absolute angles."
     )
-    assert ankle == "Thin: 2026-06-20."
+    assert ankle == "Thin line: 2026-06-20."
     assert page.cycles.charts.knee.chart.is_about_mean
     for curve in page.cycles.charts.knee.chart.described.beside:
         assert np.mean(curve.angle_deg) == pytest.approx(0.0, abs=1e-9)
@@ -221,7 +222,7 @@ def test_the_last_visit_is_asked_for_once_and_judged_as_between_visits(
         WalkedVisit("2026-11-14", analysis, session.recordings),
     ]
     give_visits(page, visits)
-    assert words_beside(page) == ["Thin: 2026-06-20."] * 2
+    assert words_beside(page) == ["Thin line: 2026-06-20."] * 2
     shown = walks_alone(analysis, session.recordings)["walk 1"]
     found = beside_last_visit(shown, "shoes", visits_by_condition(visits), is_simulated=True)
     assert found is not None
@@ -240,7 +241,7 @@ def test_a_condition_that_no_earlier_visit_has_is_beside_nothing(
     assert words_beside(page) == ["No earlier visit has a walk in this condition."] * 2
     assert page.cycles.charts.knee.chart.described.beside == ()
     show(page, "walk 2")
-    assert words_beside(page) == ["Thin: June."] * 2
+    assert words_beside(page) == ["Thin line: June."] * 2
 
 
 def test_the_sentence_is_of_what_is_beside_and_never_of_the_legs(page: ResultPage) -> None:
@@ -326,4 +327,4 @@ def test_a_leg_that_the_other_walk_has_not_measured_is_named(
     recordings = tuple(bare if one is walk else one for one in analysis.recordings)
     page.show_visit(AnalysedVisit(session, replace(analysis, recordings=recordings)))
     choose(page, "walk 2")
-    assert words_beside(page) == ["Thin: B AFO. L: not measured in B AFO.", "Thin: B AFO."]
+    assert words_beside(page) == ["Thin line: B AFO. L: not measured in B AFO.", "Thin line: B AFO."]

@@ -77,7 +77,7 @@ CASES: list[tuple[RecordingAnalysis, dict[str, Any], str]] = [
         {"axis_sd_rad": np.deg2rad(12.0)},
         "Calibration certainty is only ±12.0° (limit ±9.0°). Record free motion, or move longer and in more",
     ),
-    (walk(), {"axis_sd_rad": None}, "Calibration certainty is not known. Record free motion."),
+    (walk(), {"axis_sd_rad": None}, "The certainty of the joint axis is not known. Record free motion."),
     (
         walk(),
         {"lag_sd_s": 0.004},
@@ -188,7 +188,7 @@ CASES: list[tuple[RecordingAnalysis, dict[str, Any], str]] = [
     (
         walk(received={Site.LEFT_SHANK: Reception(rate_percent=95.0)}),
         {},
-        "A sensor's samples came at 95.0 % of the rate set (limit 98.0 %). Check its sample rate",
+        "A sensor's samples came at 95.0 % of the rate set (limit 98.0 %). Check the sensor's sample rate",
     ),
     (
         walk(received={Site.LEFT_SHANK: Reception(rate_percent=50.1)}),

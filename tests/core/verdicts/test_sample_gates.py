@@ -37,7 +37,7 @@ def of_joints(*joints: str) -> tuple[str, ...]:
     return tuple(f"left_{joint} {part}" for joint in joints for part in ("shape", "height"))
 
 
-@pytest.mark.parametrize(("percent", "verdict"), [(0.9, ""), (1.1, "care"), (4.9, "care"), (5.1, "not_reported")])
+@pytest.mark.parametrize(("percent", "verdict"), [(0.9, ""), (1.1, "care"), (4.9, "care"), (5.1, "withheld")])
 def test_gaps_in_the_strides_used_hit_the_joints_of_their_sensor_and_a_foots_distances(
     percent: float, verdict: str
 ) -> None:
@@ -59,9 +59,7 @@ def test_a_gap_in_which_whole_strides_are_missing_leaves_the_others_as_they_are(
     assert found_of({THIGH: Reception(gaps_s=np.array([[12.0, 13.9]]))}) == hits("withheld", "loss", *of_joints("knee"))
 
 
-@pytest.mark.parametrize(
-    ("strides", "verdict"), [(0, ""), (1, "care"), (2, "care"), (3, "not_reported"), (12, "not_reported")]
-)
+@pytest.mark.parametrize(("strides", "verdict"), [(0, ""), (1, "care"), (2, "care"), (3, "withheld"), (12, "withheld")])
 def test_strides_that_exceed_a_sensors_range_hit_what_rests_on_it(strides: int, verdict: str) -> None:
     at_s = 10.0 + 1.1 * np.arange(strides) + 0.5
     rates, forces = Reception(clipped_rates_s=at_s), Reception(clipped_forces_s=at_s)

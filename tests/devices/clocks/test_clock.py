@@ -230,7 +230,7 @@ def test_one_arrival_is_a_clock_too() -> None:
     assert len(ordered.time_s) == 0
 
 
-@pytest.mark.parametrize("again", [(), (100,)])
+@pytest.mark.parametrize("once_more", [(), (100,)])
 def test_a_clock_that_shows_what_it_showed_before_is_another_only_where_that_is_known(
     once_more: tuple[int, ...],
 ) -> None:

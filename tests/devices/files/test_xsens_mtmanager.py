@@ -185,7 +185,7 @@ def test_files_that_lack_what_is_needed_are_refused(test_data: FindData, name: s
 def test_a_rate_that_no_file_shows_is_asked_for(test_data: FindData) -> None:
     path = test_data(FOLDER) / "MT_01200454_000-000_00B40DE4.txt"
     placement = {Site.LEFT_THIGH: "00B40DE4"}
-    with pytest.raises(FileRefusedError, match=r"its update rate is missing\. Give it in Hz \(--rate\)"):
+    with pytest.raises(FileRefusedError, match=r"its sample rate is missing\. Give it in Hz \(--rate\)"):
         import_with(mtmanager_trial, [path], placement, "walk 1")
     block = import_with(mtmanager_trial, [path], placement, "walk 1", rate_hz=60.0).imu[Site.LEFT_THIGH]
     np.testing.assert_allclose(block.time_s, np.arange(4) / 60)

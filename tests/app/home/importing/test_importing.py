@@ -143,7 +143,7 @@ def test_what_could_not_be_read_is_stated_beside_what_was(qtbot: QtBot, home: Ho
     page = read(qtbot, home, good, tmp_path / "mt.txt", tmp_path / "notes.txt")
     stated = shown(page)
     assert "notes.txt: this file format is not supported. Leave it out." in stated
-    assert "mt.txt: its update rate is missing." in stated
+    assert "mt.txt: its sample rate is missing." in stated
     page.rate.set_value(100.0)
     page.read_again.click()
     qtbot.waitUntil(lambda: "1 recording of Xsens MT Manager" in shown(page), timeout=WAIT_MS)

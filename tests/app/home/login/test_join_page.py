@@ -65,7 +65,7 @@ def test_a_refusal_is_at_the_field_it_is_about_and_what_was_typed_stays(qtbot: Q
 
 def test_a_server_that_the_environment_names_is_tried_again_and_never_typed(qtbot: QtBot, look: ThemeNotifier) -> None:
     page = shown(qtbot, look)
-    page.show_trouble("The clinic's server does not answer. Try again when it is back.")
+    page.show_trouble("The clinic's server does not respond. Try again when it is back.")
     assert not any(field.isVisible() for field in page.server.fields)
     assert "does not respond" in page.lead.text()
     with qtbot.waitSignal(page.again_requested):

@@ -53,7 +53,7 @@ def test_a_not_reported_joint_comes_first_with_why_what_to_do_and_whose_motion_m
     assert door.first == "Left ankle: not reported."
     assert door.then == first.to_do
     assert door.is_caution
-    assert answer_of(facts(visit, gated)).then.endswith("Withheld: left ankle.")
+    assert answer_of(facts(visit, gated)).then.endswith("Not reported: left ankle.")
 
 
 @pytest.mark.parametrize(
