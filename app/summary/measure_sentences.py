@@ -150,10 +150,7 @@ def legs_sentence(column: str, found: Difference, legs: tuple[str, str], values:
             pattern = (
                 tr("The {joint} has {size} less range of motion than the {second}: {value} against {other}.")
                 if is_less
-                else tr(
-                    "The {joint} has {size} more range of motion over the gait cycle than the {second}: {value} "
-                    "against {other}."
-                )
+                else tr("The {joint} has {size} more range of motion than the {second}: {value} against {other}.")
             )
         case "knee_stance_to_swing_deg":
             pattern = (

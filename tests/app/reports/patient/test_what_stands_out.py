@@ -359,7 +359,7 @@ def lines(request: ReportRequest, analysis: Analysis) -> list[str]:
         ("knee_while_loading_rad", 20.0, "more in loading response than the right: "),
         ("knee_straightening_rad", -20.0, "less in mid-stance than the right: "),
         ("knee_straightening_rad", 20.0, "more in mid-stance than the right: "),
-        ("knee_range_rad", 20.0, "more range of motion over the gait cycle than the right: "),
+        ("knee_range_rad", 20.0, "more range of motion than the right: "),
         ("step_time_s", -0.2, "shorter on the left than on the right: "),
         ("step_time_s", 0.2, "longer on the left than on the right: "),
     ],
