@@ -131,7 +131,7 @@ class DiagnosticsController(QObject):
         name = session_name("", "", WHAT)  # its files name no patient, so neither does their folder
         self._dialog = ask_for_new_folder(
             self._page,
-            tr("Save these figures to a new folder"),
+            tr("Save these values to a new folder"),
             lambda place: free_name(place, name),
             self._on_folder_selected,
         )

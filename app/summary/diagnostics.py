@@ -81,7 +81,7 @@ def figures_of(found: JointDiagnostics) -> dict[str, FoundFigure]:
         ("lag_ms", tr("Clock lag of the distal sensor"), 1000 * calibration.lag_s, "ms", 1),
         ("lag_sd_ms", tr("Clock lag certainty, 1 SD"), 1000 * _or_nan(calibration.lag_sd_s), "ms", 1),
         ("lag_cost_ratio", tr("Misfit without lag correction, times"), _or_nan(found.lag_cost_ratio), "", 2),
-        ("drift_deg_s", tr("Drift, gyroscopes alone"), abs(_deg(ways.drift_rad_s)), "deg_s", 2),
+        ("drift_deg_s", tr("Drift if only gyroscopes are used"), abs(_deg(ways.drift_rad_s)), "deg_s", 2),
         (
             "bias_drift_deg_s",
             tr("Drift, offset from standing not removed"),

@@ -22,7 +22,7 @@ if TYPE_CHECKING:
 SOON_S = 5.0  # so finely, and no later, it is given how long it takes still
 REASONS = {
     SyncFailure.LOST: later("out of range"),
-    SyncFailure.STAYS: later("keeps its old clock"),
+    SyncFailure.STAYS: later("not synchronised, keeps its old clock"),
     SyncFailure.FEW_SAMPLES: later("received too little from the others"),
     SyncFailure.SKEW_TOO_LARGE: later("clock rate differs too much"),
     SyncFailure.START_FAILED: later("started too late"),

@@ -265,8 +265,8 @@ SENTENCES = {
     ),
     "foot_against_shank": "The foot has no ankle joint. Its angle is the foot relative to the shank.",
     "prosthetic_toe_off": (
-        "Prosthetic toe-off is timed by the first movement of the sole, tested on simulated feet only. Stance of "
-        "this foot is not assessed."
+        "Toe-off of the prosthetic foot is the first movement of its sole. This was tested on "
+        "simulated feet only, so its stance is not assessed."
     ),
     "no_strides": "No complete stride was found. Check that this is a walk, and that sensors are on feet or shanks.",
     "side_without_strides": (

@@ -156,7 +156,7 @@ def measures_of(table: ParameterTable) -> tuple[str, ...]:
     if not table.measures:
         raise FileRefusedError(
             table.where,
-            "the table has no parameter with a status column",
+            "no parameter in this table has a status column",
             "Choose the parameters.parquet written by gaitwright batch",
         )
     return table.measures
