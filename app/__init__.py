@@ -1,4 +1,4 @@
-"""What does the clinician see and keep?"""
+"""All that the clinician sees and keeps."""
 
 import os
 

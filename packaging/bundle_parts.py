@@ -1,4 +1,4 @@
-"""Whose parts are in the folder that PyInstaller made, and under which licences? Run by the environment that made it.
+"""Owners and licences of the parts in the folder that PyInstaller made. Run by the environment that made it.
 
     build/environment/bin/python packaging/bundle_parts.py WORK FOLDER SBOM
 

@@ -1,4 +1,4 @@
-"""What must be here before Gaitwright can run? The locked parts in `.venv`, and the system libraries Qt is linked to.
+"""Requirements before Gaitwright can run: the locked parts in `.venv`, and the system libraries Qt is linked to.
 
 Standard library only: this is what a machine with nothing but Python runs first. A finished environment carries a stamp
 of what it was made from, so that the next start has only to compare it.

@@ -1,4 +1,4 @@
-"""What does every test get? No screen, repeatable examples, the shared recordings, and a look at what was left."""
+"""Setup of every test: no screen, repeatable examples, the shared recordings, and a look at what was left."""
 
 import gc
 import os

@@ -1,4 +1,4 @@
-"""Does the code keep the rules of the house that no linter knows?"""
+"""Tests that the code keeps the rules of the house that no linter knows."""
 
 import ast
 import io

@@ -1,4 +1,4 @@
-"""Where do wrappers of Qt's objects end? On the screen's thread alone, as `app/workers/garbage.py` has it.
+"""Check where wrappers of Qt's objects end: on the screen's thread alone, as `app/workers/garbage.py` has it.
 
 PySide deletes one that ends on another thread at whatever instruction the screen's thread comes to next: inside a
 paint, or of a widget that is being looked at. Such a crash comes once in many runs; where a wrapper ended is seen at

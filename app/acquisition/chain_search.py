@@ -1,4 +1,4 @@
-"""Which sensors make up which leg? Looked for once a second while the patient moves."""
+"""Sensors of each leg, found from the movement. Looked for once a second while the patient moves."""
 
 from collections.abc import Generator, Iterable, Mapping
 from dataclasses import replace

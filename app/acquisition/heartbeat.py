@@ -1,4 +1,6 @@
-"""Did this process stand still? Stopped, starved or asleep with the machine, it receives no sensor meanwhile.
+"""Detect whether this process stood still.
+
+Stopped, starved or asleep with the machine, it receives no sensor meanwhile.
 
 A thread that does nothing but sleep for a moment, again and again, sleeps longer only where nobody let it run. So a
 late beat reports a standstill of the process from a disk or a port that is late: those hold up their own threads only.

@@ -1,5 +1,7 @@
-"""How does one source get into a recording's journal? Its sensors one by one, each informed of before its first
-sample."""
+"""Write one source into a recording's journal.
+
+Its sensors follow one by one, each announced before its first sample.
+"""
 
 from dataclasses import replace
 

@@ -1,4 +1,4 @@
-"""What has to be known of the sensors before the live estimator can work on them?"""
+"""Facts about the sensors that the live estimator needs before it can work on them."""
 
 from collections.abc import Iterable, Mapping
 

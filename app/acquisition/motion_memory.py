@@ -1,4 +1,4 @@
-"""What did the sensors measure in the last half minute? For what looks at a whole motion again and again.
+"""Measurements of the sensors in the last half minute. For whatever looks at a whole motion again and again.
 
 A look at six sensors takes a tenth of a second or two. It is taken in steps of some ten milliseconds, a few with every
 update, so that what else the estimator's thread shows stays fresh.

@@ -1,4 +1,4 @@
-"""Who works on what is new? One thread, about thirty times a second, as far as it keeps up."""
+"""Thread that works on new samples, about thirty times a second, as far as it keeps up."""
 
 import logging
 import threading

@@ -1,4 +1,4 @@
-"""How is one source read? By its own thread, journal first; a source that is lost is opened again until it is back."""
+"""Read one source in its own thread, journal first. A lost source is opened again until it is back."""
 
 import logging
 import threading

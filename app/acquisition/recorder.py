@@ -1,4 +1,4 @@
-"""How does a recording get into the library, whatever the database is doing, and out of its journal again?
+"""Bring a recording into the library, whatever the database is doing, and out of its journal again.
 
 Its row comes first, where the database answers within a second. Where it does not, whatever is the matter with it, the
 journal is begun all the same and states itself which session it is of: the row follows, at the latest on stop; if the

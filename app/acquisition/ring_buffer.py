@@ -1,4 +1,7 @@
-"""What did a sensor send in the last seconds? For the screen and the live estimate, which may skip but never wait."""
+"""Samples that a sensor sent in the last seconds.
+
+For the screen and the live estimate, which may skip but never wait.
+"""
 
 from bisect import bisect_left
 

@@ -1,4 +1,4 @@
-"""Which angles does a chart reach? The same every time, so that two patients are compared at a glance."""
+"""Angle range of each chart. It is the same every time, so that two patients are compared at a glance."""
 
 from collections.abc import Iterable
 

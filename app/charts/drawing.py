@@ -1,4 +1,7 @@
-"""What are the figures drawn with? Lines, boxes, texts and badges as SVG, one unit a point, attributes only."""
+"""Elements that the figures are drawn with.
+
+Lines, boxes, texts and badges as SVG, one unit a point, attributes only.
+"""
 
 from collections.abc import Sequence
 from dataclasses import dataclass

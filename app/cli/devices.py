@@ -1,4 +1,4 @@
-"""What does the command line do with sensors? It lists those that are received, and plays ones that are not there."""
+"""Command line for sensors. It lists those that are received, and plays ones that are not there."""
 
 import os
 import tempfile

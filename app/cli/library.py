@@ -1,4 +1,4 @@
-"""What does the command line do with a library? It opens one, reads a session, recovers what was left.
+"""Command line for a library. It opens one, reads a session and recovers what was left.
 
 A passphrase is typed or read from a file; the command line itself would be seen by other programs. A library's own
 refusals leave here as the one line that the command line prints.

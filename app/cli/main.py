@@ -1,4 +1,4 @@
-"""What can be done without eyes? One subcommand per thing; without any, the window opens.
+"""Command line for all that can be done without eyes, one subcommand per thing. Without any, the window opens.
 
 Exit codes: 0 done, 2 bad usage or a file that is not what it states it is, 3 interrupted. What takes long to import is
 imported where it is used, so that `--help` and the window come at once.

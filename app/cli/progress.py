@@ -1,4 +1,4 @@
-"""What do subcommands say on a terminal, and what do they take from its line?"""
+"""Output of subcommands on a terminal, and the arguments they take from its line."""
 
 import argparse
 import math

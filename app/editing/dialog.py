@@ -1,4 +1,4 @@
-"""Both versions of what two stations changed, side by side: whose is to hold?"""
+"""Both versions of what two stations changed, side by side, to choose whose is to hold."""
 
 import datetime
 from collections.abc import Callable

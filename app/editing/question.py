@@ -1,4 +1,4 @@
-"""What two stations changed to different values, to be asked about: whose is to hold?"""
+"""Question about values that two stations changed differently: the operator chooses whose is to hold."""
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass

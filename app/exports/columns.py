@@ -1,4 +1,4 @@
-"""What does each column of each CSV file mean? `columns.csv`: unit, sign, definition, and what it needs to be known.
+"""Meaning of each column of each CSV file. `columns.csv` has unit, sign, definition, and what it needs to be known.
 
 What a column needs is reported in words: `zero`, `sign`, `both_clocks` (of the two legs), or `parameter`: as the figure
 that its row reports does. Where that is not to be had its cells are empty, and its status states not reported.

@@ -1,4 +1,4 @@
-"""Which numbers stand behind the plotted curves? One table per recording, in degrees."""
+"""Numbers behind the plotted curves. One table per recording, in degrees."""
 
 from collections.abc import Iterator
 from pathlib import Path

@@ -1,4 +1,4 @@
-"""What are the tables of an analysis to a program? `csv-metadata.json`: CSV on the Web, every table and its columns.
+"""Description of an analysis's tables for programs. `csv-metadata.json`: CSV on the Web, every table and its columns.
 
 W3C, Metadata Vocabulary for Tabular Data, 2015. It states what `columns.csv` states, with the type of each cell.
 """

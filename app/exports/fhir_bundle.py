@@ -1,4 +1,4 @@
-"""How does a hospital's system read the averages? A FHIR R4 Bundle of Observations, one per figure of summary.json.
+"""Averages in a form that a hospital's system reads. A FHIR R4 Bundle of Observations, one per figure of summary.json.
 
 A figure that is to be read with care, or that fewer than ten strides made, is preliminary and states why. One that is
 not reported has no value and its reason in place of it; nothing is ever called high, low or normal. Goals are Goals.

@@ -1,4 +1,4 @@
-"""Which numbers leave, and in what unit? Those of summary.json and of the CSV files, to their last digit."""
+"""Numbers that leave, and their units. Those of summary.json and of the CSV files, to their last digit."""
 
 import math
 import unicodedata

@@ -1,4 +1,4 @@
-"""What does a prosthetist read of a walk? The measures for fitting per stride, and their means with error and limits.
+"""Tables of a walk for a prosthetist. The measures for fitting per stride, and their means with error and limits.
 
 As in the other tables the cells of what is not reported are empty, and its status reports it.
 """

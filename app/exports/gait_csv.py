@@ -1,4 +1,4 @@
-"""Which strides stand behind the averages? Events, strides and mean cycles of one recording, and when strides peak.
+"""Strides behind the averages. Events, strides and mean cycles of one recording, and when strides peak.
 
 What may be stated about each figure is beside it, in the columns of status; the cells of what is not reported are
 empty. A curve without a zero keeps its shape: the column of its shape is the curve less its mean.

@@ -1,4 +1,4 @@
-"""What does a sensor on the pelvis add to `summary.json`? Without one, nothing."""
+"""Values that a sensor on the pelvis adds to `summary.json`. Without one, nothing is added."""
 
 import math
 from typing import Any

@@ -1,4 +1,4 @@
-"""What of a session and its analysis may leave without saying whose they are?
+"""Parts of a session and its analysis that may leave without revealing whose they are.
 
 A session of a library gets the pseudonym that all exports of its patient have (`app.storage.pseudonyms`), one of a
 folder that which all exports of it on this computer have (`app.exports.folder_pseudonyms`).

@@ -1,4 +1,4 @@
-"""Where does an analysis go, and what may it replace there?
+"""Place where an analysis is written, and what it may replace there.
 
 A folder of results is written beside its place and renamed, so that it is whole or not there. Recordings are never
 replaced: a place that holds any is refused, but for the session of which the results stand around it (`OUT/session`).

@@ -1,4 +1,4 @@
-"""What does a spreadsheet say? Summary, strides, mean cycles and events of all recordings, one sheet each.
+"""Spreadsheet of the results. Summary, strides, mean cycles and events of all recordings, one sheet each.
 
 Rows and numbers are those of summary.json and the CSV files, with the recording before them. The first sheet holds
 every verdict with its reasons, and a figure that is not reported reports it where its number would be. What somebody

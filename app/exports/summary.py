@@ -1,4 +1,4 @@
-"""What was found, in one file that other programs read? Joints, calibrations, walks and findings as JSON."""
+"""Findings in one file that other programs read. Joints, calibrations, walks and findings as JSON."""
 
 import json
 import math

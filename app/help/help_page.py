@@ -1,4 +1,7 @@
-"""What is this page for, and what does that message mean? The manual, in the window and without leaving the session."""
+"""Manual page on what the current page is for and what a message means.
+
+Shown in the window, without leaving the session.
+"""
 
 from PySide6.QtCore import QRectF, QSize, Qt, Signal
 from PySide6.QtGui import (

@@ -1,4 +1,4 @@
-"""What is the manual about? Its pages, as files of `resources/help`, one folder below it for each other language."""
+"""Topics of the manual. Its pages are files of `resources/help`, one folder below it for each other language."""
 
 from enum import StrEnum
 from functools import cache

@@ -1,4 +1,4 @@
-"""How does the application read files that others made? All of them by one limited process, whatever asks for them.
+"""Read files that others made. One limited process reads all of them, whatever asks for them.
 
 A file can at most end that process. Folders that this program has just written may be read directly.
 `waiting` is called while something is read, twenty times a second; what it raises ends the reading at once.

@@ -1,4 +1,4 @@
-"""Which axis fits the movement, of all that one sensor could have? A map of all directions, dark where they fit.
+"""Axis that fits the movement, among all that one sensor could have. A map of all directions, dark where they fit.
 
 The map shows the whole globe without stretching any part (Hammer's projection): the axis in use lies in the middle of
 its right half, its opposite, which is the same line, in the middle of the left.

@@ -1,4 +1,4 @@
-"""Which differences leave the measurement error? Grey is the error; what leaves it is filled and has a triangle."""
+"""Differences that leave the measurement error. Grey is the error; what leaves it is filled and has a triangle."""
 
 import math
 from collections.abc import Sequence

@@ -1,4 +1,4 @@
-"""When is which foot on the floor? One lane per leg under the curves, on the same time.
+"""Times at which each foot is on the floor. One lane per leg under the curves, on the same time.
 
 Loading is full, foot flat pale, pre-swing hatched, swing empty on a base line: four looks that hold in grey. Where the
 phase is not known nothing is drawn. Each border is an event; the reading line names it.

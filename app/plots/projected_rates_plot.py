@@ -1,4 +1,7 @@
-"""Do the two axes of a joint point the same way? The turning beside the axis, as paired and with one axis reversed."""
+"""Check whether both axes of a joint point the same way.
+
+The turning beside the axis, as paired and with one axis reversed.
+"""
 
 import numpy as np
 import pyqtgraph as pg

@@ -1,4 +1,4 @@
-"""How does an hour of samples become as many points as the screen has, without losing a peak or closing a gap?"""
+"""Reduce an hour of samples to as many points as the screen has, without losing a peak or closing a gap."""
 
 import numpy as np
 

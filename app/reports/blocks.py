@@ -1,4 +1,4 @@
-"""What is a page made of? Headings, texts, tables and figures, as the template takes them."""
+"""Elements of a page. Headings, texts, tables and figures, as the template takes them."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass

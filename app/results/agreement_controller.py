@@ -1,4 +1,7 @@
-"""Who compares a session with an optical system? References are read in the limited child, beside the screen."""
+"""Controller of comparing a session with an optical system.
+
+References are read in the limited child, beside the screen.
+"""
 
 import logging
 from collections.abc import Callable, Sequence

@@ -1,4 +1,4 @@
-"""What do the angles of a session and those of an optical system differ by? The pages that are saved, to be read."""
+"""Differences between the angles of a session and those of an optical system. The pages that are saved, to be read."""
 
 from collections.abc import Sequence
 

@@ -1,4 +1,4 @@
-"""What left the measurement error? Walks, visits or legs on the same axes, and their differences."""
+"""Differences that left the measurement error. Walks, visits or legs on the same axes, and their differences."""
 
 from collections.abc import Sequence
 from functools import partial

@@ -1,5 +1,4 @@
-"""How is a comparison reported? Its parts, its figures, a sentence for what lies beyond the error, and what that
-holds."""
+"""Words of a comparison. Its parts, its figures, a sentence for what lies beyond the error, and what that holds."""
 
 from collections.abc import Callable, Sequence
 

@@ -1,4 +1,4 @@
-"""Who answers "How was this found?" One joint at a time, computed beside the screen, shown, and saved as files."""
+"""Controller of "How was this found". One joint at a time, computed beside the screen, shown, and saved as files."""
 
 import logging
 from collections.abc import Callable, Mapping

@@ -1,5 +1,7 @@
-"""How was this found? The paper's Figures 3, 4 and 6 on this patient's recordings, each with what it states in
-words."""
+"""Page on how this was found.
+
+The paper's Figures 3, 4 and 6 on this patient's recordings, each with what it states in words.
+"""
 
 import math
 from collections.abc import Sequence

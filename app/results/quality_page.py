@@ -1,4 +1,4 @@
-"""How far can a walk be trusted? What can be read, what is against the rest and what to do, joint by joint."""
+"""Degree to which a walk can be trusted. What can be read, what is against the rest and what to do, joint by joint."""
 
 from collections.abc import Mapping, Sequence
 from functools import partial

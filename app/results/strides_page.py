@@ -1,4 +1,4 @@
-"""Which strides of this walk count? Each in a line beside the charts, left out and taken in again by hand."""
+"""Strides of this walk that count. Each in a line beside the charts, left out and taken in again by hand."""
 
 from collections.abc import Mapping
 

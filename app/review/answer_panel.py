@@ -1,4 +1,4 @@
-"""What does a walk say? Its answer and a verdict for each joint, beside the legs, in the words of the results page."""
+"""Result of a walk. Its answer and a verdict for each joint, beside the legs, in the words of the results page."""
 
 from collections.abc import Collection, Iterator
 

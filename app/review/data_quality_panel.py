@@ -1,4 +1,4 @@
-"""Which curves of a log may be looked at, and what do they say? Where each lies, by what may be stated about its joint.
+"""Curves of a log that may be looked at, and their meaning. Where each lies, by what may be stated about its joint.
 
 A curve with a height lies at `/angles`. One without a zero is reported as its shape, its mean taken away. One that is
 not reported, or whose sign is not known, lies at `/withheld`, which no view of the layout shows: it is there to be

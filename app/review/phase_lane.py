@@ -1,4 +1,4 @@
-"""Where do a foot's phases lie beside the curve of a joint? As a lane below it, on the same axes."""
+"""Phases of a foot beside the curve of a joint. A lane below it, on the same axes."""
 
 from collections.abc import Mapping
 

@@ -1,4 +1,4 @@
-"""How can a session be looked at again, sample by sample? One Rerun log of what was measured and what was computed.
+"""Log for looking at a session again, sample by sample. One Rerun log of what was measured and what was computed.
 
 Every recording is a timeline of its own, named by its kind and number (`walking_1`); choosing another timeline shows
 another recording in the same views. Nothing is left out between samples, and nobody's words are inside. Above the

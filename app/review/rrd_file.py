@@ -1,4 +1,4 @@
-"""How does the same log give the same bytes? Overwrites what Rerun writes into a file by chance or by the clock.
+"""Make the same log give the same bytes. Overwrites what Rerun writes into a file by chance or by the clock.
 
 Rerun names the layout's store by chance, stamps every store with the time, and lists the stores and their columns in
 the table of contents at the file's end in random order. Whoever checks a file or reads parts of it needs that table,

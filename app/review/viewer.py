@@ -1,4 +1,4 @@
-"""How is a session's log shown in Rerun? In a window of its own, a program that ends with ours.
+"""Show a session's log in Rerun. In a window of its own, a program that ends with ours.
 
 The log is plain text to whoever reads the disk, and may come out of an encrypted library. So it lies in one folder per
 run of the program, which only this user may enter, and which is emptied when the program ends or, where it could not,

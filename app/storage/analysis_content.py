@@ -1,4 +1,4 @@
-"""How is an analysis written down so that what is read is what was computed, to the last bit?
+"""Write an analysis so that what is read is what was computed, to the last bit.
 
 A SHA-256 of all that follows; the length of the outline, 8 bytes, little-endian; the outline, JSON; the arrays' bytes
 one after another. The outline names every class and array; nothing but the core's own values can come out of it.

@@ -1,4 +1,4 @@
-"""Who did what, and is that record whole? Every entry's hash is keyed and covers the hash before it.
+"""Record of who did what, and proof that it is whole. Every entry's hash is keyed and covers the hash before it.
 
 This is tamper-evident against outsiders only: who has no data key, a database server's keeper for one, can neither
 change, remove, add nor move an entry unseen. They can cut entries off at the end, which a checkpoint kept elsewhere

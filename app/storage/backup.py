@@ -1,4 +1,4 @@
-"""Is there a second copy, and does it open?
+"""Second copy of the library, and the check that it opens.
 
 A backup is a folder with the database, the journals and the keys' file as the library has them, encrypted as they are
 there, and a list of their hashes. It is made while the library is in use. Only when everything was read back and

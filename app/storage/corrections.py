@@ -1,4 +1,4 @@
-"""What was put right after the fact, by whom and when, and how is it taken back?"""
+"""Corrections made after the fact: what, by whom and when, and how they are taken back."""
 
 import datetime
 import uuid

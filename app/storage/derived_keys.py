@@ -1,4 +1,4 @@
-"""Which keys stay the same when the data key changes? Those of the audit's chain and of the pseudonyms.
+"""Keys that stay the same when the data key changes. Those of the audit's chain and of the pseudonyms.
 
 Both come from the first data key of a library. When that is changed they are kept in the database, wrapped under the
 new one: the chain goes on from its beginning, and a patient's exports keep their pseudonym.

@@ -1,4 +1,4 @@
-"""How does a session get into the library, and out of it, without losing a sample?
+"""Bring a session into the library, and out of it, without losing a sample.
 
 Samples become one journal per recording, one source per site; what `session.toml` states becomes rows. Both ways keep
 every bit of a float64, and every key and column, those that mean nothing to us included.

@@ -1,4 +1,4 @@
-"""When has nobody worked here for so long that the screen must be covered?
+"""Detect when nobody has worked here for so long that the screen must be covered.
 
 A recording is not known here, and so nothing here can end one: it is neither activity, which would leave a patient's
 name on the screen of an empty room, nor a reason to wait. Its writer keeps the key of its own journal. What `lock`

@@ -1,4 +1,4 @@
-"""What came of these very samples, was it computed before? Then it is read, not computed again.
+"""Analyses of these very samples that were computed before. They are read, not computed again.
 
 The key is over all that an analysis is given: the samples themselves, what was stated about them, and the program's own
 code. An analysis is given nothing else (`bare`), so nothing else can change it.

@@ -1,4 +1,4 @@
-"""Do the figures of a visit that were kept for its patient's course still hold?
+"""Check that the figures of a visit kept for its patient's course still hold.
 
 They hold as long as everything that they came of is as it was: what was stated about patient, joints and recordings,
 who wore what, which strides were left out, and the code that computes. Samples never change.

@@ -1,4 +1,4 @@
-"""How does a library get another data key, so that who had the old one reads nothing of what comes?
+"""Give a library another data key, so that who had the old one reads nothing of what comes.
 
 The database is copied under the new key, with the keys of all journals wrapped again, then takes the place of the old
 one, and the slots' file after it. Killed at any point, the library opens with the keys that it had or with all of the

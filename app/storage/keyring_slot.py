@@ -1,4 +1,4 @@
-"""May the system's keyring open the library in place of an operator's passphrase?
+"""The system's keyring as a way to open the library in place of an operator's passphrase.
 
 The keyring holds a random secret that opens a slot of its own kind. Whoever works under this account of the machine
 then opens the library as that operator: it is for an account that one person uses, and not for the lock after five

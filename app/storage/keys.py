@@ -1,4 +1,6 @@
-"""Who may open the library? One random data key, sealed once for every operator and once for the recovery key.
+"""Keys of those who may open the library.
+
+One random data key, sealed once for every operator and once for the recovery key.
 
 An operator may have a second slot, which the system's keyring opens (`app.storage.keyring_slot`). A slot has a pair of
 keys of its own (`app.storage.slots`), so the data key can be changed without anybody's passphrase. The slots' file

@@ -1,4 +1,4 @@
-"""How long does the next try at a passphrase have to wait?
+"""Time that the next try at a passphrase has to wait.
 
 After three wrong ones, twice as long after each further one. The count is beside the library, and is raised before
 a passphrase is tried: neither a restart nor a kill in between is worth a try. No time is kept. A program that starts

@@ -1,4 +1,4 @@
-"""How is a library opened with a passphrase, and held while it is open?"""
+"""Open a library with a passphrase, and hold it while it is open."""
 
 import glob
 import re

@@ -1,4 +1,4 @@
-"""Who works with a library, in which role, and what was set for all of them?"""
+"""Operators who work with a library, their roles, and what was set for all of them."""
 
 from dataclasses import replace
 from typing import Any

@@ -1,4 +1,4 @@
-"""How does a session leave the library so that it does not say whose it is?
+"""Let a session leave the library without revealing whose it is.
 
 A patient's pseudonym and the shift of the dates come from the library's key and the patient's row, so every export of
 one patient has the same ones: visits can still be put together and in order, and nobody without the key gets back.

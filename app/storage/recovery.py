@@ -1,4 +1,4 @@
-"""What was recorded when the program, or the machine, ended without stopping? Found at the next start, and closed.
+"""Recordings of a program or machine that ended without stopping. Found at the next start, and closed.
 
 Two kinds are found: rows that nobody closed, and orphans, journals that no row reports because the database did not
 answer when they were begun. An orphan states itself which session it is of, unless its beginning is damaged. Nothing is

@@ -1,4 +1,7 @@
-"""What was computed already, and from what? The same inputs are never computed twice, other inputs never confused."""
+"""Results that were computed already, and from what.
+
+The same inputs are never computed twice, other inputs never confused.
+"""
 
 import hashlib
 from dataclasses import asdict

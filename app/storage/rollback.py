@@ -1,4 +1,4 @@
-"""Is this library older than when this computer saw it last?
+"""Check whether this library is older than when this computer saw it last.
 
 How far the audit had come is in a folder of this computer, outside of the library, by the library's own id: that of
 its first entry, which a copy and a backup share. A library that was put back to an older state, whole and sound, shows

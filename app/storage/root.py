@@ -1,4 +1,4 @@
-"""Is the library's folder still where it was opened, and still that library's?
+"""Check that the library's folder is still where it was opened, and still that library's.
 
 A folder is renamed, or its disk taken out, while the program runs: at its path there is then nothing, an empty mount
 point, or another library. So a library has an id, in its database and, for whoever has no key, in a file of its own

@@ -1,4 +1,4 @@
-"""How does one secret open the data key, and how can the data key be changed without that secret?
+"""Open the data key with one secret, and let the data key be changed without that secret.
 
 A slot has a pair of X25519 keys (RFC 7748). The private one is wrapped with AES-256-GCM under a key that comes from the
 secret by Argon2id (RFC 9106); the data key is sealed to the public one. Who holds the data key can so seal another to

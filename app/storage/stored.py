@@ -1,4 +1,4 @@
-"""What does the library hand out? Plain, frozen values; nothing here knows of a database.
+"""Values that the library hands out. Plain and frozen; nothing here knows of a database.
 
 `details` is what the clinic or a file stated, in the core's own words and without samples: those are in the journals.
 """

@@ -1,4 +1,4 @@
-"""Who is at work, and what may they do? Everything that is read or written passes here."""
+"""Operator at work, and what they may do. Everything that is read or written passes here."""
 
 import datetime
 from collections.abc import Callable, Iterator

@@ -1,4 +1,4 @@
-"""What had been agreed with a patient by the day of a session?
+"""Agreements with a patient by the day of a session.
 
 The session's day counts for all its walks: none of them was made before it.
 """

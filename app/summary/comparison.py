@@ -1,4 +1,4 @@
-"""What changed between walks, visits or legs, and is that more than the measurement error?
+"""Changes between walks, visits or legs, and whether they are more than the measurement error.
 
 Screen, report and files take their figures from here, so that no number is drawn that no table holds.
 """

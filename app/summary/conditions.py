@@ -1,4 +1,4 @@
-"""What do the walks of one condition say together? Their strides, and how far they can be trusted.
+"""Walks of one condition, taken together. Their strides, and how far they can be trusted.
 
 Walks of one pool (`app.summary.pooled_walks`) are one part of every comparison.
 """

@@ -1,4 +1,4 @@
-"""How is a patient's course stated? Each lane with its unit and its changes, and what is to be done next."""
+"""Words for a patient's course. Each lane with its unit and its changes, and what is to be done next."""
 
 import datetime
 import math

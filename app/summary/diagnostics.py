@@ -1,4 +1,4 @@
-"""Which numbers stand behind "How was this found?" The same figures for the page and for the files."""
+"""Numbers behind "How was this found". The same figures for the page and for the files."""
 
 import math
 from collections.abc import Sequence

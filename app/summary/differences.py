@@ -1,4 +1,4 @@
-"""By how much do conditions, visits or legs differ, and is that more than the measurement error? The tables of it.
+"""Tables of how much conditions, visits or legs differ, and whether that is more than the measurement error.
 
 `rows_of` reports every figure of a stride, those of both legs, and how far the mean curves lie apart; screen and
 report show some of them.

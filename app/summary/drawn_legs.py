@@ -1,4 +1,4 @@
-"""How do the legs stand at each moment of a walk? Drawn from the angles and the thighs' inclination, not measured.
+"""Legs at each moment of a walk. Drawn from the angles and the thighs' inclination, not measured.
 
 The hips stay where they are, side by side, and each leg's heading is such that its knee axis points to the left: how
 far the patient came and which way they faced is not known without a magnetometer, nor is it shown. Forward is x, left

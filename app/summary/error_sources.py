@@ -1,4 +1,4 @@
-"""What does the error of a difference contain? Its sources, in words."""
+"""Sources of the error of a difference, in words."""
 
 from collections.abc import Iterable
 

@@ -1,5 +1,4 @@
-"""What do all pages need to know of a walk's condition? Its means, what may not be reported, the cited groups beside
-it."""
+"""Facts that all pages need of a walk's condition. Its means, what may not be reported, the cited groups beside it."""
 
 import math
 from collections.abc import Mapping, Sequence

@@ -1,4 +1,4 @@
-"""Which places of a walk's curves does the answer speak of? What differs most, and where a curve leaves the band."""
+"""Places of a walk's curves that the answer refers to. What differs most, and where a curve leaves the band."""
 
 from collections.abc import Mapping
 

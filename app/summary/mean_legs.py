@@ -1,4 +1,4 @@
-"""How do the legs stand at each percent of a mean stride? Drawn from the angles and the thighs' inclination.
+"""Legs at each percent of a mean stride. Drawn from the angles and the thighs' inclination.
 
 Seen from the side: forward is x, up is z, each hip at the origin. What may not be read of a joint is not drawn.
 """

@@ -1,4 +1,4 @@
-"""How does a number stand on paper? Fixed decimals, a true minus, and words for where it lies against a band."""
+"""Format of a number on paper. Fixed decimals, a true minus, and words for where it lies against a band."""
 
 import math
 from collections.abc import Mapping

@@ -1,4 +1,4 @@
-"""What have all curves of the report in common? Axes, the colours of legs and conditions, swatches, words for them."""
+"""Common parts of all curves of the report. Axes, the colours of legs and conditions, swatches, words for them."""
 
 import math
 from collections.abc import Sequence

@@ -1,4 +1,4 @@
-"""Can every typed text be printed? What the bundled fonts cannot show becomes a box, what nobody can see is dropped.
+"""Make every typed text printable. What the bundled fonts cannot show becomes a box, what nobody can see is dropped.
 
 A single character without a glyph, a control character or a private one would refuse the whole document under PDF/A
 and PDF/UA: a name must never prevent a report.

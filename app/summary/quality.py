@@ -1,4 +1,7 @@
-"""What of this recording can be read? The walk's verdicts as a table, the gravest reasons, and what they rest on."""
+"""Parts of this recording that can be read.
+
+The walk's verdicts as a table, the gravest reasons, and what they rest on.
+"""
 
 import math
 from collections import Counter

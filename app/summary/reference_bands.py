@@ -1,4 +1,4 @@
-"""Which cited groups does the program bring along, and which of them may stand beside a walk?"""
+"""Cited groups that the program brings along, and which of them may be placed beside a walk."""
 
 from functools import cache
 from importlib.resources import files

@@ -1,4 +1,4 @@
-"""How is a day written? As people write it; what is no date stays as it was reported."""
+"""Format a day as people write it; what is no date stays as it was reported."""
 
 import datetime
 

@@ -1,4 +1,4 @@
-"""What is a report made of? A visit, the walks that were chosen from it, and what the clinic stated to it."""
+"""Contents of a report request: a visit, the walks chosen from it, and what the clinic stated about it."""
 
 from dataclasses import dataclass
 from datetime import datetime

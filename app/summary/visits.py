@@ -1,4 +1,4 @@
-"""Which conditions do visits share? They are compared condition by condition, and never pooled.
+"""Conditions that visits share; visits are compared condition by condition and never pooled.
 
 What a patient walks with is set by hand: two alignments of one prosthesis are two conditions, and their mean is
 nobody's gait.

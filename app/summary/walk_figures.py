@@ -1,4 +1,6 @@
-"""Which figures of a condition's walks does a clinician read? Peaks, ranges, time, distance, beside a cited group's.
+"""Figures of a condition's walks that a clinician reads.
+
+Peaks, ranges, time and distance are given beside those of a cited group.
 
 The window and the report show the same rows, so that no number is in one that the other computes differently.
 """

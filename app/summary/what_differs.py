@@ -1,4 +1,7 @@
-"""In what do the legs differ most? Measures with goals first, then those judged, the one of most errors first."""
+"""Measures in which the legs differ most.
+
+Measures with goals come first, then those judged, the one of most errors first.
+"""
 
 from collections.abc import Mapping
 from dataclasses import dataclass

@@ -1,4 +1,7 @@
-"""What does who reads page one only have to know? At most three findings larger than their error, and one caveat."""
+"""Findings that a reader of page one alone has to know.
+
+There are at most three, larger than their error, and one caveat.
+"""
 
 import math
 from collections.abc import Iterable, Iterator

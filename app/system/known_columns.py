@@ -1,4 +1,4 @@
-"""What do the columns mean of sensors that send lines of numbers? Reported once for each, and kept on this computer."""
+"""Meaning of the columns of sensors that send lines of numbers; given once for each, and kept on this computer."""
 
 import json
 from collections.abc import Mapping, Sequence

@@ -1,4 +1,4 @@
-"""What may be written down of what went wrong, without a word about anybody?
+"""Log of what went wrong, written down without a word about anybody.
 
 Codes, notes, operators and paths come into messages as arguments and with exceptions, so neither is written: of a
 message the text that is in our own source, with numbers, ids and our own fixed words in it; of an exception its

@@ -1,4 +1,6 @@
-"""How long would a passphrase hold, against somebody who has a copy of the library? In words, and on the cautious side.
+"""Estimate how long a passphrase would hold against somebody who has a copy of the library.
+
+The estimate is in words, and on the cautious side.
 
 The number of guesses is that of zxcvbn (Wheeler 2016, USENIX Security 25), which knows common passwords, words, names,
 dates, keys that lie side by side and what repeats. Its words are mostly English, so what is German, French or Italian

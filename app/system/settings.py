@@ -1,4 +1,7 @@
-"""What does a user of this computer want to see and hear? Kept for the next start; nothing about patients."""
+"""Settings of what a user of this computer wants to see and hear.
+
+They are kept for the next start and hold nothing about patients.
+"""
 
 from enum import StrEnum
 

@@ -1,4 +1,4 @@
-"""What does the room hear? Short sounds for those who look at the patient and not at the screen.
+"""Short sounds in the room, for those who look at the patient and not at the screen.
 
 Each has its words on the screen too, so nothing is lost where there is no sound. The platform's own player plays them
 in a process beside ours: Qt's multimedia would bring more than all else together. One thread starts it and waits for

@@ -1,4 +1,4 @@
-"""Which colours are there? The frozen tokens of both schemes, without a screen; no other file names one."""
+"""Frozen colour tokens of both schemes, usable without a screen; no other file names a colour."""
 
 from dataclasses import dataclass
 

@@ -1,4 +1,4 @@
-"""May things move? How long a transition takes: nothing where less motion is asked for, here or in the system."""
+"""Duration of a transition: nothing where less motion is asked for, here or in the system."""
 
 import ctypes
 import sys

@@ -1,4 +1,6 @@
-"""What is a widget of ours to who receives the screen? Qt knows the roles of its own controls only.
+"""Accessible roles of the application's own widgets, for assistive technology.
+
+Qt knows the roles of its own controls only.
 
 A class that paints itself reports it by `accessible_role`; every other keeps the role that Qt gives it. Name and
 description are the widget's own.

@@ -1,4 +1,7 @@
-"""What can be done now? Back at the left, the primary verb at the right, and its consequence in words beside it."""
+"""Bar of the actions possible now.
+
+Back is at the left, the primary verb at the right, and its consequence in words beside it.
+"""
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace

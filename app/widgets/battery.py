@@ -1,4 +1,4 @@
-"""How full is a sensor's battery? A small cell, filled as far as it is charged."""
+"""Charge of a sensor's battery: a small cell, filled as far as it is charged."""
 
 from PySide6.QtCore import QRectF, Qt
 from PySide6.QtGui import QColor, QPainter

@@ -1,4 +1,7 @@
-"""Which sensor sits where on the patient? A drawn person who faces you, like an X-ray: right is at the left."""
+"""Figure that shows which sensor is where on the patient.
+
+It is a drawn person who faces you, like an X-ray: right is at the left.
+"""
 
 from collections.abc import Mapping
 from enum import Enum, auto

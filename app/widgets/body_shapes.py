@@ -1,4 +1,4 @@
-"""What does the drawn body consist of? The shapes of `resources/images/body.svg`, read once, without their colours."""
+"""Shapes of the drawn body: those of `resources/images/body.svg`, read once, without their colours."""
 
 import re
 from collections.abc import Mapping

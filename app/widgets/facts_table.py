@@ -1,4 +1,4 @@
-"""How was each joint found, and how sure is that? One column per joint, one row per question."""
+"""Table of how each joint was found and how sure that is: one column per joint, one row per question."""
 
 import math
 from collections.abc import Callable, Mapping

@@ -1,4 +1,4 @@
-"""What did the walk give in figures? One row per figure: left, right, and the same of a cited group."""
+"""Table of a walk's figures. Each figure has one row: left, right, and the same of a cited group."""
 
 import math
 from collections.abc import Mapping, Sequence

@@ -1,4 +1,4 @@
-"""Which folder or files are meant? The system's own dialog, which holds up nothing meanwhile."""
+"""Dialogs that ask which folder or files are meant: the system's own, which hold up nothing meanwhile."""
 
 import os
 import sys

@@ -1,4 +1,7 @@
-"""How well is a joint known from the motion so far? Rings that close as what motion can still reduce goes down."""
+"""Gauge of how well a joint is known from the motion so far.
+
+Its rings close as what motion can still reduce goes down.
+"""
 
 import math
 from dataclasses import dataclass

@@ -1,4 +1,4 @@
-"""Where does the content begin? The same margin for header, tiles, page and bar, so that their edges line up."""
+"""Margin at which the content begins: the same for header, tiles, page and bar, so that their edges line up."""
 
 from app.theme.theme import Theme
 

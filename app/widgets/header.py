@@ -1,4 +1,4 @@
-"""Whose session is on the screen, and is it real? The line at the top of every page."""
+"""Header line at the top of every page: whose session is on the screen, and whether it is real."""
 
 from PySide6.QtCore import QPoint, QPointF, QRect, QRectF, QSize, Qt
 from PySide6.QtGui import QColor, QPainter, QPaintEvent, QResizeEvent

@@ -1,4 +1,4 @@
-"""In which order are the parts of a widget received? In that of reading, as its layout has them.
+"""Order in which a screen reader reads the parts of a widget: that of reading, as its layout has them.
 
 Qt reports assistive technology of them as they are stacked: what came into the widget last is received last, wherever
 it is. Layouts are asked for the places of widgets and never for their items: an item that Qt deletes would leave its

@@ -1,4 +1,7 @@
-"""How well is a hip known from the motion so far? A slim card: nothing waits for it, and a walk shows it as well."""
+"""Gauge of how well a hip is known from the motion so far.
+
+It is a slim card: nothing waits for it, and a walk shows it as well.
+"""
 
 import math
 from dataclasses import dataclass

@@ -1,4 +1,4 @@
-"""What is which line of a picture? Each line as it is drawn, with its name behind it."""
+"""Key to the lines of a picture: each line as it is drawn, with its name behind it."""
 
 from collections.abc import Callable, Sequence
 

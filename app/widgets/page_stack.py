@@ -1,4 +1,4 @@
-"""Which page is in sight? Pages in one place, of which only that one asks for room."""
+"""Stack of pages in one place; only the page in sight asks for room."""
 
 from PySide6.QtCore import QSize
 from PySide6.QtWidgets import QStackedWidget

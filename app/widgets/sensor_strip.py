@@ -1,5 +1,7 @@
-"""Are all sensors received? A tile for each round a pair of legs, or round that of the pelvis where one is worn
-there."""
+"""Strip that shows whether all sensors are received.
+
+Each has a tile, round a pair of legs, or round the pelvis's tile where one is worn there.
+"""
 
 from collections.abc import Collection, Mapping
 

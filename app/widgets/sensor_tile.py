@@ -1,4 +1,4 @@
-"""How is one worn sensor, in a word? And all of them, in a sentence."""
+"""State of one worn sensor in a word, and of all of them in a sentence."""
 
 from collections.abc import Mapping
 from dataclasses import dataclass

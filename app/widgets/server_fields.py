@@ -1,4 +1,4 @@
-"""Which server, and where are the recordings? The fields that name a clinic's library."""
+"""Fields that name a clinic's library: which server, and where the recordings are."""
 
 from PySide6.QtCore import QObject, Signal
 from PySide6.QtWidgets import QWidget

@@ -1,4 +1,7 @@
-"""Where are we, and where can we go? The rows at the left: the steps of a session, or the ways on from Home."""
+"""Rail of rows at the left that shows where the user is and can go.
+
+Its rows are the steps of a session, or the ways on from Home.
+"""
 
 from collections.abc import Callable
 

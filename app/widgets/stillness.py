@@ -1,4 +1,4 @@
-"""How far has the standing come, and which sensor moves? A ring that fills, and a line per sensor beside its limit."""
+"""Progress of the standing, and which sensor moves: a ring that fills, and a line per sensor beside its limit."""
 
 import math
 from collections.abc import Mapping, Sequence

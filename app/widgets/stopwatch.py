@@ -1,4 +1,4 @@
-"""How long has this session taken? The time since it began, and a line that grows to the target; never an alarm."""
+"""Stopwatch of the session: the time since it began, and a line that grows to the target; never an alarm."""
 
 from PySide6.QtCore import QRectF, QSize, Qt
 from PySide6.QtGui import QColor, QFontMetrics, QPainter, QPaintEvent

@@ -1,4 +1,4 @@
-"""What do the recordings of a visit report so far? Computed beside the screen whenever one is added."""
+"""Results of a visit's recordings so far, computed beside the screen whenever one is added."""
 
 import logging
 from collections.abc import Mapping

@@ -1,4 +1,4 @@
-"""What does a key mean while the wizard is in sight? One filter turns keys into intents; nobody else reads them.
+"""Meaning of keys while the wizard is in sight. One filter turns keys into intents; nobody else reads them.
 
 Text has the first word: in a text field letters, figures, brackets and Space are written, and Ctrl Z takes back what
 was written; only a field of numbers, which has no use for Space, lets it through. After it comes the bar: a key that

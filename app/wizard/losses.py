@@ -1,4 +1,7 @@
-"""Which sensors are silent, what does that cost, and which is back? In words, while a walk goes on and in between."""
+"""Silent sensors, what their silence costs, and which sensor is back.
+
+The words are shown while a walk goes on and in between.
+"""
 
 import math
 from collections.abc import Mapping, Sequence

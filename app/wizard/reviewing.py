@@ -1,4 +1,4 @@
-"""How is the session looked at in Rerun? Its log is written beside the screen, and shown in a window of its own."""
+"""Review of the session in Rerun. Its log is written beside the screen, and shown in a window of its own."""
 
 import logging
 from typing import TYPE_CHECKING

@@ -1,4 +1,4 @@
-"""What is every step of the wizard? A page, a row in the rail, a bar of actions, and what keys do meanwhile."""
+"""Parts of every step of the wizard: a page, a row in the rail, a bar of actions, and what keys do meanwhile."""
 
 from enum import Enum, auto
 from typing import TYPE_CHECKING, ClassVar

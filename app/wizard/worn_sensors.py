@@ -1,4 +1,4 @@
-"""Which sensors are there, and who wears what where?"""
+"""Sensors that are there, and who wears which of them where."""
 
 import logging
 import threading

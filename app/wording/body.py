@@ -1,4 +1,4 @@
-"""What are parts of the body called where they stand on their own, and as the patient is spoken to?"""
+"""Names of parts of the body, on their own and as used in speaking to the patient."""
 
 from app.wording.translation import tr
 from core.body import Joint, Segment

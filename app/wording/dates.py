@@ -1,4 +1,4 @@
-"""How is a day stated? In the operator's language, never with a month as a number."""
+"""Wording of a day: in the operator's language, never with a month as a number."""
 
 import datetime
 from collections.abc import Callable, Collection

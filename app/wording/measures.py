@@ -1,4 +1,7 @@
-"""What is a measure called that goals and a patient's course are of? Its name, its unit, and how it is written."""
+"""Names of the measures that goals and a patient's course are of.
+
+Each has its name, its unit, and how it is written.
+"""
 
 from app.wording.timed_tests import name_of_test
 from app.wording.translation import figure_text, later, side_name, tr, within_sentence

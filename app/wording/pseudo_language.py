@@ -1,4 +1,4 @@
-"""English made as long as German: does every page have the room, and does every sentence pass the catalogue?
+"""English made as long as German. It checks that every page has the room, and that every sentence passes the catalogue.
 
 Letters are doubled all along until a sentence is 35 % longer, vowels wear a mark that English does not have, and
 brackets show where a sentence begins and ends. What is in braces is left alone, since it is a figure's name.

@@ -1,4 +1,4 @@
-"""In which language does Qt speak where it opens a dialog of its own: a file's, a printer's?"""
+"""Language of Qt where it opens a dialog of its own, such as a file's or a printer's."""
 
 from collections.abc import Iterator
 from contextlib import contextmanager

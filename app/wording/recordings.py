@@ -1,4 +1,6 @@
-"""What is a recording called wherever somebody reads of it? A walk by the letter of its condition and the condition.
+"""Names of recordings wherever somebody reads of them.
+
+A walk is called by the letter of its condition and the condition.
 
 A recording's own name ("walk 3") is its identity in a session's folder, in tables and for programs; nobody has to know
 it. On the screen and on paper a walk is called "A Barefoot", and "A2 Barefoot" where it is the second of its condition:

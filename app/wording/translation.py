@@ -1,4 +1,4 @@
-"""What do we report the clinician? Every message: what happened, then what to do or what follows.
+"""Translation of every message to the clinician: what happened, then what to do or what follows.
 
 At most two sentences, the part first and its side before it, numbers with units, no blame. English is the source; other
 languages come from the gettext catalogues in `resources/locale`, which `packaging/catalogue.py` gathers from the code:

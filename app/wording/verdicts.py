@@ -1,4 +1,7 @@
-"""Why is a figure read with care, or not reported, and what is to be done? For each gate of `core.verdicts.gates`."""
+"""Reasons why a figure is read with care or not reported, and what is to be done.
+
+There is one for each gate of `core.verdicts.gates`.
+"""
 
 from typing import NamedTuple
 

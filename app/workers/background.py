@@ -1,4 +1,4 @@
-"""How does slow work run without holding up the screen? One piece at a time, with progress, and a stop that stops."""
+"""Run slow work without holding up the screen: one piece at a time, with progress, and a stop that stops."""
 
 import logging
 from collections.abc import Callable

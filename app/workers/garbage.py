@@ -1,4 +1,7 @@
-"""Who collects garbage? The screen's thread alone, between frames: what it holds of Qt must not end on another."""
+"""Garbage collection by the screen's thread alone, between frames.
+
+What it holds of Qt must not end on another thread.
+"""
 
 import gc
 from collections.abc import Callable

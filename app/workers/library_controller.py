@@ -1,4 +1,6 @@
-"""Who asks the library while the screen goes on? One thread, in the order of asking; answers come to the screen's.
+"""Thread that asks the library while the screen goes on.
+
+It works in the order of asking; answers come to the screen's thread.
 
 A recording begins and ends in a thread of its own: neither waits for what the library is being asked meanwhile.
 

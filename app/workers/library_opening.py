@@ -1,4 +1,4 @@
-"""What is between a key and an open library? Somebody logged in, what is overdue, a demonstration's patients."""
+"""Steps between a key and an open library: somebody logged in, what is overdue, a demonstration's patients."""
 
 import logging
 from datetime import datetime

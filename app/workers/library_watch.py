@@ -1,4 +1,6 @@
-"""Is the open library still where it was opened? A thread looks twice a second: a disk may be slow to answer.
+"""Watch whether the open library is still where it was opened.
+
+A thread looks twice a second: a disk may be slow to answer.
 
 At a clinic's station it listens to the server, too: does it answer, and did another station do something? What was
 recorded here is handed over to the others.

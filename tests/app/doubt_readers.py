@@ -1,4 +1,6 @@
-"""What do the report and the results on the screen say of each figure: reported, to be read with care, or not reported?
+"""Readers of the status of each figure in the report and in the results on the screen.
+
+A figure is reported, to be read with care, or not reported.
 
 Read from the words alone, as a reader has them: the text of the PDF and the cells of the tables. Figures are named as
 in strides.csv; what is not reported for want of a zero or of a sign is not reported here.

@@ -1,4 +1,4 @@
-"""Does PySide still hold the layout item that a widget had before it was moved? That can end the process later.
+"""Layout items from before a widget was moved that PySide still holds. That can end the process later.
 
 `outer.addLayout(inner)`, where `inner` is filled already, gives each item of `inner` a wrapper that `outer` keeps. Qt
 deletes an item when its widget is put elsewhere; its wrapper learns of that only from `removeWidget` and `takeAt`. An

@@ -1,4 +1,4 @@
-"""Has every word on a page its room? What is cut, and where, for any page at any size and in any language."""
+"""Room for every word on a page: what is cut, and where. For any page, at any size and in any language."""
 
 from collections.abc import Iterator
 

@@ -1,4 +1,4 @@
-"""Do `compare` and `export` say what differs and write what was asked for, or refuse in one line?"""
+"""Tests that `compare` and `export` report what differs and write what was asked for, or refuse in one line."""
 
 import csv
 import re

@@ -1,4 +1,4 @@
-"""Do report and screen withhold the same, and what the verdicts withhold? Read from their words alone."""
+"""Tests that report and screen leave out the same as each other and as the verdicts. Read from their words alone."""
 
 from datetime import UTC, datetime
 

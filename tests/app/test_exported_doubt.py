@@ -1,4 +1,6 @@
-"""Do all outputs doubt the same figures? One simulated session per cause of doubt, every file read by another program.
+"""Tests that all outputs doubt the same figures.
+
+One simulated session per cause of doubt, every file read by another program.
 
 What has to be stated is in `STATED`, written by hand. Each output has a function that takes the folder of a case and
 gives what it states of the quantities that it reports; `OUTPUTS` lists them. Report and screen are read by their words.

@@ -1,4 +1,4 @@
-"""Frozen into a program of its own, does Gaitwright begin its child processes again as itself?"""
+"""Tests that Gaitwright, frozen into a program of its own, begins its child processes again as itself."""
 
 import os
 import sys

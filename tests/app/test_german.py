@@ -1,4 +1,4 @@
-"""Is every sentence there in German, with the figures, spaces and marks of the English one?"""
+"""Each sentence has a German text, with the figures, spaces and marks of the English one."""
 
 import ast
 import importlib

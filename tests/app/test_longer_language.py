@@ -1,4 +1,4 @@
-"""Does every page have the room for a language as long as German, at every size of window and letters?"""
+"""Tests that every page has room for a language as long as German. At every size of window and letters."""
 
 import pytest
 from pytestqt.qtbot import QtBot

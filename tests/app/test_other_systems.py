@@ -1,4 +1,4 @@
-"""Does what differs between systems differ as it should? On this one, which is given to be another.
+"""Tests that what differs between systems differs as it should. Run on this one, which is given to be another.
 
 What each test represents is in the list of `packaging/installers/README.md`. Nothing was tried on Windows or macOS.
 """

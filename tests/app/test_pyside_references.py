@@ -1,4 +1,4 @@
-"""Does the pinned PySide6 keep its hands off the reference count of None, and make each class once?
+"""Tests that the pinned PySide6 leaves the reference count of None alone and makes each class once.
 
 PySide6 6.12.0 on Python 3.11 gives away one reference to None, True or False at every call that returns one; a live
 plot then aborts within seconds. 6.11 makes a class when it is first asked for: two threads that ask at once get two of

@@ -1,4 +1,4 @@
-"""Does every sentence on the screen pass the catalogue, and does every page have the room for a longer language?"""
+"""Tests that every sentence on the screen passes the catalogue. Every page has the room for a longer language."""
 
 import ast
 import importlib

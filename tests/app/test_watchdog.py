@@ -1,4 +1,4 @@
-"""Does the watchdog bite those who hold up the screen, and nobody else?"""
+"""Tests that the watchdog bites those who hold up the screen, and nobody else."""
 
 import gc
 import linecache

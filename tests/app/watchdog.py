@@ -1,4 +1,6 @@
-"""Was the screen's thread ever held up? A timer beats in its event loop, and a thread beside it counts late beats.
+"""Watchdog that detects whether the screen's thread was ever held up.
+
+A timer beats in its event loop, and a thread beside it counts late beats.
 
 What counts is what the screen's thread itself did between two beats: processor time it used, and time it waited for
 something, as for a lock, a file or `sleep`. Time in which it was ready and another process had the processor is left

@@ -1,4 +1,4 @@
-"""How accurate are axes, centres, signs and angles on the project's own patient?
+"""Accuracy of axes, centres, signs and angles on the project's own patient.
 
     python tests/benchmarks/accuracy.py --seeds 500 --workers 2 [--only rigid soft ...]
 

@@ -1,4 +1,6 @@
-"""Does the memory of a batch stay flat over a thousand sessions, in the process that leads it and in its workers?
+"""Check that a batch's memory stays flat over a thousand sessions.
+
+Watched in the process that leads it and in its workers.
 
     python -m tests.benchmarks.batch_memory --sessions 1000
 

@@ -1,4 +1,4 @@
-"""How much faster is a batch with two workers than with one? The whole command, from its start to its table.
+"""Speed of a batch with two workers against one. The whole command is timed, from its start to its table.
 
     python -m tests.benchmarks.batch_speed --sessions 72 --pairs 5
 

@@ -1,4 +1,4 @@
-"""How soon after Stop are the curves of the bench on the screen?
+"""Time from Stop until the curves of the bench are on the screen.
 
     python -m tests.benchmarks.bench_curves [--walks 6] [--speed 4]
 

@@ -1,4 +1,4 @@
-"""How large is what is installed, how soon is its window there, and how much memory does it take?
+"""Size of what is installed, time until its window is there, and memory it takes.
 
     python -m tests.benchmarks.bundle [FOLDER] [--times 5]
 

@@ -1,4 +1,4 @@
-"""Does what is stated about an angle's certainty hold on the project's own patient?
+"""Check on the project's own patient that what is stated about an angle's certainty holds.
 
     python -m tests.benchmarks.certainty --seeds 12 [--first 0]
 

@@ -1,4 +1,4 @@
-"""How soon is the demonstration's home there, and how soon is each of its patients complete?
+"""Time until the demonstration's home is there, and until each of its patients is complete.
 
     python -m tests.benchmarks.demonstration [--times 3]
 

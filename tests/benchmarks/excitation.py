@@ -1,4 +1,6 @@
-"""Is the live prediction honest? Calibrations stopped at random times, their true errors against the predicted ones.
+"""Check that the live prediction is honest.
+
+Calibrations are stopped at random times, and their true errors compared with the predicted ones.
 
     python -m tests.benchmarks.excitation [--sessions 500] [--first 0] [--picture excitation.png]
 

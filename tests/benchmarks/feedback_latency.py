@@ -1,4 +1,4 @@
-"""How long after a stride's event does the patient see its bar and hear its tone?
+"""Time from a stride's event until its bar is visible and its tone audible to the patient.
 
     python -m tests.benchmarks.feedback_latency [--seconds 25] [--computed]
 

@@ -1,4 +1,4 @@
-"""How well does a method find the events and the strides of a foot, beside optics? The same for every method."""
+"""Scores of how well a method finds the events and strides of a foot, beside optics. The same for every method."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass

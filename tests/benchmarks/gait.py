@@ -1,4 +1,4 @@
-"""How well and how fast are a foot's events and strides found, beside gaitmap, against optics?
+"""Accuracy and speed of finding a foot's events and strides, beside gaitmap, against optics.
 
     python -m tests.benchmarks.gait [--repeats 7]
 

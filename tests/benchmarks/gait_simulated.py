@@ -1,4 +1,4 @@
-"""Do events, phases, time and distance of the project's own patient reach what is asked of them?
+"""Check that events, phases, time and distance of the project's own patient reach what is asked of them.
 
     python -m tests.benchmarks.gait_simulated [--seeds 2] [--rates 50 60 100 200] [--gaits ordinary toes]
 

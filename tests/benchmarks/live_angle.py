@@ -1,4 +1,4 @@
-"""How far is the live joint angle from the offline one, and which of its two causal forms is nearer?
+"""Distance of the live joint angle from the offline one, and which of its two causal forms is nearer.
 
     python -m tests.benchmarks.live_angle [--sessions 25] [--only rigid "soft tissue" ...]
 

@@ -1,4 +1,4 @@
-"""Are a foot's live events those of the whole walk looked at afterwards, in time, and at what cost?
+"""Compare a foot's live events with those of the whole walk looked at afterwards. Agreement, timeliness and cost.
 
     python -m tests.benchmarks.live_gait [--seeds 2] [--axis]
     python -m tests.benchmarks.live_gait --turns 10

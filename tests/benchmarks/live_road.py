@@ -1,4 +1,4 @@
-"""How much does the whole live road cost, and how old is what the screen can read?
+"""Cost of the whole live road, and age of what the screen can read.
 
     python -m tests.benchmarks.live_road [--seconds 30]
 

@@ -1,4 +1,4 @@
-"""What does the live estimator cost, and does it stay as small as it began?
+"""Cost of the live estimator, and whether it stays as small as it began.
 
     python -m tests.benchmarks.live_speed                      CPU beside VQF, on the same stream
     python -m tests.benchmarks.live_speed --hours 8            memory, fed as fast as it goes

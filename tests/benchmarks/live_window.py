@@ -1,4 +1,6 @@
-"""What does the whole window cost while a patient walks, how old is what it paints, and is its thread ever held up?
+"""Cost of the whole window while a patient walks.
+
+Also the age of what it paints, and whether its thread is ever held up.
 
     python -m tests.benchmarks.live_window [--rate 100] [--size 1280 800] [--seconds 60] [--curves 18] [--analyses]
 

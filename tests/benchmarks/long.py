@@ -1,4 +1,4 @@
-"""How much memory and time does a recording of hours take?
+"""Memory and time that a recording of hours takes.
 
     python -m tests.benchmarks.long [--hours 0.25 1]
 

@@ -1,4 +1,4 @@
-"""How often is a difference called larger than its error where nothing differs?
+"""Count how often a difference is called larger than its error where nothing differs.
 
     GAITWRIGHT_TEST_DATA=... python -m tests.benchmarks.null_differences [--walks 200] [--parts 2 3]
 

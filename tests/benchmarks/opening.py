@@ -1,4 +1,4 @@
-"""How soon are the results of a stored session on the screen?
+"""Time until the results of a stored session are on the screen.
 
     python -m tests.benchmarks.opening [--times 10]
 

@@ -1,4 +1,6 @@
-"""Which sensor is where, on the project's own patient: how often are chains wrong, and labels doubted or believed?
+"""Find which sensor is where, on the project's own patient.
+
+Counts how often chains are wrong, and labels doubted or believed.
 
     python -m tests.benchmarks.placement --seeds 200 [--only rigid soft ...]
 

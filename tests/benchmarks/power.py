@@ -1,4 +1,4 @@
-"""How large must a true change be, to be called larger than its error in nine of ten comparisons?
+"""Size of a true change that is called larger than its error in nine of ten comparisons.
 
     python -m tests.benchmarks.power [--draws 4000] [--sessions 40]
 

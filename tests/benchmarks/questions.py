@@ -1,4 +1,4 @@
-"""How long does a question over 100 000 sessions take, and are its figures those of pandas?
+"""Time of a question over 100 000 sessions, and comparison of its figures with those of pandas.
 
     python -m tests.benchmarks.questions [--sessions 100000] [--repeats 5] [--table FOLDER]
 

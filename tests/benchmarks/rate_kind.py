@@ -1,4 +1,4 @@
-"""How often is the kind of the rates mistaken on the project's own patient, when no sensor reports it?
+"""Count how often the kind of the rates is mistaken when no sensor reports it. On the project's own patient.
 
     python -m tests.benchmarks.rate_kind --seeds 12
 

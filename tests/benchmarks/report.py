@@ -1,4 +1,4 @@
-"""How long do a report, and a look at its pages, take? Of the demonstration, and of three conditions; seconds.
+"""Time that a report, and a look at its pages, take. Of the demonstration, and of three conditions; seconds.
 
 python -m tests.benchmarks.report [--repeats 5]
 """

@@ -1,4 +1,4 @@
-"""How long does it take to write a session for Rerun, how large is it, and is it what was recorded?
+"""Time to write a session for Rerun, its size, and whether it is what was recorded.
 
     python -m tests.benchmarks.rerun_log [--minutes 10] [--repeats 3]
 

@@ -1,4 +1,4 @@
-"""How far is an estimate from the truth? The same questions to every method of the comparison."""
+"""Distance of an estimate from the truth. The same questions to every method of the comparison."""
 
 from dataclasses import dataclass
 

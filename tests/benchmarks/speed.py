@@ -1,4 +1,4 @@
-"""How fast and how accurate is Gaitwright beside qmt and VQF, in one run, on the same recordings?
+"""Speed and accuracy of Gaitwright beside qmt and VQF, in one run, on the same recordings.
 
     python -m tests.benchmarks.speed [--seeds 3] [--repeats 5]
 

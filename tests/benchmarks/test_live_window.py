@@ -1,4 +1,4 @@
-"""Is the longest time between two frames reported with what our threads did in it?"""
+"""Tests that the longest time between two frames is reported with what our threads did in it."""
 
 import json
 import os

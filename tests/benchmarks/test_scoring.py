@@ -1,4 +1,4 @@
-"""Does the comparison score what it states it scores?"""
+"""Tests that the comparison scores what it states it scores."""
 
 from dataclasses import replace
 

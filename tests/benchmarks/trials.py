@@ -1,4 +1,4 @@
-"""What is every method of the comparison given? Recordings of one joint with its truth, the same samples for all."""
+"""Input of every method of the comparison. Recordings of one joint with its truth, the same samples for all."""
 
 import os
 from collections.abc import Iterator, Sequence

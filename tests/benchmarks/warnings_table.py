@@ -1,4 +1,4 @@
-"""How often does each finding come where it must, and where it must not?
+"""Count how often each finding comes where it must, and where it must not.
 
     python -m tests.benchmarks.warnings_table [--sessions 500] [--workers 2] [--results FILE] [--only KEY ...]
 

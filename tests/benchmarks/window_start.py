@@ -1,4 +1,4 @@
-"""How soon after the start of the program is its window there?
+"""Time from the start of the program until its window is there.
 
     python -m tests.benchmarks.window_start [--times 9]
 

@@ -1,6 +1,6 @@
-"""How much is not reported, and why? Of healthy simulated walks, and of the walks of strangers.
+"""Share of what is not reported, and why. Of healthy simulated walks, and of the walks of strangers.
 
-    GAITWRIGHT_TEST_DATA=... python -m tests.benchmarks.not reported [--seeds 20]
+    `GAITWRIGHT_TEST_DATA=... python -m tests.benchmarks.withheld [--seeds 20]`
 
 Required: at most 5 % of the joints of healthy simulated walks, walks without free motion included.
 """

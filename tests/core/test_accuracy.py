@@ -1,4 +1,6 @@
-"""Does the estimator still reach its targets on the project's own patient? A few sessions here, two dozen as endurance.
+"""Tests that the estimator still reaches its targets on the project's own patient.
+
+A few sessions here, two dozen as endurance.
 
 The conditions, their targets and the scoring are those of `tests/benchmarks/accuracy.py`, which runs all of them, and
 five hundred sessions of each.

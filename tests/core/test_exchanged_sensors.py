@@ -1,4 +1,7 @@
-"""Are sensors that hang where another should be named, in the default run? `test_placement.py` tries many more."""
+"""Tests that sensors that hang where another should be are named, in the default run.
+
+`test_placement.py` tries many more.
+"""
 
 from dataclasses import replace
 

@@ -1,4 +1,4 @@
-"""Do rates that a sensor averaged over the interval before their stamp come out as rates at the instant of it?"""
+"""Tests that rates averaged over the interval before their stamp become rates at that instant."""
 
 import numpy as np
 import pytest

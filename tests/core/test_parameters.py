@@ -1,4 +1,4 @@
-"""Does every quantity have all that screens, files and verdicts ask of it?"""
+"""Tests that every quantity has all that screens, files and verdicts need of it."""
 
 import pytest
 

@@ -1,4 +1,4 @@
-"""Does the motion report which sensor is where, with and against labels?"""
+"""Tests that the motion shows which sensor is where, with and against labels."""
 
 import time
 import xml.etree.ElementTree as ET

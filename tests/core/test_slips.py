@@ -1,4 +1,7 @@
-"""When has a strap slipped? From turns written by hand; whole walks are in `test_strap.py`, which takes minutes."""
+"""Tests of finding a slipped strap, from turns written by hand.
+
+Whole walks are in `test_strap.py`, which takes minutes.
+"""
 
 import numpy as np
 import pytest

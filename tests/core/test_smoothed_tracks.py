@@ -1,4 +1,4 @@
-"""What does a sensor feel where samples are missing? What its adjacent ones in time say, or nothing."""
+"""Tests of missing samples: filled from the samples adjacent in time, or left unknown."""
 
 from dataclasses import replace
 from typing import TYPE_CHECKING

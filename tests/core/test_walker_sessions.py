@@ -1,4 +1,4 @@
-"""Does a patient with every truth known come back, whatever is done to the sensors on the way?"""
+"""Tests that a patient with every truth known is recovered, whatever is done to the sensors on the way."""
 
 from dataclasses import replace
 

@@ -1,4 +1,4 @@
-"""Has every finding of the core a session in which it comes?"""
+"""Each finding of the core has a session in which it occurs."""
 
 import ast
 from collections.abc import Iterator

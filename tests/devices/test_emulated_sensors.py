@@ -1,4 +1,4 @@
-"""Do the sensors that are not there say, byte by byte, what the makers' documents have?
+"""Tests that the emulated sensors send, byte by byte, what the makers' documents have.
 
 Drivers are tested with them, and share some of their tables: here their bytes are written out.
 """

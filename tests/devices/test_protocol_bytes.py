@@ -1,4 +1,4 @@
-"""Do bytes written out by hand, as the makers' documents have them, become the right numbers in the right order?
+"""Tests that bytes written by hand, as in the makers' documents, become the right numbers in the right order.
 
 Nothing of what is expected comes from the drivers or from our emulators, which share their tables: commands, frames and
 calibrations are literal bytes, and no two axes of a sample are alike.

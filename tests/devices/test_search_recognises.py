@@ -1,4 +1,4 @@
-"""Is each maker's sensor reported by what it sends, and by what it answers, without waiting for real ports?"""
+"""Tests that each maker's sensor is recognised by what it sends and answers, without waiting for real ports."""
 
 import time
 from collections.abc import Callable

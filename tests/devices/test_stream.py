@@ -1,4 +1,4 @@
-"""What does a stream's decoder take from what its source states of itself?"""
+"""Tests of what a stream's decoder takes from what its source states of itself."""
 
 import pytest
 

@@ -1,4 +1,4 @@
-"""How many small changes of the code does the default run notice? See README.md beside this file."""
+"""Count how many small changes of the code the default run notices. See README.md beside this file."""
 
 import argparse
 import hashlib

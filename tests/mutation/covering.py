@@ -1,4 +1,4 @@
-"""Which tests run which lines? A plugin of pytest that reports, test by test and fixture by fixture.
+"""Plugin of pytest that reports which tests run which lines, test by test and fixture by fixture.
 
     python -m pytest -p tests.mutation.covering --covering=build/mutation/covering.json tests/core
 

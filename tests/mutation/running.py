@@ -1,4 +1,4 @@
-"""Which tests of the default run could notice a mutant, and does one?"""
+"""Find the tests of the default run that could notice a mutant, and whether one does."""
 
 import ast
 import importlib

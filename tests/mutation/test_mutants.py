@@ -1,5 +1,4 @@
-"""Are mutants what they are stated to be: one change each, reported by name, and tried by the tests that run the
-line?"""
+"""Tests of mutants: one change each, reported by name, and tried by the tests that run the line."""
 
 import json
 from pathlib import Path

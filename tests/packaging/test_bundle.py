@@ -1,4 +1,4 @@
-"""Is what is packed listed with its licence, and does the package ask for what it leaves to the system?"""
+"""Tests that what is packed is listed with its licence. The package asks for what it leaves to the system."""
 
 import configparser
 import importlib

@@ -1,4 +1,7 @@
-"""The site's pages: are they all there, in a list, linked to what exists, and true of the code? Without its builder."""
+"""Tests of the site's pages, without its builder.
+
+They are all there, listed, linked to what exists, and true of the code.
+"""
 
 import importlib
 import re

@@ -1,4 +1,4 @@
-"""Is every locked part listed with why it is there, and under the licence that it reports itself?"""
+"""Each locked part is listed with why it is there, under the licence that it reports itself."""
 
 import importlib
 import re

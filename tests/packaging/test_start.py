@@ -1,4 +1,4 @@
-"""Does `start.py` hand over to the right command, and does its set-up do only what is missing?"""
+"""Tests that `start.py` hands over to the right command and that its set-up does only what is missing."""
 
 import importlib
 import os

@@ -1,4 +1,4 @@
-"""T17: does a batch whose workers are killed every few seconds give what it gives undisturbed, each once?
+"""T17: a batch whose workers are killed every few seconds. It must give what it gives undisturbed, each result once.
 
     python -m tests.safety.batch_kills --stand-ins 100000 --sessions 1000
 

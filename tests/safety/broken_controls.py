@@ -1,4 +1,4 @@
-"""Would the tests of a control notice that it is broken? Each is broken once, in a copy of the project.
+"""Check that the tests of a control notice when it is broken. Each is broken once, in a copy of the project.
 
     python -m tests.safety.broken_controls                    # all of them, some twenty minutes
     python -m tests.safety.broken_controls R-GAT R-DIF-05     # those whose id begins so

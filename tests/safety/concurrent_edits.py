@@ -1,4 +1,4 @@
-"""Two stations edit the same patients, sessions and recordings at once: is any edit lost that was acknowledged?
+"""Two stations edit the same patients, sessions and recordings at once. Check that no acknowledged edit is lost.
 
     python -m tests.safety.concurrent_edits --edits 500              # an encrypted file of its own
     python -m tests.safety.concurrent_edits --edits 500 --postgres   # a PostgreSQL of its own

@@ -1,4 +1,4 @@
-"""T5: damaged streams. Does a driver raise, lose whole messages, fall out of step, or hoard bytes?
+"""T5: damaged streams. Check whether a driver raises, loses whole messages, falls out of step, or hoards bytes.
 
     python -m tests.safety.device_fuzz --frames 1000000 [--bursts]
 

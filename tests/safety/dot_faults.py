@@ -1,4 +1,4 @@
-"""Emulated DOTs with everything going wrong at once: is a sample lost untold, is there a dead end, is anything erased?
+"""Emulated DOTs with every fault at once. Check for samples lost without a report, dead ends and anything erased.
 
     python -m tests.safety.dot_faults --runs 500 [--bumble]
 

@@ -1,4 +1,6 @@
-"""T13: spoilt files. Does one end the application, hang it, write anywhere, or raise anything but a refusal?
+"""T13: spoilt files.
+
+Check whether one ends or hangs the application, writes anywhere, or raises anything but a refusal.
 
     python -m tests.safety.file_fuzz --files 10000
 

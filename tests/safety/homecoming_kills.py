@@ -1,4 +1,4 @@
-"""Does what was recorded while the library was gone come home once, wherever bringing it home is killed?
+"""Check that what was recorded while the library was gone comes home once. Bringing it home is killed at any point.
 
     python -m tests.safety.homecoming_kills --count 500
 

@@ -1,4 +1,4 @@
-"""T14: does any of 500 hostile names, typed wherever somebody may type one, change anything but its own text?
+"""T14: 500 hostile names, typed wherever somebody may type one. Check whether any changes anything but its own text.
 
     python -m tests.safety.hostile_names --count 500
 

@@ -1,4 +1,4 @@
-"""What does recording cost? The share of a core that six sensors at 200 Hz take from input to disk.
+"""Measure the cost of recording. It is the share of a core that six sensors at 200 Hz take from input to disk.
 
     python -m tests.safety.journal_cost --seconds 30
 

@@ -1,4 +1,4 @@
-"""T3: what is kept when the disk is full? A journal is filled into a disk of 8 MB until it stops itself.
+"""T3: what is kept when the disk is full. A journal is filled into a disk of 8 MB until it stops itself.
 
     python -m tests.safety.journal_full_disk --count 200
 

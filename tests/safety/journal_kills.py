@@ -1,4 +1,4 @@
-"""T1: what does a kill cost? A child records six sensors at 200 Hz and is killed at a random instant, again and again.
+"""T1: the cost of a kill. A child records six sensors at 200 Hz and is killed at a random instant, again and again.
 
     python -m tests.safety.journal_kills --count 1000
 

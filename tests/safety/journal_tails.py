@@ -1,4 +1,4 @@
-"""T2 and T10: what is left of a journal whose end was torn or scrambled, and is every flipped bit noticed?
+"""T2 and T10: what is left of a journal whose end was torn or scrambled. Check that every flipped bit is noticed.
 
     python -m tests.safety.journal_tails --tails 20000 --flips 10000
 

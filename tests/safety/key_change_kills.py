@@ -1,4 +1,6 @@
-"""Kill changes of the data key: at every file operation, and at random instants. Does the library open, is it whole?
+"""Kill changes of the data key:
+
+at every file operation, and at random instants. Check that the library opens and is whole.
 
 python -m tests.safety.key_change_kills --count 100
 """

@@ -1,4 +1,4 @@
-"""How often does the data key stand in a program's memory, raw and as hex, with the library open and locked?
+"""Count copies of the data key in a program's memory. They are sought raw and as hex, with the library open and locked.
 
     python -m tests.safety.key_in_memory --locks 3
 

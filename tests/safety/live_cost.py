@@ -1,4 +1,4 @@
-"""What does the road of a sample cost, and how long is it? Six sensors at 200 Hz, from source to disk and buffer.
+"""Cost and length of the road of a sample, from source to disk and buffer. Six sensors at 200 Hz.
 
     python -m tests.safety.live_cost --seconds 60
 

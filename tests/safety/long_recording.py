@@ -1,4 +1,4 @@
-"""T7: what does a recording of hours lose, and does anything grow? Six sensors at 200 Hz, shown and worked on.
+"""T7: what a recording of hours loses, and whether anything grows. Six sensors at 200 Hz, shown and worked on.
 
     python -m tests.safety.long_recording --hours 2
     python -m tests.safety.long_recording --hours 8 --speed 20

@@ -1,4 +1,6 @@
-"""Kill the update of a library of each earlier version, at statements and at random instants. Is anything lost?
+"""Kill the update of a library of each earlier version, at statements and at random instants.
+
+Check that nothing is lost.
 
     python -m tests.safety.migration_kills --count 40
 

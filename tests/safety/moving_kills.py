@@ -1,4 +1,4 @@
-"""A library is moved to the server and back, and killed on the way again and again: is all of it at one end?
+"""Move a library to the server and back, killed on the way again and again. Check that all of it is at one end.
 
 After each kill at most one end can be written: the folder, or the server. Then it is run again, until it is not killed;
 then rows and journals have to be what they were, as both databases say themselves.

@@ -1,4 +1,4 @@
-"""T16: whom does a whole session call, and whom the search for sensors? In a network of its own, under strace.
+"""T16: whom a whole session calls, and whom the search for sensors. Run in a network of its own, under strace.
 
     python -m tests.safety.no_network
 

@@ -1,4 +1,4 @@
-"""T10 for a whole library: which of 200 planted names, and which secrets, stand in what a kill leaves on the disk?
+"""T10 for a whole library. Find which of 200 planted names, and which secrets, a kill leaves on the disk.
 
     python -m tests.safety.planted_names --count 100
 

@@ -1,4 +1,4 @@
-"""From six ports to results: what is lost on the way, and how far are the angles from the patient's truth?
+"""From six ports to results. Measure what is lost on the way, and how far the angles are from the patient's truth.
 
     python -m tests.safety.ports_to_results [--kinds ximu3 witmotion csv xsens-mti shimmer3] [--rate 100] [--walks 3]
 

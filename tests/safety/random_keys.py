@@ -1,4 +1,4 @@
-"""Random keys and clicks through whole sessions: does anything crash, end nowhere, or say what is not so?
+"""Random keys and clicks through whole sessions. Check for crashes, dead ends and false statements.
 
     python -m tests.safety.random_keys --hours 2 --seed 1
 

@@ -1,4 +1,6 @@
-"""T5, whole recordings: does anything raise between a hurt stream and its Recording, and are the stamps still right?
+"""T5, whole recordings:
+
+check that nothing raises between a hurt stream and its Recording. The stamps must still be right.
 
     python -m tests.safety.recording_fuzz --samples 1000000
 

@@ -1,4 +1,4 @@
-"""T1: how long after the start of a program are 50 interrupted recordings listed?
+"""T1: how long after the start of a program 50 interrupted recordings are listed.
 
     python -m tests.safety.recovery_listing --count 50 --rows 100000
 

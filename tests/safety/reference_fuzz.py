@@ -1,4 +1,6 @@
-"""T13 for references: spoilt files of optical systems. Does one end the application, hang it, or write anywhere?
+"""T13 for references:
+
+spoilt files of optical systems. Check whether one ends or hangs the application, or writes anywhere.
 
     python -m tests.safety.reference_fuzz --files 10000
 

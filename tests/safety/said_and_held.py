@@ -1,4 +1,4 @@
-"""Does what the window states of patients, sessions and recordings agree with what its library holds?
+"""Compare what the window states of patients, sessions and recordings with what its library holds.
 
 The library is read by plain SQL in a connection of its own, beside the program that has it open: what a page or its
 model got wrong is not got wrong here again.

@@ -1,4 +1,6 @@
-"""T4: a source vanishes and returns while it is recorded. What do the others lose, and is the gap right to a sample?
+"""T4: a source vanishes and returns while it is recorded.
+
+Check what the others lose and that the gap is right to a sample.
 
     python -m tests.safety.source_vanishes --count 200
 

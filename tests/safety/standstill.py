@@ -1,5 +1,6 @@
-"""Is a process that stood still distinguished from a disk that is late, and is what that cost stated as the journal
-has it?
+"""Check that a process that stood still is distinguished from a late disk.
+
+Its cost must be stated as the journal has it.
 
     python -m tests.safety.standstill --count 10 --seconds 20
 

@@ -1,4 +1,4 @@
-"""Two stations edit the same patients, sessions and recordings as fast as they can: is every edit there, once?
+"""Two stations edit the same patients, sessions and recordings at full speed. Check that every edit is there, once.
 
 Each station is a process. An edit that is refused because somebody else was quicker is read again and tried again; one
 that was taken is noted in a file of the station's own. Afterwards the server's tables are compared with these notes,

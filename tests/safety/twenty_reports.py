@@ -1,4 +1,6 @@
-"""Twenty sessions, strangers' among them: is every report whole, and every number that a sentence states in a file?
+"""Twenty sessions, strangers' among them.
+
+Check that every report is whole and every number that a sentence states is in a file.
 
     GAITWRIGHT_TEST_DATA=... python -m tests.safety.twenty_reports [--pictures FOLDER]
 

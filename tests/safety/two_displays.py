@@ -1,4 +1,6 @@
-"""Do two stations of a clinic work with one library, seen on two screens, also when the server goes away amid a walk?
+"""Two stations of a clinic work with one library, seen on two screens.
+
+Check this also when the server goes away amid a walk.
 
     python -m tests.safety.two_displays OUT
 

@@ -1,4 +1,6 @@
-"""T15: two stations of one library on a server: is an update lost, or what was recorded while the server was gone?
+"""T15: two stations of one library on a server.
+
+Check for lost updates and for lost recordings made while the server was gone.
 
     python -m tests.safety.two_stations --edits 10000 --outage 600 --moves 200
 

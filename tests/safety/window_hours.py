@@ -1,4 +1,4 @@
-"""T7: what does a walk of hours lose under the whole window, and does anything grow?
+"""T7: what a walk of hours loses under the whole window, and whether anything grows.
 
     python -m tests.safety.window_hours [--hours 2] [--speed 1]
 

@@ -1,4 +1,4 @@
-"""Does the window stay as it is, however many visits it has seen?
+"""Check that the window stays as it is, however many visits it has seen.
 
     python -m tests.safety.window_visits [--visits 30]
 

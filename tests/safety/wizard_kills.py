@@ -1,4 +1,4 @@
-"""A session that is led to a point and left there, for whoever kills it: what can be found again afterwards?
+"""Lead a session to a point and leave it there, for whoever kills it. Used to check what can be found again afterwards.
 
     python -m tests.safety.wizard_kills LIBRARY PASSPHRASE POINT [--pelvis]
 

@@ -1,4 +1,4 @@
-"""Where does a tour stop, what must the screen say there, and what is done?
+"""Stops of a tour: where it stops, what the screen must show there, and what is done.
 
 By keyboard, by mouse, at the bench, and with a seventh sensor on the pelvis.
 """

@@ -1,4 +1,4 @@
-"""How accurate is it on recordings with references, and in the paper's experiment? One command, one page.
+"""Accuracy on recordings with references and in the paper's experiment. One command, one page.
 
     python -m tests.validation [--people 10] [--write]
 

@@ -1,4 +1,4 @@
-"""How true are the measures for fitting on simulated patients?
+"""Accuracy of the measures for fitting on simulated patients.
 
     python -m tests.validation.fitting [--people 20] [--first 0] [--tissue soft] [--prosthetic left] [--optics]
 

@@ -1,4 +1,4 @@
-"""Which changes of a prosthesis are found by the measures for fitting, and what is given where nothing was changed?
+"""Changes of a prosthesis that the measures for fitting find, and what is given where nothing was changed.
 
     python -m tests.validation.fitting_power [--people 100] [--silent 200] [--first 0] [--tissue soft] [--processes 2]
 

@@ -1,4 +1,4 @@
-"""Does a sensor on the pelvis report rises and turns of timed tests more exactly than thighs and feet alone?
+"""Compare the exactness of rises and turns of timed tests with a pelvis sensor and with thighs and feet alone.
 
     python -m tests.validation.pelvis_courses [COURSES]
 

@@ -1,4 +1,4 @@
-"""Are the measures for fitting those of the simulated patient's bones, on rigid legs and on soft tissue?"""
+"""Tests of the measures for fitting against the simulated patient's bones, on rigid legs and on soft tissue."""
 
 from collections.abc import Callable
 from dataclasses import replace

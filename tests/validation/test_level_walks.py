@@ -1,5 +1,6 @@
-"""Is no level stride called stairs, on one simulated walk of every kind and on the recordings where a stride's own
-climb states that it is?
+"""Tests that no level stride is called stairs, on one simulated walk of every kind and on recordings.
+
+In those recordings a stride's own climb states that it is level.
 """
 
 from collections.abc import Callable

@@ -1,4 +1,4 @@
-"""Do the public recordings and the paper's experiment reach their figures through `gaitwright agree`?"""
+"""Tests that the public recordings and the paper's experiment reach their figures through `gaitwright agree`."""
 
 from collections.abc import Callable
 from pathlib import Path

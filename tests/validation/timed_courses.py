@@ -1,4 +1,4 @@
-"""How well are timed tests reported, on 220 simulated courses and on people's recordings?
+"""Accuracy of reported timed tests, on 220 simulated courses and on people's recordings.
 
     python -m tests.validation.timed_courses [--scale 1.0]
 

@@ -1,4 +1,4 @@
-"""What is in these files, and whose is it? Before recordings are taken into the library."""
+"""Content of files and whose it is, shown before recordings are taken into the library."""
 
 import datetime
 from collections.abc import Sequence

@@ -1,4 +1,4 @@
-"""Who opens the library? The pages before it is open and over it, and what the controller answers them."""
+"""Controller of opening the library. The pages before it is open and over it, and what the controller answers them."""
 
 import os
 import time

@@ -1,4 +1,4 @@
-"""The first start: whose library is it, what opens it, and what opens it when that is forgotten?
+"""First start: whose library it is, what opens it, and what opens it when that is forgotten.
 
 All on one page. The recovery key is shown once; the way on opens when it has been typed back from the paper or file.
 Where a library was opened here before and is missing, the page reports it, and makes a new one only if that is asked

@@ -1,4 +1,4 @@
-"""Who are you? The passphrase of a library, at the start and when nobody was here for a while.
+"""Log-in by the passphrase of a library, at the start and when nobody was here for a while.
 
 As a cover it is alone in the window and shows nothing of a patient, and whether a recording goes on.
 """

@@ -1,4 +1,4 @@
-"""How does a recovery key get away from this computer? Printed, or saved on something that can be taken away."""
+"""Take a recovery key away from this computer. It is printed, or saved on something that can be taken away."""
 
 import datetime
 from pathlib import Path

@@ -1,4 +1,4 @@
-"""Whose sessions does home show? The patients are read from the library, and all of the one who is chosen."""
+"""Sessions that home shows. The patients are read from the library, and all of the one who is chosen."""
 
 import datetime
 from dataclasses import dataclass

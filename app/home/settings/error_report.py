@@ -1,4 +1,4 @@
-"""How does what is known of an error get to whoever mends it? As a text that the operator saves, reads and sends."""
+"""Bring what is known of an error to whoever mends it. A text that the operator saves, reads and sends."""
 
 from pathlib import Path
 

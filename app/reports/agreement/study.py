@@ -1,4 +1,4 @@
-"""Which trial of a reference belongs to which walk, and what both differ by?
+"""Match each trial of a reference with its walk, and compute what both differ by.
 
 A trial named as a walk is that walk's. Else every trial is tried on every walk, by the rates of all joints, and the
 best fits go first. No instant of a reference is used for two walks: a trial of a walk that was not kept is left over.

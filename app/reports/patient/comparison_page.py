@@ -1,4 +1,4 @@
-"""What changed between conditions, or since an earlier visit, and is that more than the measurement error?"""
+"""Changes between conditions or since an earlier visit, and whether they are more than the measurement error."""
 
 import math
 from collections.abc import Sequence

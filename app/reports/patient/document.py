@@ -1,4 +1,4 @@
-"""How do the pages become a document? One JSON for the template, one PDF/A-2a and PDF/UA-1 out of memory."""
+"""Turn the pages into a document. One JSON for the template, one PDF/A-2a and PDF/UA-1 out of memory."""
 
 import json
 from datetime import datetime, timedelta, timezone

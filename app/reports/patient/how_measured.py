@@ -1,4 +1,6 @@
-"""How was this walk measured? Sensors, calibration, filter, angles, events and accuracy, so that others can repeat it.
+"""Method by which this walk was measured.
+
+Sensors, calibration, filter, angles, events and accuracy, so that others can repeat it.
 
 What the ISB recommends to report of joint angles by inertial sensors (Cereatti et al. 2024, doi
 10.1016/j.jbiomech.2024.112225), as far as it could be read: `packaging/safety/reporting.md` states where each item is.

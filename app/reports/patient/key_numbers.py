@@ -1,4 +1,4 @@
-"""Which few figures of both legs stand on page one? Those that the findings report first, then always the same."""
+"""Few figures of both legs for page one. Those that the findings report first, then always the same."""
 
 from app.charts.cycles import is_spread_enough
 from app.reports.blocks import Block, Cell, Column, Row, heading, note, table

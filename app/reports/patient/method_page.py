@@ -1,4 +1,4 @@
-"""What did the clinician say, how was it measured, and where does every band come from?"""
+"""The clinician's words, how it was measured, and where every band comes from."""
 
 from collections.abc import Sequence
 from dataclasses import replace

@@ -1,4 +1,7 @@
-"""Where does a report go? Beside its place first, so that it is whole or not there; only a report replaces a report."""
+"""Write a report to its place.
+
+Beside its place first, so that it is whole or not there. Only a report replaces a report.
+"""
 
 import os
 import tempfile

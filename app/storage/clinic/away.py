@@ -1,4 +1,4 @@
-"""How does a station work while the clinic's server does not answer, and how does that get to the others, once?
+"""Work of a station while the clinic's server does not answer. It gets to the others afterwards, once.
 
 It works in a library of its own, in its folder's `away`, under the clinic's data key: patients and sessions that are
 begun there are begun as always. Once the server answers, the folder is renamed, so that a next outage begins another;

@@ -1,4 +1,4 @@
-"""How does a computer become a station of the clinic, and how is the server made ready for its library?"""
+"""Make a computer a station of the clinic, and make the server ready for its library."""
 
 import os
 from pathlib import Path

@@ -1,4 +1,7 @@
-"""Is the library on the clinic's server open to stations? It is not while it is being moved there, nor once it left."""
+"""State of the library on the clinic's server:
+
+open to stations or not. It is closed while being moved there, and once it left.
+"""
 
 from enum import StrEnum
 

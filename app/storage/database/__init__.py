@@ -1,4 +1,4 @@
-"""How is the library kept? One schema for an encrypted SQLite file and for a clinic's PostgreSQL.
+"""Database of the library. One schema for an encrypted SQLite file and for a clinic's PostgreSQL.
 
 `models` has the tables, `migrations` how they came to be, `engine` opens, locks and translates trouble into sentences.
 Only `app.storage` comes here; everyone else asks `app.storage.library`.

@@ -1,4 +1,4 @@
-"""How is the library's database opened, locked and closed, and what does its trouble mean?"""
+"""Open, lock and close the library's database, and interpret its trouble."""
 
 import datetime
 import logging

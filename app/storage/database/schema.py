@@ -1,4 +1,4 @@
-"""Are the tables those that this version knows? If they are older they are brought up to date, in one go."""
+"""Check that the tables are those that this version knows. Older ones are brought up to date, in one go."""
 
 from pathlib import Path
 from typing import TYPE_CHECKING

@@ -1,4 +1,4 @@
-"""How do rows become the plain values that leave `app.storage`?"""
+"""Turn rows into the plain values that leave `app.storage`."""
 
 import json
 from collections.abc import Mapping, Sequence

@@ -1,4 +1,4 @@
-"""Is the end of what was saved still there after a crash?
+"""Check that the end of what was saved is still there after a crash.
 
 What SQLite wrote last is in the write-ahead log until it is copied into the database. After a crash SQLite takes
 from the log what is whole and ends, without a word, at the first frame that is not: behind a flipped bit everything

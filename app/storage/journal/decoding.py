@@ -1,4 +1,4 @@
-"""Which samples does a journal hold? The same way from a journal to a Recording at every stop and after every crash.
+"""Samples that a journal holds. The same way from a journal to a Recording at every stop and after every crash.
 
 What is missing stays a gap. Times are seconds since the recording's first segment was opened; a later segment's are
 moved by how long after it that segment was opened. A segment that states it was opened when the one before was is that

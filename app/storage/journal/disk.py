@@ -1,4 +1,4 @@
-"""Is there room, and does the disk take what it is given?"""
+"""Check that there is room, and that the disk takes what it is given."""
 
 import hashlib
 import os

@@ -1,4 +1,4 @@
-"""Which recording is this, and by which key is it sealed? What is before a journal's first record.
+"""Identity of a recording and the key it is sealed by. What is before a journal's first record.
 
     magic 8 | format 2 | flags 2 | recording 16 | segment 4 | opened, wall clock 8 | opened, monotonic 8
     | wrapped key 60 (nonce 12, key 32, tag 16) | CRC32C 4

@@ -1,4 +1,4 @@
-"""What may be put in, and what waits to be written? A queue that holds up nobody, bounded in bytes."""
+"""Rules for what may be put in, and what waits to be written. A queue that holds up nobody, bounded in bytes."""
 
 import threading
 import time

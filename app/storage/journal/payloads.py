@@ -1,4 +1,4 @@
-"""What is inside the records? Sources and marks as JSON, samples as rows of float64, bytes as they came."""
+"""Content of the records. Sources and marks as JSON, samples as rows of float64, bytes as they came."""
 
 import json
 import struct

@@ -1,4 +1,4 @@
-"""What does a journal hold, however it ended?
+"""Read what a journal holds, however it ended.
 
 Records come one by one, in bounded memory. Where bytes are damaged the next record is looked for; it counts only if its
 number, its checksum and, in a sealed journal, its tag prove it.

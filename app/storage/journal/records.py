@@ -1,4 +1,4 @@
-"""How does one record stand in the file, and how is it proved to be whole and ours?
+"""Layout of one record in the file, and the proof that it is whole and ours.
 
     magic 4 | number 8 | length 4 | kind 1 | host monotonic time 8 (ns) | payload | CRC32C 4
 

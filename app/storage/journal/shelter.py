@@ -1,4 +1,4 @@
-"""Where does a recording go on when its library's folder is gone?"""
+"""Place where a recording goes on when its library's folder is gone."""
 
 from collections.abc import Callable
 from dataclasses import dataclass

@@ -1,4 +1,4 @@
-"""How does what sensors send get onto the disk, whatever the disk is doing?
+"""Write what sensors send onto the disk, whatever the disk is doing.
 
 Whoever reads a port only puts into a bounded queue; one thread seals, writes and syncs. A disk that stalls fills the
 queue, never a port; what no longer fits is dropped, counted and reported. A kill costs what was not yet written, a

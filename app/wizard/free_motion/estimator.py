@@ -1,4 +1,7 @@
-"""How well does the free motion show the joints, do the labels agree with it, and who is where if nobody stated so?"""
+"""Estimate how well the free motion shows the joints and whether the labels agree with it.
+
+Where nobody stated the places of the sensors, those are estimated too.
+"""
 
 from collections.abc import Generator, Mapping
 from dataclasses import dataclass, field, replace

@@ -1,4 +1,4 @@
-"""Which words ask for the motion that is missing, and what does stopping now cost?"""
+"""Wording that asks for the motion that is missing, and what stopping now costs."""
 
 import math
 from collections.abc import Collection

@@ -1,4 +1,4 @@
-"""What does the page of free motion show of each joint, and of each sensor?"""
+"""Contents of the page of free motion, for each joint and for each sensor."""
 
 from typing import TYPE_CHECKING
 

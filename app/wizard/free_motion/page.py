@@ -1,4 +1,6 @@
-"""How well do the joints show in the motion so far, and which motion comes next? Four gauges round both legs.
+"""Page of free motion:
+
+how well the joints show so far, and which motion comes next. Four gauges are drawn round both legs.
 
 With a sensor on the pelvis both hips stand above them, on slim cards: nothing waits for them.
 """

@@ -1,4 +1,7 @@
-"""Which leg is it, where the motion does not report? Asked once; the answer is shown, can be undone, and is held to."""
+"""Question of which leg it is, where the motion does not show it.
+
+It is asked once; the answer is shown, can be undone, and is held to.
+"""
 
 from collections.abc import Mapping
 

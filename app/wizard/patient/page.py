@@ -1,4 +1,7 @@
-"""Whom is the session about, and which side? Only the code is needed; the rest chooses the band and is printed."""
+"""Page for the patient and the side that the session is about.
+
+Only the code is needed; the rest chooses the band and is printed.
+"""
 
 from dataclasses import dataclass, field, replace
 from datetime import date

@@ -1,4 +1,7 @@
-"""What would leave without the name? All of it, before it is written; what was typed freely only where it is ticked."""
+"""Dialog of what would leave without the name.
+
+All of it is shown before it is written; what was typed freely leaves only where it is ticked.
+"""
 
 from collections.abc import Mapping, Sequence
 

@@ -1,4 +1,4 @@
-"""Which strides of a visit's walks are left out by hand, and how is that taken back?"""
+"""Choice of the strides of a visit's walks that are left out by hand, and how that is taken back."""
 
 from collections.abc import Callable, Mapping
 from dataclasses import replace

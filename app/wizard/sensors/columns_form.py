@@ -1,4 +1,7 @@
-"""What does each column mean of a sensor that sends lines of numbers? Reported beside what it sends at the moment."""
+"""Form for the meaning of each column of a sensor that sends lines of numbers.
+
+It is given beside what the sensor sends at the moment.
+"""
 
 from collections.abc import Sequence
 from dataclasses import dataclass

@@ -1,4 +1,4 @@
-"""What do the columns mean of sensors that send lines of numbers? Asked within the sensors' step, and remembered."""
+"""Meaning of the columns of sensors that send lines of numbers: asked within the sensors' step, and remembered."""
 
 from collections.abc import Sequence
 from typing import TYPE_CHECKING

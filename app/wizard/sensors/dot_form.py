@@ -1,4 +1,7 @@
-"""Which DOTs are worn, and how are they to measure? A list with a tick before each, and three choices beside it."""
+"""Form for the DOTs that are worn and how they are to measure.
+
+It has a list with a tick before each, and three choices beside it.
+"""
 
 import math
 from collections.abc import Sequence

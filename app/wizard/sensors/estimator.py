@@ -1,4 +1,4 @@
-"""Which sensor is worn where? Reported by shaking one after the other, or by moving the legs."""
+"""Find which sensor is worn where, by shaking one after the other or by moving the legs."""
 
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, field

@@ -1,4 +1,4 @@
-"""What do the sensors' memories hold, is it kept, and what becomes of it?"""
+"""Form for the sensors' memories: what they hold, whether it is kept, and what becomes of it."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass

@@ -1,4 +1,8 @@
-"""Are six sensors on, or seven, and which is where? Dragged onto the figure, shaken in turn, or left to the motion."""
+"""Page of the sensors:
+
+whether six or seven are on, and which is where. They are dragged onto the figure, shaken in turn, or left to the
+motion.
+"""
 
 from collections.abc import Mapping, Sequence
 from enum import StrEnum

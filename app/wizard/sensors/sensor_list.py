@@ -1,4 +1,4 @@
-"""Which sensors are received, and how are they? A row for each, with its movement, rate, battery and place."""
+"""List of the sensors that are received and how they are. Each has a row with its movement, rate, battery and place."""
 
 from collections.abc import Mapping, Sequence
 

@@ -1,4 +1,7 @@
-"""Which sensor is worn where? The figure with a tile for each place, tied to it by a line; sensors are dropped here."""
+"""Figure of which sensor is worn where.
+
+It has a tile for each place, tied to it by a line; sensors are dropped here.
+"""
 
 from collections.abc import Mapping
 from dataclasses import dataclass

@@ -1,4 +1,4 @@
-"""How is one sensor now? Its row in the list, which is dragged, selected, and asks where the sensor is worn."""
+"""Row of one sensor in the list, with its present state. It is dragged, selected, and asks where the sensor is worn."""
 
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass

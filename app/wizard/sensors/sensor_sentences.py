@@ -1,4 +1,4 @@
-"""What does the page of the sensors say? The one sentence that matters most, and what to do."""
+"""Sentences on the page of the sensors: the one sentence that matters most, and what to do."""
 
 from collections.abc import Collection, Mapping, Sequence
 

@@ -1,4 +1,4 @@
-"""How did a sensor turn in the last seconds? A line, drawn ten times a second without its row."""
+"""Trace of how a sensor turned in the last seconds: a line, drawn ten times a second without its row."""
 
 import numpy as np
 from PySide6.QtCore import QPointF, Qt

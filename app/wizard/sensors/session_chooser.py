@@ -1,4 +1,4 @@
-"""Which stored session is to be replayed? One of the library's, or a session folder."""
+"""Chooser of the stored session to be replayed: one of the library's, or a session folder."""
 
 from collections.abc import Sequence
 from uuid import UUID

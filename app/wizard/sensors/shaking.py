@@ -1,4 +1,4 @@
-"""Which sensor is being shaken, so that it can be given where it is worn?
+"""Find which sensor is being shaken, so that it can be given where it is worn.
 
 Shaking is vigorous for a second, and only one sensor is: strapping one on is not so lively, and who carries them or
 walks moves several.

@@ -1,4 +1,6 @@
-"""What can sensors be received through? What was found at ports and on the network, streams, and a simulated patient.
+"""Sources through which sensors can be received.
+
+They are those found at ports and on the network, streams, and a simulated patient.
 
 Sensors are looked for beside the screen: ports take a second or two, and some never answer. Streams are asked for in
 the network that somebody has chosen, and in none before.

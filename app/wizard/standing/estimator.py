@@ -1,4 +1,4 @@
-"""Does the patient stand still, who moved, and what do the sensors read meanwhile?"""
+"""Estimate whether the patient keeps still, who moved, and what the sensors read meanwhile."""
 
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, field

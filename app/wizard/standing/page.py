@@ -1,4 +1,8 @@
-"""Does the patient stand still, and at which angles? A count read from six metres, and what the goniometer states."""
+"""Page of standing still:
+
+whether the patient keeps still, and at which angles. It has a count read from six metres, and what the goniometer
+states.
+"""
 
 import math
 from collections.abc import Mapping, Sequence

@@ -1,4 +1,7 @@
-"""What does the walking patient do now, and did in the last seconds? Curves, phases, steps: what the screen draws."""
+"""Estimate what the walking patient does now and did in the last seconds.
+
+It gives what the screen draws: curves, phases, steps.
+"""
 
 import math
 from bisect import bisect_left

@@ -1,4 +1,4 @@
-"""What is the next walk called? A label from the list, each with its digit, or words of one's own."""
+"""Chooser of the next walk's name: a label from the list, each with its digit, or words of one's own."""
 
 from PySide6.QtCore import QRect, QRectF, QSize, Qt, Signal
 from PySide6.QtGui import QFontMetrics, QKeyEvent, QPainter, QPaintEvent, QResizeEvent

@@ -1,4 +1,6 @@
-"""When was which foot on the floor, while the patient walks? One lane per leg under the live curves, on their time.
+"""Lanes of when which foot was on the floor, while the patient walks.
+
+Each leg has one lane under the live curves, on their time.
 
 The phases look as in the results: loading full, foot flat pale, pre-swing hatched, swing empty on a base line. What a
 foot did may be given a moment late, so the end of a lane is drawn again as far back as its phases have changed.

@@ -1,4 +1,7 @@
-"""How does the patient walk now, and what becomes of each walk? Live curves and steps, and the next walk's label."""
+"""Page of walking:
+
+how the patient walks now, and what becomes of each walk. It has live curves and steps, and the next walk's label.
+"""
 
 import math
 from collections.abc import Mapping

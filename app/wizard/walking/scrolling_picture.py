@@ -1,4 +1,4 @@
-"""How do live curves cost little? A picture of the last seconds moves on by whole pixels; only its new end is drawn.
+"""Live curves that cost little. A picture of the last seconds moves on by whole pixels; only its new end is drawn.
 
 Every instant has its column, counted from the clock's zero, so that a sample is drawn at the same fraction of a pixel
 whenever it is drawn: moving the picture on and drawing all of it again give the same picture.

@@ -1,4 +1,4 @@
-"""Which timed test is the next walk, if it is one?"""
+"""Chooser of the timed test that the next walk is, if it is one."""
 
 from collections.abc import Mapping
 

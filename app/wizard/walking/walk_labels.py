@@ -1,4 +1,4 @@
-"""What may the next walk be called?"""
+"""Labels that the next walk may have."""
 
 from collections.abc import Sequence
 

@@ -1,4 +1,7 @@
-"""Which walks were recorded, under which condition, and what became of each? Nothing is deleted: it can come back."""
+"""List of the recorded walks, each with its condition and what became of it.
+
+Nothing is deleted: a walk can come back.
+"""
 
 from dataclasses import dataclass
 from enum import StrEnum

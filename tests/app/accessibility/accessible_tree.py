@@ -1,4 +1,6 @@
-"""What does assistive technology get of a page? Its elements in their order, and what is wrong with them, in words.
+"""Accessible tree of a page:
+
+its elements in their order, and what is wrong with them, in words. It is what assistive technology gets.
 
 All is read through Qt's accessibility interface, which is what the bridges to AT-SPI, UI Automation and NSAccessibility
 read. No screen reader is received here.

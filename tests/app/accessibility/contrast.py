@@ -1,4 +1,4 @@
-"""How far do two colours stand apart? The ratio of WCAG 2.2, from 1 to 21, and what lies under see-through paint."""
+"""Contrast of two colours: the ratio of WCAG 2.2, from 1 to 21, and what lies under see-through paint."""
 
 LINEAR_UP_TO = 0.04045  # of sRGB, IEC 61966-2-1
 

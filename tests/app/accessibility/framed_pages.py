@@ -31,7 +31,7 @@ from app.wizard.walking.page import WalkingPage
 from app.wizard.walking.timed_result import TimedAttempt, TimedResult
 from app.wizard.walking.timed_view import TimedViewState
 from app.wizard.walking.walk_list import WalkRow, WalkState
-from app.wording.translation import tr
+from app.wording.translation import name_of, tr
 from core.analysis import analyse
 from core.body import LEG_SITES, Joint, Side
 from core.results import Analysis
@@ -208,7 +208,7 @@ def framed(look: ThemeNotifier, name: str) -> WizardShell:
     tile = partial(SensorTile, name="0A22", battery=0.84, rate_hz=100.0, lost_share=0.0, silent_s=0.0)
     shell.strip.show_tiles({site: tile(site, is_moving=True, is_worn=True) for site in LEG_SITES})
     shell.set_strip_mode(StripMode.SHOWN if step in WITH_TILES else StripMode.FOLDED)
-    note = tr("If you stop now, angles are unreliable for the left knee.")
+    note = tr("If you stop now, angles are unreliable for {joints}.").format(joints=name_of(Joint.LEFT_KNEE))
     stop = idle(tr("Stop early"), tr("Space"), Icon.STOP, is_requested=False)
     shell.bar.show_state(BarState(stop, quiet=(idle(tr("Repeat one leg"), icon=Icon.REPEAT),), note=note))
     if name == "recording":

@@ -1,4 +1,4 @@
-"""Can every control be brought into sight? By geometry, through all that scrolls round it."""
+"""Check that every control can be brought into sight, by geometry, through all that scrolls round it."""
 
 from PySide6.QtCore import QPoint, QRect, Qt
 from PySide6.QtWidgets import QAbstractScrollArea, QWidget

@@ -1,4 +1,4 @@
-"""Does the walk over a page complain where it must, and nowhere else?"""
+"""Tests that the walk over a page complains where it must, and nowhere else."""
 
 import pytest
 from PySide6.QtCore import Qt

@@ -1,4 +1,6 @@
-"""On a screen of 1280 x 800, and at 200 % of 1920 x 1200, has every word its room, no page being wider than its own?
+"""Tests on a screen of 1280 x 800, and at 200 % of 1920 x 1200.
+
+Every word has its room, and no page is wider than its own.
 
 In English and in German.
 """

@@ -1,5 +1,6 @@
-"""In German, is anything in sight or received still in English? On every page of a visit and all others that are
-filled.
+"""Tests that in German nothing in sight or read by a screen reader is still in English.
+
+They cover every page of a visit and all others that are filled.
 
 A sentence is found that `tr` did not pass: it is in the catalogue and its German states otherwise. So is what never
 was in the catalogue, by the little words that every English sentence has.

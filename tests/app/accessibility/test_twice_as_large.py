@@ -1,4 +1,7 @@
-"""At 200 %: is every word whole, and can every control be brought into sight? In English and in German."""
+"""Tests at 200 %:
+
+every word is whole, and every control can be brought into sight. They run in English and in German.
+"""
 
 import pytest
 from PySide6.QtWidgets import QPushButton, QScrollArea, QWidget

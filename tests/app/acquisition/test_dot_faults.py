@@ -1,4 +1,4 @@
-"""Does everything going wrong at once lose nothing untold, and would the script notice if it did?"""
+"""Tests that everything going wrong at once loses nothing unreported. The script would notice if it did."""
 
 from pathlib import Path
 

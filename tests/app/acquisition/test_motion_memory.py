@@ -1,4 +1,4 @@
-"""Does what looks at a whole motion wait for the sensors that are behind, and no longer than it has to?"""
+"""Tests that what looks at a whole motion waits for the sensors that are behind, and no longer than it has to."""
 
 import numpy as np
 import pytest

@@ -221,7 +221,7 @@ def test_simulated_sensors_are_not_recorded_for_a_real_patient(opened: OpenedLib
 def test_without_room_nothing_begins_and_the_name_stays_free(
     opened: OpenedLibrary, session_id: UUID, acquisition: Acquisition
 ) -> None:
-    with pytest.raises(JournalRefusedError, match="free disk"):
+    with pytest.raises(JournalRefusedError, match="not enough disk space"):
         Recorder.begin(opened, acquisition, session_id, walk(), room=Room(start_bytes=10**15))
     wait_for(lambda: opened.library.sessions.get(session_id).recordings == ())
     stored, _ = Recorder.begin(opened, acquisition, session_id, walk(), room=ANY_ROOM).stop(opened)

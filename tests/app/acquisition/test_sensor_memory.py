@@ -1,4 +1,7 @@
-"""Is what emulated DOTs record in their memory fetched whole, or stated to be not, and erased only once it is kept?"""
+"""Tests of what emulated DOTs record in their memory.
+
+It is fetched whole, or stated not to be, and erased only once it is kept.
+"""
 
 from collections.abc import Iterator, Sequence
 from functools import cached_property

@@ -1,4 +1,4 @@
-"""Does `gaitwright agree` write what it states, and refuse in one line?"""
+"""Tests that `gaitwright agree` writes what it states, and refuses in one line."""
 
 import csv
 import json

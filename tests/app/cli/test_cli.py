@@ -1,4 +1,4 @@
-"""Does the command line keep its word: exit codes, one-line refusals, whole results or none, nothing destroyed?"""
+"""Tests of the command line: exit codes, one-line refusals, whole results or none, nothing destroyed."""
 
 import csv
 import importlib.metadata

@@ -1,4 +1,4 @@
-"""Does `gaitwright query` answer, write what it states, and refuse in one line?"""
+"""Tests that `gaitwright query` answers, writes what it states, and refuses in one line."""
 
 from pathlib import Path
 

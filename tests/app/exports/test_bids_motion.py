@@ -1,4 +1,4 @@
-"""Does a session leave as BIDS-Motion has it, and does it come back to the last digit?"""
+"""Tests that a session leaves as BIDS-Motion has it, and comes back to the last digit."""
 
 import json
 import re

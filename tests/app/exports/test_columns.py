@@ -1,4 +1,4 @@
-"""Does columns.csv report of every column of every table of a real analysis, and of no other?"""
+"""Tests that columns.csv describes every column of every table of a real analysis, and no other."""
 
 import csv
 import datetime

@@ -1,4 +1,4 @@
-"""Does angles.csv hold exactly the numbers of the analysis, in the columns that others rely on?"""
+"""Tests that angles.csv holds exactly the numbers of the analysis, in the columns that others rely on."""
 
 import csv
 import time

@@ -1,4 +1,7 @@
-"""Can a program read every table by its metadata alone? Columns in order, and cells of the type that is reported."""
+"""Tests that a program can read every table by its metadata alone.
+
+Columns are in order, and cells are of the type that is reported.
+"""
 
 import csv
 import json

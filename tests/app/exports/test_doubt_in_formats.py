@@ -1,4 +1,4 @@
-"""What does each format do with what is doubtful: leave it out, name it otherwise, or say why?"""
+"""Tests of what each format does with what is doubtful: leave it out, name it otherwise, or give the reason."""
 
 import json
 from collections.abc import Mapping

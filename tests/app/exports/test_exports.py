@@ -1,4 +1,4 @@
-"""Does an export leave without names, noted in the library it comes from, whole or not at all?"""
+"""Tests that an export leaves without names, noted in the library it comes from, whole or not at all."""
 
 import datetime
 import io

@@ -1,5 +1,7 @@
-"""Do fitting.csv, fitting_means.csv and the summary hold the measures for fitting, and nothing of what is not
-reported?"""
+"""Tests that fitting.csv, fitting_means.csv and the summary hold the measures for fitting.
+
+They hold nothing of what is not reported.
+"""
 
 import csv
 from dataclasses import replace

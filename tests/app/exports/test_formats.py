@@ -1,4 +1,4 @@
-"""Does every format hold the numbers of the CSV files, and can other programs read it?"""
+"""Tests that every format holds the numbers of the CSV files, and that other programs can read it."""
 
 import csv
 import json

@@ -1,4 +1,4 @@
-"""Do events, strides, cycles and averages say what the simulated patient did?"""
+"""Tests that events, strides, cycles and averages match what the simulated patient did."""
 
 import csv
 from dataclasses import replace

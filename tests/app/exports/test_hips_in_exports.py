@@ -1,5 +1,6 @@
-"""Are hips and pelvis in every format, with the signs of the simulated patient, and left out where they are not
-reported?
+"""Tests that hips and pelvis are in every format, with the signs of the simulated patient.
+
+They are left out where they are not reported.
 
 Names, codes and signs are written out here, never taken from the code that writes them.
 """

@@ -1,4 +1,7 @@
-"""Does every format leave out the height of angles whose zero nobody measured, and keep their shape and range?"""
+"""Tests that every format leaves out the height of angles whose zero nobody measured.
+
+Their shape and range are kept.
+"""
 
 import csv
 import json

@@ -1,4 +1,4 @@
-"""Does every file that leaves say what it is for, and whether anybody was measured?"""
+"""Tests that every file that leaves states what it is for, and whether anybody was measured."""
 
 from dataclasses import replace
 from pathlib import Path

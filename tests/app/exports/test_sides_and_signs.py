@@ -1,4 +1,4 @@
-"""Are left and right, knee and ankle, and the signs in every format those of the simulated patient?
+"""Tests of left and right, knee and ankle, and the signs. In every format they are those of the simulated patient.
 
 Names and codes are written out here, never taken from the code that writes them; the angles and events to compare with
 are the simulated patient's own.

@@ -1,4 +1,4 @@
-"""Does summary.json hold what was found, as strict JSON that others can rely on?"""
+"""Tests that summary.json holds what was found, as strict JSON that others can rely on."""
 
 import json
 from dataclasses import replace

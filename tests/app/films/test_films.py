@@ -1,4 +1,7 @@
-"""The manual's films: do they move, stop, stand still for whom nothing should move, and fit in a longer language?"""
+"""Tests of the manual's films:
+
+they move, stop, and fit in a longer language. They keep still for users for whom nothing should move.
+"""
 
 import math
 from itertools import pairwise

@@ -1,4 +1,4 @@
-"""The manual: is it whole, is it found, and does it let go of the keys it borrows?"""
+"""Tests of the manual: it is whole, it is found, and it lets go of the keys it borrows."""
 
 import re
 from pathlib import Path

@@ -1,4 +1,7 @@
-"""The manual: is every page there in both languages, with the names, keys, sentences and limits of the application?"""
+"""Tests of the manual:
+
+every page is there in both languages. It has the names, keys, sentences and limits of the application.
+"""
 
 import math
 import re

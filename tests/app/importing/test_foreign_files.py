@@ -1,4 +1,4 @@
-"""Does whatever the application reads of others go through the limited process?"""
+"""Tests that whatever the application reads of others goes through the limited process."""
 
 import ast
 import os

@@ -1,4 +1,4 @@
-"""Is what is proposed of other programs' recordings right, and is nothing proposed where nothing is known?"""
+"""Tests that what is proposed of other programs' recordings is right. Nothing is proposed where nothing is known."""
 
 from collections.abc import Callable, Mapping
 from dataclasses import replace

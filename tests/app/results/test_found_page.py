@@ -1,4 +1,7 @@
-"""How a joint was found: are the pictures' numbers in the files, the words in their room, and the way back open?"""
+"""Tests of the page on how a joint was found.
+
+The pictures' numbers are in the files. The words have their room, and the way back is open.
+"""
 
 import csv
 from dataclasses import replace

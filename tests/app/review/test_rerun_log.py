@@ -1,4 +1,4 @@
-"""Does the Rerun log hold every sample and angle, the same bytes each time, and nobody's name?"""
+"""Tests of the Rerun log: every sample and angle, the same bytes each time, and nobody's name."""
 
 import csv
 import os

@@ -1,4 +1,4 @@
-"""Is a finished log put in order, and a broken one refused?"""
+"""Tests that a finished log is put in order, and a broken one refused."""
 
 from pathlib import Path
 

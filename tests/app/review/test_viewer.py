@@ -1,4 +1,4 @@
-"""Is the log shown to this user alone, on this computer alone, and gone afterwards?"""
+"""Tests that the log is shown to this user alone, on this computer alone, and is gone afterwards."""
 
 import os
 import stat

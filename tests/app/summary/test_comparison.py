@@ -1,4 +1,4 @@
-"""Is a change judged by what lies between the two walks it is of?"""
+"""Tests that a change is judged by what lies between the two walks it is of."""
 
 from dataclasses import replace
 

@@ -1,4 +1,4 @@
-"""Do the tables of differences keep quiet about what is not reported in one of the two, and report the rest?"""
+"""Tests of the tables of differences. They leave out what is not reported in one of the two, and report the rest."""
 
 import csv
 from dataclasses import replace

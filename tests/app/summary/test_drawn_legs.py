@@ -1,4 +1,4 @@
-"""Do the drawn legs bend as the angles say, reach forward at contact, and keep quiet about what nobody measured?"""
+"""Tests of the drawn legs. They bend by the angles, reach forward at contact, and leave out what nobody measured."""
 
 from dataclasses import replace
 

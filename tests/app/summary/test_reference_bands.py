@@ -1,4 +1,4 @@
-"""Do the bands come out of the package, from wherever it is run?"""
+"""Tests that the bands come out of the package, from wherever it is run."""
 
 from pathlib import Path
 

@@ -1,4 +1,4 @@
-"""Are the sounds what they should be, and does playing them hold up nobody, with a player or without?"""
+"""Tests of the sounds: they are what they should be. Playing them holds up nobody, with a player or without."""
 
 import os
 import subprocess

@@ -1,4 +1,4 @@
-"""Are the parts of a widget received as they stand in it, however late they came into it?"""
+"""Tests that a widget's parts are received in their order in it, however late they came."""
 
 from PySide6.QtGui import QAccessible
 from PySide6.QtWidgets import QGridLayout, QLabel, QVBoxLayout, QWidget

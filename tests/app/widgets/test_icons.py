@@ -1,4 +1,4 @@
-"""Has every icon its drawing, and does it take the ink it is given?"""
+"""Tests that every icon has its drawing and takes the ink it is given."""
 
 from importlib.resources import files
 

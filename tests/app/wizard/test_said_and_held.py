@@ -1,4 +1,4 @@
-"""Does `tests.safety.stated_and_held` see when screen and library disagree, and is it silent when they agree?"""
+"""Tests of `tests.safety.stated_and_held`. It sees when screen and library disagree, and is silent when they agree."""
 
 from collections.abc import Callable, Iterator
 from contextlib import closing

@@ -1,4 +1,4 @@
-"""Does the wizard let a presenter's clicker be Space while a timed test runs, and only then?"""
+"""Tests that the wizard lets a presenter's clicker be Space while a timed test runs, and only then."""
 
 import pytest
 from PySide6.QtCore import Qt

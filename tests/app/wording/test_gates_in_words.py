@@ -1,4 +1,7 @@
-"""Is every reason for doubt stated, with what was found, what was required and their unit, in words for a clinician?"""
+"""Tests that every reason for doubt is stated in words for a clinician.
+
+Each has what was found, what was required and their unit.
+"""
 
 from collections.abc import Iterator
 from dataclasses import replace

@@ -1,4 +1,4 @@
-"""Does every finding have its sentence, and do the sentences keep the rules of the house?"""
+"""Each finding has its sentence, and the sentences keep the rules of the house."""
 
 import ast
 import math

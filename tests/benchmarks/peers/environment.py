@@ -1,4 +1,4 @@
-"""Where do peers live that cannot share our environment? In one of their own, made here when it is first asked for."""
+"""Environment for peers that cannot share ours. It is one of their own, made here when it is first asked for."""
 
 import shutil
 import subprocess

@@ -1,4 +1,4 @@
-"""What does gaitmap make of two feet? Run by the peers' Python: one line of JSON in, one line of JSON out.
+"""Report what gaitmap makes of two feet. Run by the peers' Python: one line of JSON in, one line of JSON out.
 
 gaitmap and gaitmap_mad (Kuderle et al. 2024, doi 10.1109/OJEMB.2024.3356791) with default settings throughout. The
 question names an archive of both feet in gaitmap's sensor frame, or in any where the heading is to be aligned too, and

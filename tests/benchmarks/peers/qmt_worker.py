@@ -1,4 +1,4 @@
-"""Which axes does qmt find? Run by the peers' Python: one path to an archive per line in, one line of JSON out.
+"""Report which axes qmt finds. Run by the peers' Python: one path to an archive per line in, one line of JSON out.
 
 `qmt.jointAxisEstHingeOlsson` (Olsson et al. 2020, doi 10.3390/s20123534) with its default settings, but without its
 printing, which would cost it time.

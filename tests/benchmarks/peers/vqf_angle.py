@@ -1,4 +1,4 @@
-"""What does the orientation filter VQF make of a joint whose axes are known?
+"""Angle that the orientation filter VQF makes of a joint whose axes are known.
 
 VQF (Laidig & Seel 2023, doi 10.1016/j.inffus.2022.10.014) as its documentation states: the rate over the interval
 before each sample, default parameters, no magnetometer. The heading between the two sensors is the least-squares fit

@@ -1,4 +1,7 @@
-"""How is a peer asked? A script, run by the peers' Python, that answers one line of JSON to every line of JSON."""
+"""Worker through which a peer is asked.
+
+A script, run by the peers' Python, that answers one line of JSON to every line of JSON.
+"""
 
 import json
 import subprocess

@@ -1,4 +1,4 @@
-"""Are the figures of agreement what their definitions say? The oracle is written out here, in NumPy."""
+"""Tests that the figures of agreement match their definitions. The oracle is written out here, in NumPy."""
 
 import numpy as np
 import pytest

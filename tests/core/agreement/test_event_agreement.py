@@ -1,4 +1,4 @@
-"""Are events and strides paired with the reference's own, whatever its definitions and its clock?"""
+"""Tests that events and strides are paired with the reference's own, whatever its definitions and its clock."""
 
 import numpy as np
 import pytest

@@ -1,4 +1,4 @@
-"""Are offset, clock rate and sign of a reference found, and is what cannot be compared refused?"""
+"""Tests that offset, clock rate and sign of a reference are found. What cannot be compared is refused."""
 
 from dataclasses import replace
 

@@ -1,4 +1,4 @@
-"""Is the twist the bend of the poses, whatever the headings and however far it turns?"""
+"""Tests that the twist is the bend of the poses, whatever the headings and however far it turns."""
 
 from collections.abc import Callable
 from dataclasses import replace

@@ -1,4 +1,4 @@
-"""Are the axes of a joint without tissue found from its bare rates, and only of such a joint?"""
+"""Tests that the axes of a joint without tissue are found from its bare rates. Only of such a joint."""
 
 from typing import TYPE_CHECKING
 

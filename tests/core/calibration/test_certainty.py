@@ -1,4 +1,4 @@
-"""Are the figures of certainty what they are called?"""
+"""Tests that the figures of certainty are what they are called."""
 
 from typing import TYPE_CHECKING
 

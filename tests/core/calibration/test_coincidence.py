@@ -1,4 +1,4 @@
-"""Do both sensors feel the joint's own acceleration, and does the fit find centres, biases and lags from it?"""
+"""Tests that both sensors feel the joint's own acceleration. The fit finds centres, biases and lags from it."""
 
 from collections.abc import Callable
 from dataclasses import replace

@@ -1,4 +1,4 @@
-"""Does the heading by forces walk down the robust cost that it is stated to?"""
+"""Tests that the heading by forces walks down the robust cost that it is stated to."""
 
 from collections.abc import Callable
 from dataclasses import replace

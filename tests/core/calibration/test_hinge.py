@@ -1,4 +1,4 @@
-"""Does the stricter method find the axis of a true hinge, by slopes that are right?"""
+"""Tests that the stricter method finds the axis of a true hinge, by slopes that are right."""
 
 from collections.abc import Callable
 from typing import TYPE_CHECKING

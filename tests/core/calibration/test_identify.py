@@ -1,4 +1,4 @@
-"""Which doubts does the identification of a joint keep, decided on the axes it ends with?"""
+"""Tests of the doubts that the identification of a joint keeps, decided on the axes it ends with."""
 
 from dataclasses import replace
 from typing import TYPE_CHECKING

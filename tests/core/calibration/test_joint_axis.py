@@ -1,4 +1,4 @@
-"""Are the slopes of the axes' residuals right, and do the candidates hold the truth?"""
+"""Tests that the slopes of the axes' residuals are right and the candidates hold the truth."""
 
 from collections.abc import Callable
 from typing import TYPE_CHECKING

@@ -1,4 +1,4 @@
-"""Are the slopes of the centre's residual right, and does it lie where it was put?"""
+"""Tests that the slopes of the centre's residual are right and the centre lies where it was put."""
 
 from collections.abc import Callable
 from dataclasses import replace

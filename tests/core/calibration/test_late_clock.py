@@ -1,4 +1,4 @@
-"""Is a clock called late only where it is so all the time, and how sure is that?"""
+"""Tests that a clock is called late only where it always is, and how sure that is."""
 
 from collections.abc import Callable
 from dataclasses import replace

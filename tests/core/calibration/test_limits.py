@@ -1,4 +1,4 @@
-"""Do rest, sign and certainty change their mind where they are stated to? All limits and figures are written out."""
+"""Tests that rest, sign and certainty change where they are stated to. All limits and figures are written out."""
 
 import numpy as np
 import pytest

@@ -1,4 +1,4 @@
-"""Are instants and averages distinguished where no sensor states which its rates are?"""
+"""Tests that instants and averages are distinguished where no sensor states which its rates are."""
 
 from dataclasses import replace
 

@@ -1,4 +1,4 @@
-"""Is a sensor called still only when it is, and does it then give its bias?"""
+"""Tests that a sensor is called still only when it is, and that it then gives its bias."""
 
 import numpy as np
 import pytest

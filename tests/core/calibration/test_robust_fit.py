@@ -1,4 +1,4 @@
-"""Does the robust fit weigh errors and priors as it is written down? Cases that can be solved by hand."""
+"""Tests that the robust fit weighs errors and priors as it is written down. Cases that can be solved by hand."""
 
 from typing import TYPE_CHECKING
 

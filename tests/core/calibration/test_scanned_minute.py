@@ -1,4 +1,4 @@
-"""Which minute of a long recording proposes the axes?"""
+"""Tests of which minute of a long recording proposes the axes."""
 
 from collections.abc import Callable
 from dataclasses import replace

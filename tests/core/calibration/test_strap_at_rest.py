@@ -1,4 +1,4 @@
-"""Does gravity at rest refute a small slip of a foot's strap, and only where it can?"""
+"""Tests that gravity at rest refutes a small slip of a foot's strap, and only where it can."""
 
 from dataclasses import replace
 

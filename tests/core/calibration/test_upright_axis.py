@@ -1,4 +1,4 @@
-"""Is the heading between both sensors found where the joint axis is upright, as when lying on the side?"""
+"""Tests that the heading between both sensors is found where the joint axis is upright. As when lying on the side."""
 
 from dataclasses import replace
 from typing import TYPE_CHECKING

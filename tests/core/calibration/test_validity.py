@@ -1,4 +1,4 @@
-"""Does each joint rest on the recordings that FORMATS section 1 states, sentence by sentence?"""
+"""Tests that each joint rests on the recordings that FORMATS section 1 states, sentence by sentence."""
 
 from collections.abc import Callable
 from typing import TYPE_CHECKING

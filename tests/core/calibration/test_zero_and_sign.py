@@ -1,4 +1,4 @@
-"""Which way does a joint bend, and where is its zero, on data made so that the answer is known?"""
+"""Tests of which way a joint bends and where its zero is. The data are made so that the answer is known."""
 
 from dataclasses import replace
 

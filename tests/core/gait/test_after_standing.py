@@ -1,4 +1,4 @@
-"""Is the first step after a long standing as long as it was, and are ordinary walks followed as before?"""
+"""Tests that the first step after a long standing is as long as it was. Ordinary walks are followed as before."""
 
 import numpy as np
 import pytest

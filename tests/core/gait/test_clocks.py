@@ -1,4 +1,4 @@
-"""Is it known whether both legs' sensors report one time, and not reported where it is not?"""
+"""Tests of whether it is known that both legs' sensors report one time. It is not reported where it is not."""
 
 from collections.abc import Mapping
 from dataclasses import replace

@@ -1,4 +1,4 @@
-"""Are angles brought to 0-100 % of each stride, and are their peaks where a clinician finds them?"""
+"""Tests that angles are brought to 0-100 % of each stride. Their peaks are where a clinician finds them."""
 
 import numpy as np
 import pytest

@@ -1,4 +1,7 @@
-"""Are the figures of gait computed as they are defined? Windows, scores and limits, written out or counted by hand."""
+"""Tests that the figures of gait are computed as they are defined.
+
+Windows, scores and limits, written out or counted by hand.
+"""
 
 from dataclasses import replace
 

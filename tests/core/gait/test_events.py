@@ -1,4 +1,4 @@
-"""Are a foot's landings and leavings found, in any mounting, and none where there is none?"""
+"""Tests that a foot's landings and leavings are found, in any mounting, and none where there is none."""
 
 import csv
 from collections.abc import Callable

@@ -1,4 +1,7 @@
-"""Are the measures for fitting what they are stated to be? Curves drawn by hand, and segments turned by hand."""
+"""Tests that the measures for fitting are what they are stated to be.
+
+Curves drawn by hand, and segments turned by hand.
+"""
 
 import numpy as np
 import pytest

@@ -1,4 +1,4 @@
-"""Do the events of a walking foot come in time, and are they those of the whole walk looked at afterwards?"""
+"""Tests that a walking foot's events come in time. They are those of the whole walk looked at afterwards."""
 
 import functools
 from collections.abc import Callable, Sequence

@@ -1,4 +1,7 @@
-"""Are the steps of the simulated patient reported live, in time, and nothing else? A glance; `test_live` looks long."""
+"""Tests that the simulated patient's steps are reported live, in time, and nothing else.
+
+A glance; `test_live` looks long.
+"""
 
 from collections.abc import Sequence
 

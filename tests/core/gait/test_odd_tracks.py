@@ -1,4 +1,4 @@
-"""Does a foot that does nothing, or next to nothing, give no events and no error?"""
+"""Tests that a foot that does nothing, or next to nothing, gives no events and no error."""
 
 import numpy as np
 import pytest

@@ -1,4 +1,4 @@
-"""Are landings and leavings found from the shank alone, and is it stated that they are?"""
+"""Tests that landings and leavings are found from the shank alone, and that it is stated that they are."""
 
 from dataclasses import replace
 

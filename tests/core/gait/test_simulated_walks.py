@@ -1,4 +1,4 @@
-"""Do events, phases, time and distance of simulated walks reach what is asked of them? A benchmark in small."""
+"""Tests that events, phases, time and distance of simulated walks reach what is asked of them. A benchmark in small."""
 
 import numpy as np
 import pytest

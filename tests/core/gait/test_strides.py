@@ -1,4 +1,4 @@
-"""Do strides say how a patient walks, and is each that does not left out with its reason?"""
+"""Tests that strides show how a patient walks. Each that does not is left out with its reason."""
 
 from dataclasses import replace
 

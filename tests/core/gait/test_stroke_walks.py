@@ -1,4 +1,4 @@
-"""Are all strides of people after a stroke found, none invented, and nearly all of them used?
+"""Tests that all strides of people after a stroke are found, none invented, and nearly all used.
 
 How many contacts a reader counts in the plotted pitch, speed, vertical acceleration and shank rate of each foot; a
 swing that the recording cuts at either end does not count.

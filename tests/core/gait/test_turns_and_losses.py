@@ -1,4 +1,7 @@
-"""Are contacts on the straight found, and none invented, where the patient turns about and samples are lost?"""
+"""Tests of contacts where the patient turns about and samples are lost.
+
+Those on the straight are found, and none invented.
+"""
 
 from collections.abc import Callable
 from dataclasses import dataclass, replace

@@ -1,4 +1,4 @@
-"""Is the gait of a long recording, worked through in blocks, that of a short one? And what of walking backward?"""
+"""Tests that a long recording, worked through in blocks, has the gait of a short one. Also of walking backward."""
 
 from dataclasses import replace
 

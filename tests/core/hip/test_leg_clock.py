@@ -1,4 +1,4 @@
-"""When may an offset between both legs' clocks be used?"""
+"""Tests of when an offset between both legs' clocks may be used."""
 
 from dataclasses import replace
 

@@ -1,4 +1,6 @@
-"""Does the gauge fall with what the motion reports, stay open without it, and name the motion that is missing?
+"""Tests of the gauge.
+
+It falls with what the motion reports and stays open without it. It names the motion that is missing.
 
 A leg below a fixed hip with exact sensors, whose truth is known: what a motion adds is tried by adding it.
 """

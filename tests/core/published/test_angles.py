@@ -1,4 +1,4 @@
-"""Do eqs 10, 11, 14 and the twist share sign and zero on a hinge built from poses, and does eq 15 fuse as reported?"""
+"""Tests that eqs 10, 11, 14 and the twist share sign and zero on a hinge built from poses. Eq 15 fuses as reported."""
 
 from collections.abc import Callable
 from dataclasses import replace

@@ -1,4 +1,4 @@
-"""Do the numbers behind Figures 3, 4 and 6 show what is true of a hinge whose every truth is known?"""
+"""Tests that the numbers behind Figures 3, 4 and 6 show what is true of a hinge. Its every truth is known."""
 
 from collections.abc import Callable
 from dataclasses import replace

@@ -1,4 +1,4 @@
-"""Does the paper's own identification of axes follow its slopes to the axes of a hinge?"""
+"""Tests that the paper's own identification of axes follows its slopes to the axes of a hinge."""
 
 from collections.abc import Callable
 from typing import TYPE_CHECKING, Any

@@ -1,4 +1,4 @@
-"""Does the paper's own identification of centres follow its slopes, and is eq 9 kept?"""
+"""Tests that the paper's own identification of centres follows its slopes, and that eq 9 is kept."""
 
 from collections.abc import Callable
 from typing import TYPE_CHECKING, Any

@@ -1,4 +1,4 @@
-"""Is a clock that runs away from its adjacent ones' found in a walk, and none where all keep time?"""
+"""Tests that a clock that runs away from its adjacent ones' is found in a walk. None is found where all keep time."""
 
 from dataclasses import replace
 

@@ -1,4 +1,4 @@
-"""Are the samples that identify a joint those that were known, moving and slow enough?"""
+"""Tests that the samples that identify a joint are those that were known, moving and slow enough."""
 
 from collections.abc import Callable
 from dataclasses import replace

@@ -1,4 +1,4 @@
-"""Are two sensors brought to the same instants, and is eq 1 what it states?"""
+"""Tests that two sensors are brought to the same instants, and that eq 1 is what it states."""
 
 from dataclasses import replace
 

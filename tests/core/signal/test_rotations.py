@@ -1,4 +1,4 @@
-"""Are the few helpers about directions what their names say?"""
+"""Tests that the few helpers about directions match their names."""
 
 import numpy as np
 import pytest

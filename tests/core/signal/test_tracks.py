@@ -1,4 +1,7 @@
-"""Do uneven stamps, lost rows and gaps become stretches on an even clock, and nothing that was not measured?"""
+"""Tests that uneven stamps, lost rows and gaps become stretches on an even clock.
+
+Nothing that was not measured becomes one.
+"""
 
 from itertools import pairwise
 

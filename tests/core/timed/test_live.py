@@ -1,4 +1,4 @@
-"""Is a timed test reported live as its recording reports it, and what does a key mean?"""
+"""Tests that a timed test is reported live as from its recording, and of what a key means."""
 
 import math
 from dataclasses import replace

@@ -1,4 +1,4 @@
-"""Which one figure of a timed test is in the course, and what does it rest on?"""
+"""Tests of the one figure of each timed test in the course, and of what it rests on."""
 
 import math
 from dataclasses import replace

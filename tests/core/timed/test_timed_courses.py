@@ -1,4 +1,4 @@
-"""Are timed tests of the simulated patient reported as they were, and what was not measured left out?"""
+"""Tests that timed tests of the simulated patient are reported as they were. What was not measured is left out."""
 
 from dataclasses import replace
 

@@ -1,4 +1,7 @@
-"""Does what is shown of a joint's finding agree with the analysis, and with the truth where all of it is known?"""
+"""Tests that what is shown of a joint's finding agrees with the analysis.
+
+Where all of the truth is known, it agrees with that too.
+"""
 
 from collections.abc import Callable
 from dataclasses import replace

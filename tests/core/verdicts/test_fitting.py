@@ -1,4 +1,4 @@
-"""Does every measure for fitting rest on the right verdict, and is each informed of in the one table?"""
+"""Each measure for fitting rests on the right verdict and is reported in the one table."""
 
 import pytest
 

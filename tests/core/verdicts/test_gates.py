@@ -1,4 +1,4 @@
-"""Does each gate close beyond its limit, stay open at it, and hit what it may hit and nothing else?
+"""Tests that each gate closes beyond its limit and stays open at it. It hits what it may hit and nothing else.
 
 Every limit is written out here, as TRUTH has it, never taken from the gates.
 """

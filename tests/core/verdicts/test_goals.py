@@ -1,4 +1,4 @@
-"""Was a goal reached? Each answer has a value for which it must come and one for which it must not.
+"""Tests of whether a goal was reached. Each answer has a value for which it must come and one for which it must not.
 
 Errors are worked out by hand: a mean of strides that are all alike has none but the table's.
 """

@@ -1,4 +1,4 @@
-"""Is a difference called real by the rule? Every figure here is worked out by hand, none is taken from the code."""
+"""Tests of the rule that calls a difference real. Every figure is worked out by hand, none is taken from the code."""
 
 import math
 

@@ -1,4 +1,4 @@
-"""Does the gravest reason decide, and does every reason stay?"""
+"""Tests that the gravest reason decides and that every reason stays."""
 
 import pytest
 

@@ -1,4 +1,4 @@
-"""Are the reference bands what their source states, and which of them may stand beside a walk?"""
+"""Tests that the reference bands match their source, and of which of them may be shown beside a walk."""
 
 from pathlib import Path
 

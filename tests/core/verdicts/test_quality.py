@@ -1,4 +1,4 @@
-"""Does bad input end in a finding, never in a traceback and never in a silent number? (FORMATS, section 4)"""
+"""Bad input ends in a finding, never in a traceback and never in a silent number (FORMATS, section 4)."""
 
 from collections.abc import Callable
 from dataclasses import replace

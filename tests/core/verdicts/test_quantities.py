@@ -1,4 +1,4 @@
-"""Does every figure rest on the right verdict, and is it empty exactly where that is not reported?"""
+"""Each figure rests on the right verdict and is empty exactly where that is not reported."""
 
 from dataclasses import replace
 from typing import Any

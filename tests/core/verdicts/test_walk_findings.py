@@ -1,4 +1,4 @@
-"""Is it reported where strides or peaks are missing or too few, once and at the right place?"""
+"""Tests that missing or too few strides or peaks are reported once and at the right place."""
 
 from collections.abc import Mapping
 from dataclasses import replace

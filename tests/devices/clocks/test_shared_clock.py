@@ -1,4 +1,4 @@
-"""Are sensors that share a clock stamped by one line, and those that only say so left alone?"""
+"""Tests that sensors sharing a clock are stamped by one line. Those that only claim to share one are left alone."""
 
 import numpy as np
 

@@ -1,4 +1,4 @@
-"""Six emulated DOTs behind bleak's own interface: are they synchronised, streamed, lost and found as they should be?
+"""Tests of six emulated DOTs behind bleak's own interface. They are synchronised, streamed, lost and found correctly.
 
 Their seconds pass at once. The oracle is what each took, and when: sample for sample, float for float.
 """

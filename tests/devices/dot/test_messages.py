@@ -1,4 +1,4 @@
-"""Are a Movella DOT's messages those that its maker printed, byte by byte?"""
+"""Tests that a Movella DOT's messages are those that its maker printed, byte by byte."""
 
 import pytest
 

@@ -1,4 +1,7 @@
-"""Are a Movella DOT's samples read as they are laid out: whole, cut, in pieces, and when its clock begins again?"""
+"""Tests that a Movella DOT's samples are read as laid out.
+
+They come whole, cut, in pieces, and when its clock begins again.
+"""
 
 import math
 import struct

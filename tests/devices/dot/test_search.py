@@ -1,4 +1,7 @@
-"""Are DOTs that announce themselves found among the sensors, and is it stated why where nobody could be received?"""
+"""Tests that DOTs that announce themselves are found among the sensors.
+
+Where nobody could be received, the reason is stated.
+"""
 
 import builtins
 import importlib.util

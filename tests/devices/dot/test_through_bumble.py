@@ -1,4 +1,4 @@
-"""Do DOTs work through two whole Bluetooth stacks: advertisements, ATT, subscriptions, an MTU that cuts?"""
+"""Tests of DOTs through two whole Bluetooth stacks: advertisements, ATT, subscriptions and an MTU that cuts."""
 
 from collections.abc import Iterator
 from pathlib import Path

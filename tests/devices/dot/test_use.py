@@ -1,4 +1,7 @@
-"""Do sensors go from streams to memories and back as their maker allows: at a rate set before they are synchronised?"""
+"""Tests that sensors go from streams to memories and back as their maker allows.
+
+The rate is set before they are synchronised.
+"""
 
 from collections.abc import Iterator
 

@@ -1,4 +1,4 @@
-"""Are streams of Lab Streaming Layer received, understood and stamped right, and missed without harm?"""
+"""Tests that streams of Lab Streaming Layer are received, understood and stamped right, and missed without harm."""
 
 import builtins
 import sys

@@ -1,4 +1,4 @@
-"""Is what a Shimmer3 sends understood: with and without checksums, damaged or not, through a real port?"""
+"""Tests of reading what a Shimmer3 sends: with and without checksums, damaged or not, through a real port."""
 
 import random
 import sys

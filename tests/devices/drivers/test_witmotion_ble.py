@@ -1,4 +1,7 @@
-"""Are WitMotion's frames by air read as they are laid out, their samples where they were taken, as far as known?"""
+"""Tests that WitMotion's frames by air are read as laid out.
+
+Their samples lie where they were taken, as far as known.
+"""
 
 from collections.abc import Callable, Iterator, Sequence
 

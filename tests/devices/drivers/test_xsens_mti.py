@@ -1,4 +1,7 @@
-"""Is what an Xsens MTi sends understood: recorded streams to the last digit, damaged ones, and an emulated sensor?"""
+"""Tests of reading what an Xsens MTi sends.
+
+The streams are recorded (to the last digit), damaged, or from an emulated sensor.
+"""
 
 import math
 import random

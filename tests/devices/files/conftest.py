@@ -1,4 +1,4 @@
-"""What do the tests of files have in common? A small session on disk, to be spoilt in one way at a time."""
+"""Common set-up of the tests of files. A small session on disk, to be spoilt in one way at a time."""
 
 from collections.abc import Callable
 from pathlib import Path

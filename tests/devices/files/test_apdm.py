@@ -1,4 +1,4 @@
-"""Do both dialects of APDM's exports become samples, and is what would be read wrongly refused?"""
+"""Tests that both dialects of APDM's exports become samples. What would be read wrongly is refused."""
 
 import csv
 from collections.abc import Callable

@@ -1,4 +1,4 @@
-"""Do APDM's HDF5 files become the samples that were put into them, laid out as APDM describes?
+"""Tests that APDM's HDF5 files, laid out as APDM describes, become the samples that were put into them.
 
 No file of APDM's programs is at hand: the samples are those of a CSV export, the layout is the published one.
 """

@@ -1,4 +1,7 @@
-"""Do the files of a BIDS-Motion recording, written as its specification states, become the samples of its sensors?"""
+"""Tests that files of a BIDS-Motion recording become the samples of its sensors.
+
+The files are written as its specification states.
+"""
 
 import json
 from collections.abc import Mapping, Sequence

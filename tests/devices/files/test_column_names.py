@@ -1,4 +1,4 @@
-"""Is a column's name understood as whoever wrote it meant it?"""
+"""Tests that a column's name is understood as its writer meant it."""
 
 import pytest
 

@@ -1,4 +1,4 @@
-"""Do tables of any program become samples, and is what they leave open asked for instead of guessed?"""
+"""Tests that tables of any program become samples. What they leave open is asked for instead of guessed."""
 
 from collections.abc import Callable, Mapping, Sequence
 from pathlib import Path

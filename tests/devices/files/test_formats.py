@@ -1,4 +1,4 @@
-"""Is the program that wrote a file reported by what is in it?"""
+"""Tests that the program that wrote a file is found from the file's content."""
 
 from collections.abc import Callable
 from pathlib import Path

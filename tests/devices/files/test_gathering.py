@@ -1,4 +1,4 @@
-"""Do files that belong together come together, and is nothing lost on the way?"""
+"""Tests that files that belong together come together and that nothing is lost on the way."""
 
 from collections.abc import Callable
 from pathlib import Path

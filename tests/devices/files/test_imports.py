@@ -1,4 +1,4 @@
-"""Do files find their sites, and recordings their session?"""
+"""Tests that files find their sites, and recordings their session."""
 
 from dataclasses import replace
 from pathlib import Path

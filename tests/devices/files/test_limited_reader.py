@@ -1,4 +1,4 @@
-"""Can a file do more than end the process that reads it?"""
+"""Tests that a file can do no more than end the process that reads it."""
 
 import io
 import os

@@ -1,4 +1,4 @@
-"""Do MATLAB files become samples, and is what only MATLAB can open refused with what to do there?
+"""Tests that MATLAB files become samples. What only MATLAB can open is refused, with what to do there.
 
 The layout of version 7.3 and of an object are written here by hand; files that MATLAB itself wrote come with SciPy.
 """

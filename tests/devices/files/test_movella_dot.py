@@ -1,4 +1,4 @@
-"""Do files of Movella DOT sensors become samples in SI units, and is what would be read wrongly refused?"""
+"""Tests that files of Movella DOT sensors become samples in SI units. What would be read wrongly is refused."""
 
 from collections.abc import Sequence
 from pathlib import Path

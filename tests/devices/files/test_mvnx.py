@@ -1,4 +1,4 @@
-"""Do the exports of MVN, written as its manual describes them, become samples of each sensor?"""
+"""Tests that the exports of MVN, written as its manual describes them, become samples of each sensor."""
 
 from collections.abc import Mapping, Sequence
 from pathlib import Path

@@ -1,4 +1,7 @@
-"""Do OpenSim's tables of orientations, written as it documents them, become motion, and is what they lack reported?"""
+"""Tests that OpenSim's tables of orientations, written as it documents them, become motion.
+
+What they lack is reported.
+"""
 
 from pathlib import Path
 

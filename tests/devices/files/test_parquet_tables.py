@@ -1,4 +1,4 @@
-"""Do Parquet tables of any program become samples by the same rules as CSV?"""
+"""Tests that Parquet tables of any program become samples by the same rules as CSV."""
 
 from collections.abc import Mapping
 from pathlib import Path

@@ -1,4 +1,4 @@
-"""Does a session folder come back as it was written, and is a spoilt one refused in words?"""
+"""Tests that a session folder comes back as it was written. A spoilt one is refused in words."""
 
 import os
 import re

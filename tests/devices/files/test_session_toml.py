@@ -1,4 +1,4 @@
-"""Is every key of `session.toml` understood, and a wrong one refused in words?"""
+"""Each key of `session.toml` is understood, and a wrong one is refused in words."""
 
 import re
 import tomllib

@@ -1,4 +1,4 @@
-"""Do names say where a sensor was worn, and say nothing where they do not?"""
+"""Tests that names show where a sensor was worn, and show nothing where they do not state it."""
 
 import pytest
 

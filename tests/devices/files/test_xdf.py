@@ -1,4 +1,4 @@
-"""Do XDF files become samples on the recording computer's clock, with every loss reported?
+"""Tests that XDF files become samples on the recording computer's clock, with every loss reported.
 
 No recording of LabRecorder is at hand: files are written here by the format's description, chunk by chunk.
 """

@@ -1,4 +1,4 @@
-"""Do MT Manager's texts, in all their dialects, become samples on one clock?"""
+"""Tests that MT Manager's texts, in all their dialects, become samples on one clock."""
 
 import re
 import xml.etree.ElementTree as ET

@@ -1,4 +1,4 @@
-"""Does the demonstration's user of a prosthesis walk as it is stated to be set?"""
+"""Tests that the demonstration's user of a prosthesis walks as stated by the settings."""
 
 import time
 

@@ -1,4 +1,4 @@
-"""Is the truth that the simulated session reports the truth of its samples?"""
+"""Tests that the truth reported by the simulated session is the truth of its samples."""
 
 from dataclasses import replace
 

@@ -1,4 +1,4 @@
-"""Do simulated courses go on without a jump, and is what is called true of them so?"""
+"""Tests that simulated courses go on without a jump and that what is called true of them is true."""
 
 from dataclasses import replace
 

@@ -1,4 +1,4 @@
-"""Do coarse, clipped and fast sensors differ from good ones by just that?"""
+"""Tests that coarse, clipped and fast sensors differ from good ones by exactly that."""
 
 from dataclasses import replace
 

@@ -1,4 +1,7 @@
-"""Do the simulated patient's feet stand on the floor, and its joints bend as a human's? One walk, seen closely."""
+"""Tests that the simulated patient's feet rest on the floor and its joints bend as a human's.
+
+One walk, seen closely.
+"""
 
 from itertools import pairwise
 

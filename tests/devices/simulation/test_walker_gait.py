@@ -1,4 +1,4 @@
-"""Does the simulated patient walk as a human does, on feet that stand still?"""
+"""Tests that the simulated patient walks as a human does, on feet that stay still on the floor."""
 
 from itertools import pairwise
 

@@ -1,4 +1,4 @@
-"""Do feet that hardly roll, are stiff, drag or land on the toes move as they are stated to?"""
+"""Tests that feet that hardly roll, are stiff, drag or land on the toes move as stated."""
 
 import numpy as np
 import pytest

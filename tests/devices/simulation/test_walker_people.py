@@ -1,4 +1,4 @@
-"""Do simulated people differ as much as they are stated to?"""
+"""Tests that simulated people differ as much as stated."""
 
 import numpy as np
 import pytest

@@ -1,4 +1,4 @@
-"""Does what is set at a simulated prosthesis move the leg as geometry states, and nothing else?"""
+"""Tests that settings of a simulated prosthesis move the leg as geometry demands, and nothing else."""
 
 from dataclasses import replace
 

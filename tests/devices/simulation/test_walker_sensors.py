@@ -1,4 +1,4 @@
-"""Are the simulated samples what the poses demand? Checked by integrating them, and on known derivatives."""
+"""Tests that the simulated samples are what the poses demand. Checked by integrating them, and on known derivatives."""
 
 from dataclasses import replace
 

@@ -1,4 +1,4 @@
-"""Do gait and sensors vary by as much as they are given to, and by nothing where they are not?"""
+"""Tests that gait and sensors vary by the amount given, and not at all where none is given."""
 
 from dataclasses import replace
 from itertools import pairwise

@@ -1,4 +1,4 @@
-"""Is what happens in the thread of the links waited for, informed of, and ended when nobody waits any more?"""
+"""Tests of work in the thread of the links. It is waited for, reported, and ended when nobody waits any more."""
 
 import asyncio
 import threading

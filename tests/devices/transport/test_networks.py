@@ -1,4 +1,4 @@
-"""Which addresses has this computer, and is nobody asked for them?"""
+"""Tests that this computer's addresses are found and that nobody is asked for them."""
 
 import ipaddress
 import socket

@@ -1,4 +1,4 @@
-"""Are the patients in sight those that were asked for last, and are none once the library was left?"""
+"""Tests that the patients in sight are those that were asked for last, and none once the library was left."""
 
 from PySide6.QtCore import QObject
 from pytestqt.qtbot import QtBot

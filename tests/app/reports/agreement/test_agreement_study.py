@@ -1,4 +1,4 @@
-"""Is each walk compared with its own trial, and are the figures those of the truth?"""
+"""Tests that each walk is compared with its own trial, and that the figures are those of the truth."""
 
 from collections.abc import Callable
 from dataclasses import replace

@@ -1,4 +1,4 @@
-"""Is the report a document that everybody can read, now and in thirty years, and the same each time?"""
+"""Tests that everybody can read the report, now and in thirty years. It is the same document each time."""
 
 import io
 import re

@@ -1,4 +1,7 @@
-"""Does every page of a report say whose it is, what it is for and that nobody was measured? Once in the default run."""
+"""Tests that every page of a report states its patient, its purpose and that nobody was measured.
+
+Once in the default run.
+"""
 
 import io
 import re

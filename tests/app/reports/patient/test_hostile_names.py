@@ -1,4 +1,4 @@
-"""Does any typed text prevent a report, or change a number in it?"""
+"""Tests that no typed text prevents a report or changes a number in it."""
 
 import io
 from dataclasses import replace

@@ -1,4 +1,7 @@
-"""Which rows stand among the key numbers? What the findings report, then the same for everybody, never the unknown."""
+"""Tests of the rows of key numbers.
+
+What the findings report comes first, then the same rows for everybody. The unknown is never shown.
+"""
 
 from dataclasses import replace
 

@@ -1,4 +1,4 @@
-"""Does the last page of a walk say how it was measured, of this walk and nothing that nobody knows?"""
+"""Tests of the last page of a walk: how it was measured. It covers this walk only, and nothing that nobody knows."""
 
 import re
 from collections.abc import Mapping

@@ -1,4 +1,4 @@
-"""What does the report say where something is missing? Every case is stated in words, and no number is invented."""
+"""Tests of the report where something is missing. Every case is stated in words, and no number is invented."""
 
 import io
 import re

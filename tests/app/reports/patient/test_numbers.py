@@ -1,4 +1,7 @@
-"""Is every number on paper in a file of the results, too? Reported from the files alone, as a reader of them would."""
+"""Tests that every number on paper is in a file of the results, too.
+
+Reported from the files alone, as a reader of them would.
+"""
 
 import csv
 import json

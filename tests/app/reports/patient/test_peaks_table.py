@@ -1,4 +1,4 @@
-"""Does the table of peaks report each movement beside the heights, and nothing of one that has no extremes?"""
+"""Tests of the table of peaks. Each movement is reported beside the heights, and nothing of one without extremes."""
 
 from dataclasses import replace
 

@@ -103,7 +103,7 @@ def test_a_server_that_goes_and_comes_back_is_stated_and_nothing_freezes(
         server.stop()
     what, then = stated.args or ["", ""]
     assert what == "The clinic's server does not respond."
-    assert "kept on this computer" in then
+    assert "stay on this computer" in then
     assert controller.is_gone
     with qtbot.waitSignal(controller.back, timeout=WAIT_MS) as stated:
         server.start()

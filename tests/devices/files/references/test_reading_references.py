@@ -1,4 +1,4 @@
-"""Is what is in a reference file what is read of it, by the process that reads files of others?
+"""Tests that what is in a reference file is read, by the process that reads files of others.
 
 No recording of a laboratory is at hand for these formats: the fixtures are built from their published descriptions, the
 C3D by the library that reads them elsewhere, too.
