@@ -160,7 +160,7 @@ class DotSetup(QObject):
             return BarState(primary=stop, note=tr("Their recordings stay in the sensor memory."))
         if self._failed and len(self._failed) < count:
             again = BarAction(tr("Try again"), self._synchronise, tr("Enter"), Icon.REPEAT)
-            without = tr("Continue without {sensors}").format(sensors=", ".join(self._failed))
+            without = tr("Go on without {sensors}").format(sensors=", ".join(self._failed))
             return BarState(primary=again, others=(BarAction(without, self._leave_out_failed, is_requested=False),))
         words = tr("Use this sensor")
         if count != 1:

@@ -222,7 +222,7 @@ class SensorsStep(Step):
             joints = (*LEG_JOINTS, *sensors.hips)
             lost = tr(" and ").join(name_of(one) for one in joints if silent in (one.proximal, one.distal))
             without = replace(
-                go_on, text=tr("Continue without {joints}").format(joints=lost), key="", is_requested=False
+                go_on, text=tr("Go on without {joints}").format(joints=lost), key="", is_requested=False
             )
             return BarState(primary=again, others=(without,) if sensors.joints else ())
         if sensors.is_left_to_motion:

@@ -205,7 +205,7 @@ def stored_sessions(look: ThemeNotifier) -> QWidget:
         for k in range(12)
     ]
     page.stored.show_sessions(lines)
-    page.stored.show_message("walk_1/left_thigh.csv: acc_x_m_s2 (0 of 6).", "Write the file as FORMATS says it.")
+    page.stored.show_message("walk_1/left_thigh.csv", "Write the file as FORMATS says it.")
     page.show_stored()
     return page
 

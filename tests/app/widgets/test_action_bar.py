@@ -142,7 +142,7 @@ def test_a_button_keeps_the_focus_when_its_word_is_another(bar: ActionBar) -> No
 @pytest.mark.parametrize("width", [1064, 896, 736, 368])
 @pytest.mark.parametrize("note", ["", "If you stop now, angles are unreliable for the left knee."])
 def test_nothing_is_cut_and_nothing_overlaps(bar: ActionBar, width: int, note: str) -> None:
-    state = BarState(idle("Reconnect R foot", "Enter"), (idle("Continue without"),), (idle("Repeat one leg"),), note)
+    state = BarState(idle("Reconnect R foot", "Enter"), (idle("Go on without"),), (idle("Repeat one leg"),), note)
     bar.show_state(state)
     bar.resize(width, bar.height())
     settle()

@@ -21,8 +21,8 @@ from app.wizard import shell as shell_module
 from app.wizard.free_motion.page import FreeMotionPage
 from app.wizard.shell import StripMode, WizardShell
 from app.wizard.step import StepId
-from app.wording.translation import name_of, tr, use_language
-from core.body import LEG_SITES, Joint, Site
+from app.wording.translation import tr, use_language
+from core.body import LEG_SITES, Site
 from tests.app.idle_action import idle
 from tests.app.room import settle, words_cut
 
@@ -51,7 +51,7 @@ def fine() -> dict[Site, SensorTile]:
 
 
 def stop_early() -> BarState:
-    note = tr("If you stop now, angles are unreliable for {joints}.").format(joints=name_of(Joint.LEFT_KNEE))
+    note = "If you stop now, angles are unreliable for the left knee."
     stop = idle(tr("Stop early"), tr("Space"), Icon.STOP, is_requested=False)
     return BarState(stop, quiet=(idle(tr("Repeat one leg"), icon=Icon.REPEAT),), note=note)
 
@@ -65,7 +65,7 @@ def recording() -> BarState:
 
 def reconnect() -> BarState:
     requested = idle(tr("Reconnect R foot"), tr("Enter"), Icon.REPEAT)
-    return BarState(requested, others=(idle(tr("Continue without right ankle")),))
+    return BarState(requested, others=(idle(tr("Go on without right ankle")),))
 
 
 def filled(look: ThemeNotifier) -> WizardShell:

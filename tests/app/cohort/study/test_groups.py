@@ -89,7 +89,7 @@ def pandas_figures(path: Path, question: GroupQuestion) -> dict[str, dict[str, A
             "low": low,
             "high": high,
             "value_error": own[f"{MEASURE}_error"].median(),
-            "withheld": int((left == "withheld").sum()),
+            "not_reported": int((left == "withheld").sum()),
             "with_care": int((left == "care").sum()),
             "not_measured": int((~left.isin(["withheld", "care"])).sum()),
             "sessions_without": rows["session"].nunique() - n,

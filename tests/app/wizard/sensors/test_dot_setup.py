@@ -109,9 +109,9 @@ def test_a_sensor_that_does_not_follow_is_named_and_can_be_left_out(
     assert words_of(asked, 1)[4] == "received too little from the others"
     assert words_of(asked, 0)[4] == ""
     assert verb(asked.bar()) == ("Try again", True)
-    assert [other.text for other in asked.bar().others] == ["Continue without DOT 0002"]
+    assert [other.text for other in asked.bar().others] == ["Go on without DOT 0002"]
     with qtbot.waitSignal(visit.sensors.opened, timeout=WAIT_MS):
-        press(asked, "Continue without DOT 0002")
+        press(asked, "Go on without DOT 0002")
     assert visit.sensors.acquisition is not None
     assert visit.sensors.acquisition.sensors == ("DOT 0001",)
 

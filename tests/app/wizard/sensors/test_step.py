@@ -117,7 +117,7 @@ def test_a_silent_sensor_is_asked_for_again_and_keeps_its_place(
     bar = step.bar()
     assert bar.primary is not None
     assert bar.primary.text == "Reconnect R foot"
-    assert [verb.text for verb in bar.others] == ["Continue without right ankle"]
+    assert [verb.text for verb in bar.others] == ["Go on without right ankle"]
     assert "R foot: no signal for" in step.page.notice.text
     source.wake(foot)
     with qtbot.waitSignal(visit.sensors.opened, timeout=10_000):
