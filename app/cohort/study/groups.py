@@ -98,7 +98,7 @@ class GroupRow:
     standard_error: float
     half_interval: float
     value_error: float
-    not_reported: int
+    withheld: int
     with_care: int
     not_measured: int
     sessions_without: int
@@ -324,14 +324,12 @@ def _band(value: str, edges: tuple[float, ...]) -> str:
 
 
 def _row(found: tuple[Any, ...]) -> GroupRow:
-    _, group, n, patients, walks, mean, sd, error, not_reported, care, not_measured, without, *_ = found
+    _, group, n, patients, walks, mean, sd, error, withheld, care, not_measured, without, *_ = found
     spread = _number(sd) if n >= LEAST_SESSIONS else math.nan
     standard_error = spread / math.sqrt(n) if n else math.nan
     half = float(stdtrit(n - 1, TWO_SIDED_95)) * standard_error if n >= LEAST_SESSIONS else math.nan
     figures = (_number(mean), spread, standard_error, half, _number(error))
-    return GroupRow(
-        str(group), n, patients, int(walks), *figures, int(not_reported), int(care), int(not_measured), without
-    )
+    return GroupRow(str(group), n, patients, int(walks), *figures, int(withheld), int(care), int(not_measured), without)
 
 
 def _number(value: object) -> float:

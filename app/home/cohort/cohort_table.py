@@ -32,7 +32,7 @@ def groups_table(found: GroupAnswer, *, is_narrow: bool) -> tuple[list[TableColu
 
 def _row(found: GroupAnswer, row: GroupRow, words: MeasureWords, longest: int) -> TableRow:
     name, decimals = group_name(found.question.grouping, row.group), words.decimals
-    out = row.not_reported + row.with_care + row.not_measured
+    out = row.withheld + row.with_care + row.not_measured
     shown = name if len(name) <= longest else f"{name[: longest - 1]}…"
     cells = (
         (tr("Sessions"), str(row.sessions)),
@@ -44,12 +44,12 @@ def _row(found: GroupAnswer, row: GroupRow, words: MeasureWords, longest: int) -
         (tr("Excluded"), str(out)),
     )
     reported = tr(
-        "{group}: excluded {not_reported} not reported, {care} caution, {missing} not measured; sessions "
+        "{group}: excluded {withheld} not reported, {care} caution, {missing} not measured; sessions "
         "without a value: {sessions}."
     )
     hint = reported.format(
         group=name,
-        not_reported=row.not_reported,
+        withheld=row.withheld,
         care=row.with_care,
         missing=row.not_measured,
         sessions=row.sessions_without,

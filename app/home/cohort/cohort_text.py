@@ -102,11 +102,11 @@ def notes(found: GroupAnswer) -> list[str]:
 
 def left_out(found: GroupAnswer) -> str:
     """What does not count and why; empty where all does."""
-    not_reported, care, missing = (
-        sum(getattr(row, name) for row in found.rows) for name in ("not_reported", "with_care", "not_measured")
+    withheld, care, missing = (
+        sum(getattr(row, name) for row in found.rows) for name in ("withheld", "with_care", "not_measured")
     )
     parts = [
-        (not_reported, tr("{count} not reported")),
+        (withheld, tr("{count} not reported")),
         (care, tr("{count} rated caution")),
         (missing, tr("{count} not measured")),
     ]

@@ -221,9 +221,7 @@ class SensorsStep(Step):
             again = BarAction(words, self._reconnect, enter, Icon.REPEAT)
             joints = (*LEG_JOINTS, *sensors.hips)
             lost = tr(" and ").join(name_of(one) for one in joints if silent in (one.proximal, one.distal))
-            without = replace(
-                go_on, text=tr("Go on without {joints}").format(joints=lost), key="", is_requested=False
-            )
+            without = replace(go_on, text=tr("Go on without {joints}").format(joints=lost), key="", is_requested=False)
             return BarState(primary=again, others=(without,) if sensors.joints else ())
         if sensors.is_left_to_motion:
             return BarState(primary=go_on, note=tr("Sensor positions are detected in the free motion."))

@@ -89,7 +89,7 @@ def pandas_figures(path: Path, question: GroupQuestion) -> dict[str, dict[str, A
             "low": low,
             "high": high,
             "value_error": own[f"{MEASURE}_error"].median(),
-            "not_reported": int((left == "withheld").sum()),
+            "withheld": int((left == "withheld").sum()),
             "with_care": int((left == "care").sum()),
             "not_measured": int((~left.isin(["withheld", "care"])).sum()),
             "sessions_without": rows["session"].nunique() - n,
@@ -145,7 +145,7 @@ def test_what_is_not_reported_counts_nowhere_even_with_a_number(tmp_path: Path) 
     rows = [row("a", 60.0), row("b", 1e6, "withheld"), row("c", 1e6, ""), row("d", None), row("e", 66.0, "care")]
     path = write_rows(rows, tmp_path / "p.parquet")
     (found,) = asked(path).rows
-    assert (found.sessions, found.mean, found.not_reported, found.with_care, found.not_measured) == (1, 60.0, 1, 1, 2)
+    assert (found.sessions, found.mean, found.withheld, found.with_care, found.not_measured) == (1, 60.0, 1, 1, 2)
     assert found.sessions_without == 4
     (found,) = asked(path, has_care=True).rows
     assert (found.sessions, found.mean, found.with_care) == (2, 63.0, 0)

@@ -60,8 +60,8 @@ def shown(page: QuestionsPage) -> str:
         ),
         ("SIMULATED: 3 sessions are simulated", found(WHOLE, simulated=3), found(WHOLE)),
         ("1 simulated session is excluded", found(WHOLE, simulated_left_out=1), found(WHOLE)),
-        ("4 not reported", found(replace(WHOLE, not_reported=4)), found(replace(WHOLE, with_care=4))),
-        ("5 rated caution", found(replace(WHOLE, with_care=5)), found(replace(WHOLE, not_reported=5))),
+        ("4 not reported", found(replace(WHOLE, withheld=4)), found(replace(WHOLE, with_care=4))),
+        ("5 rated caution", found(replace(WHOLE, with_care=5)), found(replace(WHOLE, withheld=5))),
         ("6 not measured", found(replace(WHOLE, not_measured=6)), found(WHOLE)),
     ],
 )

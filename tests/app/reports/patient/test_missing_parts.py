@@ -85,7 +85,7 @@ def test_without_a_zero_no_height_is_reported(request_of_demonstration: ReportRe
         "It is shifted to the level of each curve to compare shape; the absolute angle is shown beside it"
     ) in pages[0]  # a shape needs no zero
     assert "degrees from its mean" in pages[1]
-    assert "No reference: without a standing reference there are no absolute angles to compare" in pages[1]
+    assert "No reference band: without a standing reference there are no absolute angles to compare" in pages[1]
     assert "At initial contact" not in pages[1]
 
 

@@ -105,7 +105,7 @@ def test_a_sensor_that_does_not_follow_is_named_and_can_be_left_out(
     radio.dots[1].faults.sync_results = [SyncResult.FEW_SAMPLES] * 2
     press(asked)
     qtbot.waitUntil(lambda: not asked.setup.is_synchronising and bool(asked.bar().others), timeout=WAIT_MS)
-    assert "Not synchronised: DOT 0002 (heard too little of the others)." in asked.page.dots.notice.text
+    assert "Not synchronised: DOT 0002 (received too little from the others)." in asked.page.dots.notice.text
     assert words_of(asked, 1)[4] == "received too little from the others"
     assert words_of(asked, 0)[4] == ""
     assert verb(asked.bar()) == ("Try again", True)
