@@ -68,6 +68,11 @@ def test_names_and_docstrings_use_the_words_of_the_field(folder: str) -> None:
     assert found == []
 
 
+def test_a_module_opens_with_a_statement() -> None:
+    opened = {file: ast.get_docstring(ast.parse(file.read_text(encoding="utf-8"))) or "" for file in python_files()}
+    assert [str(file.relative_to(ROOT)) for file, text in opened.items() if "?" in text.split("\n\n")[0]] == []
+
+
 def test_sentences_use_the_words_of_the_clinic() -> None:
     with TEMPLATE.open("rb") as file:
         messages = [message.id for message in read_po(file) if message.id]
