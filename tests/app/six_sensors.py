@@ -1,7 +1,7 @@
 """Sessions of six sensors and the bytes of their results, which a seventh sensor must not change.
 
 `OPENBLAS_NUM_THREADS=1 python -m tests.app.six_sensors`, as the tests have it, writes tests/golden/six_sensors.json
-again, which is to be done on purpose only (last when axes, certainty, stairs and full contact changed). What a
+again, which is to be done on purpose only (last when the sentences of findings changed). What a
 processor writes that calculates otherwise than those in it is put beside theirs, by the code of before as well.
 """
 

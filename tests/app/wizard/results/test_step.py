@@ -188,7 +188,7 @@ def test_the_last_visit_is_read_from_the_library_to_stand_beside_the_walk(
     with qtbot.waitSignal(visit.earlier_read, timeout=60_000):
         results.beside.setCurrentIndex(results.beside.findData(Beside.LAST_VISIT))
         assert results.cycles.charts.knee.beside.text() == "Reading earlier visits."  # nobody waits for it
-    assert results.cycles.charts.knee.beside.text() == "Thin: 2026-09-01."
+    assert results.cycles.charts.knee.beside.text() == "Thin line: 2026-09-01."
     assert results.answer.text.startswith("All judged changes from 2026-09-01 are within measurement error.")
     assert results.cycles.charts.knee.chart.described.beside
 
