@@ -90,5 +90,5 @@ def test_a_test_that_lets_another_thread_hold_it_last_fails(tmp_path: Path) -> N
         text=True,
         check=False,
     )
-    assert "ERROR test_planted.py::test_held_last_by_another_thread" in ended.stdout
+    assert "test_planted.py::test_held_last_by_another_thread" in ended.stdout
     assert "2 passed, 1 error" in ended.stdout

@@ -321,7 +321,9 @@ def main() -> int:
     parser.add_argument("--seed", default="1/1")
     parser.add_argument("--seconds", type=float, default=60.0)
     parser.add_argument("--end", choices=ENDS, default="close")
-    parser.add_argument("--tell", action="store_true", help="write every step to the standard error")
+    parser.add_argument(
+        "--tell", dest="show_message", action="store_true", help="write every step to the standard error"
+    )
     required = parser.parse_args()
     faulthandler.enable()
     source = simulated_source()

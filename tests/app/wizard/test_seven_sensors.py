@@ -200,7 +200,7 @@ def test_live_hips_are_thin_then_sure_and_a_silent_pelvis_costs_them_alone(
     assert page.live.now_s - page.live.knees[Side.LEFT].time_s[-1] < 1.0
     assert page.live.now_s - page.live.hips[Side.LEFT].time_s[-1] > 1.0
     source.wake(pelvis)
-    qtbot.waitUntil(lambda: page.notice.text.startswith("Pelvis is back"), timeout=20_000)
+    qtbot.waitUntil(lambda: page.notice.text.startswith("Pelvis: signal back"), timeout=20_000)
     with qtbot.waitSignal(visit.recordings.ended, timeout=20_000):
         press(step)
     walk = visit.recordings.walks[-1]

@@ -186,13 +186,13 @@ def test_at_the_live_rate_they_are_ready_at_once_and_live_again_for_a_timed_test
     assert texts(step.bar()) == ("Start walk", ["Patient screen"])
     step.page.next.test.chosen.emit(TimedProtocol.UP_AND_GO.value)
     assert "Choose no test, or record walks live" in step.bar().note
-    assert texts(step.bar()) == ("Start timed up and go", ["Record walks live", "Patient screen"])
+    assert texts(step.bar()) == ("Start timed Up and Go", ["Record walks live", "Patient screen"])
     step.on_intent(RUN)
     assert not visit.recordings.is_recording
     press(step, "Record walks live")
     qtbot.waitUntil(lambda: not visit.sensors.are_in_memory and visit.sensors.sync.is_idle, timeout=WAIT_MS)
     assert all(dot.is_streaming and dot.is_synchronised for dot in radio.dots)
-    assert texts(step.bar()) == ("Start timed up and go", ["Patient screen"])
+    assert texts(step.bar()) == ("Start timed Up and Go", ["Patient screen"])
     assert "Timed tests need" not in step.bar().note
 
 
@@ -204,7 +204,7 @@ def test_a_failure_before_walks_is_named_and_walks_may_be_sent_live_instead(
     radio.dots[1].faults.sync_results = [0x07] * 2
     press(step)
     qtbot.waitUntil(lambda: visit.sensors.sync.failure[0] != "" and visit.sensors.sync.is_idle, timeout=WAIT_MS)
-    assert step.page.memory.shown.what == "Not synchronised: DOT 0002 (its clock runs too differently)."
+    assert step.page.memory.shown.what == "Not synchronised: DOT 0002 (clock rate differs too much)."
     assert texts(step.bar()) == ("Try again", ["Record walks live", "Patient screen"])
     press(step, "Record walks live")
     qtbot.waitUntil(lambda: not visit.sensors.are_loose and visit.sensors.sync.is_idle, timeout=WAIT_MS)

@@ -292,9 +292,9 @@ def test_a_silent_sensor_is_stated_and_so_is_its_return(
         step.on_intent(RUN)
     source.silence("DEMO-right_foot")
     qtbot.waitUntil(lambda: "R foot: no signal for" in step.page.notice.text, timeout=PATIENCE_MS)
-    assert "right ankle, right phases" in step.page.notice.text
+    assert "right ankle, right gait phases" in step.page.notice.text
     source.wake("DEMO-right_foot")
-    qtbot.waitUntil(lambda: "R foot is back after" in step.page.notice.text, timeout=PATIENCE_MS)
+    qtbot.waitUntil(lambda: "R foot: signal back after" in step.page.notice.text, timeout=PATIENCE_MS)
     with qtbot.waitSignal(visit.recordings.ended, timeout=PATIENCE_MS):
         step.on_intent(RUN)
     qtbot.waitUntil(lambda: not visit.evaluation.is_busy, timeout=PATIENCE_MS)
@@ -352,7 +352,7 @@ def test_while_no_sensor_is_received_no_walk_is_started(
     primary = step.bar().primary
     assert primary is not None
     assert not primary.is_enabled
-    assert step.bar().note.startswith("Switch them on, or move the receiver closer")
+    assert step.bar().note.startswith("No signal from any sensor. Switch them on, or move the receiver closer")
     one_received = {**silent, next(iter(silent)): replace(next(iter(silent.values())), silent_s=0.0)}
     monkeypatch.setattr(acquisition, "status", lambda: one_received)
     with qtbot.waitSignal(step.changed, timeout=5000):
