@@ -79,7 +79,7 @@ def by_page(path: Path, grouping: Grouping) -> dict[str, tuple[float, ...]]:
     """The page's question: sessions, mean, sd of each group."""
     with ParameterTable.opened(path) as table:
         found = answer(table, GroupQuestion(MEASURE, grouping))
-    return {row.group: (row.sessions, row.mean, row.sd, row.not_reported) for row in found.rows}
+    return {row.group: (row.sessions, row.mean, row.sd, row.withheld) for row in found.rows}
 
 
 def by_pandas(path: Path, grouping: Grouping) -> dict[str, tuple[float, ...]]:
