@@ -206,9 +206,9 @@ def legs_sentence(column: str, found: Difference, legs: tuple[str, str], values:
             )
         case _:
             pattern = (
-                tr("{measure} is {size} lower on the {first} than on the {second}: {value} and {other}.")
+                tr("{measure} is {size} lower on the {first} than on the {second}: {value} against {other}.")
                 if is_less
-                else tr("{measure} is {size} higher on the {first} than on the {second}: {value} and {other}.")
+                else tr("{measure} is {size} higher on the {first} than on the {second}: {value} against {other}.")
             )
     joint = joint_of_column(column, Side.LEFT)
     return pattern.format(

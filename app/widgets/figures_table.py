@@ -74,7 +74,8 @@ def _cell(
 def _in_words(words: str, row: Figure, heading: str, who: str) -> str:
     """Say a cell with its row, its side and its unit, for who receives one cell at a time."""
     name = " ".join(filter(None, [heading, within_sentence(row.name)]))
-    stated = f"{words} {row.unit}" if words else tr("no value")
+    has_figure = any(letter.isdigit() for letter in words)  # not reported has no unit
+    stated = f"{words} {row.unit}" if has_figure else words or tr("no value")
     if words.endswith(CARE_MARK):
         stated = f"{words.removesuffix(CARE_MARK).rstrip()} {row.unit}, {verdict_word(Verdict.CARE)}"
     return f"{capitalised(name)}, {who}: {stated}"

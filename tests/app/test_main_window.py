@@ -695,7 +695,7 @@ def test_a_library_that_was_here_and_is_missing_is_not_made_again(
     assert entry is not None
     page = entry.first_start
     assert window.screens.currentWidget() is page
-    reported = "Connect its disk, or restore its folder. It then opens automatically."
+    reported = "Connect its disk, or put its folder back. It then opens automatically."
     assert page.missing_lead.text() == f"It was in {folder} and is no longer there. {reported}"
     page.show_missing(str(folder), 2)
     assert "2 recordings stay on this computer until their library is back." in page.missing_lead.text()
@@ -703,7 +703,7 @@ def test_a_library_that_was_here_and_is_missing_is_not_made_again(
     assert not page.make.isVisible()
     assert page.look_again.hasFocus()
     page.look_again.click()
-    assert page.banner.text == "The library is still missing. Connect its disk, or restore its folder."
+    assert page.banner.text == "The library is still missing. Connect its disk, or put its folder back."
     assert not folder.exists()
     page.make_another.click()
     assert page.make.isVisible()

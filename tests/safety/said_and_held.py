@@ -24,7 +24,7 @@ if TYPE_CHECKING:
 
 READ_BACK = "('closed', 'recovered')"
 KEPT = re.compile(r"(\d+) included")
-STOOD = re.compile("([\\d.]+) s, standing reference")
+STOOD = re.compile("([\\d.]+) s, reference set")
 WORN = re.compile(r"(\d) of 6 assigned")
 SAVED_AS = re.compile(r"Saved as (.+)\. Saving again asks for the folder\.")
 RECOVERED_ONE = re.compile(r"\d+:\d\d of (.+) was recovered\.")

@@ -180,7 +180,7 @@ class Entry(QObject):
     def _on_look_requested(self) -> None:
         self.look_again()
         if self.first_start.is_missing:
-            self.show_message(tr("The library is still missing."), tr("Connect its disk, or restore its folder."))
+            self.show_message(tr("The library is still missing."), tr("Connect its disk, or put its folder back."))
 
     def _on_join_requested(self) -> None:
         self.join.ask()

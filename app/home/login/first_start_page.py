@@ -121,7 +121,7 @@ class FirstStartPage(EntryPage):
                 waiting,
             )
             reported.append(kept.format(count=waiting))
-        reported.append(tr("Connect its disk, or restore its folder. It then opens automatically."))
+        reported.append(tr("Connect its disk, or put its folder back. It then opens automatically."))
         self.missing_lead.setText(" ".join(reported))
         self._show()
 

@@ -39,7 +39,7 @@ class DeletionDialog(QDialog):
         self.others = Notice(look, 16)
         self.others.setVisible(bool(words := _others(goes, now)))
         if words:
-            self.others.show_message(Icon.WARNING, words, tr("Ask them before you delete."), is_caution=True)
+            self.others.show_message(Icon.WARNING, words, tr("Ask the other users before you delete."), is_caution=True)
         self.delete = Button(look, tr("Delete patient"), ButtonKind.SECONDARY, Icon.DELETE)
         self.cancel = Button(look, tr("Cancel"), ButtonKind.PRIMARY, key=tr("Esc"))
         self._build(parent)

@@ -74,9 +74,7 @@ class StandStillStep(Step):
         if not self._has_stood:
             return ""
         stated = (
-            tr("{seconds:.1f} s, standing reference set")
-            if self._visit.recordings.standing is not None
-            else tr("being loaded")
+            tr("{seconds:.1f} s, reference set") if self._visit.recordings.standing is not None else tr("being loaded")
         )
         return stated.format(seconds=self._stood_s)
 

@@ -214,6 +214,7 @@ def test_under_ten_strides_no_spread_is_shown_and_under_three_no_mean(page: Resu
         assert ("±" in cell.small) is has_spread, count
         assert cell.small.endswith(words), count
         assert bool(cell.text) is (count > 2), count
+        assert ("°" in cell.spoken) is (count > 2), count  # a word has no unit
     assert "L and R: fewer than 3 strides, no mean." in page.cycles.peaks.note.text()
 
 

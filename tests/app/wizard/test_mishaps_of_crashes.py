@@ -90,7 +90,7 @@ def test_what_a_crash_cut_short_is_not_done(qtbot: QtBot, left: Visit) -> None:
     rest(2.1)
     assert (shown.state, shown.note) == (StepState.TODO, "")
     rest(3.0)
-    assert (shown.state, shown.note) == (StepState.DONE, "3.0 s, standing reference set")
+    assert (shown.state, shown.note) == (StepState.DONE, "3.0 s, reference set")
     assert moves.state is StepState.DONE
     recovered = replace(moved, stored=replace(moved.stored, state=RecordingState.RECOVERED))
     left.recordings.every = tuple(

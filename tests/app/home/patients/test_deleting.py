@@ -78,7 +78,7 @@ def test_a_patient_who_is_being_recorded_is_deleted_with_a_warning(qtbot: QtBot,
     dialog = deletion_dialog(qtbot, home)
     assert dialog.goes.text() == "This also deletes 3 sessions and 1 recording."
     assert dialog.others.text == (
-        "A recording of this patient is running or was not stopped. Ask them before you delete."
+        "A recording of this patient is running or was not stopped. Ask the other users before you delete."
     )
     dialog.reject()
 

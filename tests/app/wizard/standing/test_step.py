@@ -70,7 +70,7 @@ def test_three_seconds_are_recorded_and_the_wizard_goes_on_by_itself(
         assert block.time_s[-1] - block.time_s[0] >= 3.0
     assert set(visit.rests) == set(worn)
     assert step.state is StepState.DONE
-    assert step.note.endswith("s, standing reference set")
+    assert step.note.endswith("s, reference set")
 
 
 def test_no_zero_is_called_set_while_the_library_has_not_taken_the_standing(
