@@ -175,7 +175,7 @@ class MainWindow(QWidget):
         self._fit()
 
     def eventFilter(self, watched: QObject, event: QEvent) -> bool:
-        """Hear what the user does, from the window of the desktop: of the application's every event, a hundred times
+        """Receive what the user does, from the window of the desktop: of the application's every event, a hundred times
         as many would be received."""
         if event.type() in ACTIVITY:
             self.idle.note_activity()
@@ -370,7 +370,7 @@ class MainWindow(QWidget):
             self.entry.show_message(what, remedy)
 
     def _on_library_gone(self, what: str, then: str) -> None:
-        """Say it at home and on the cover; a visit states it itself."""
+        """Show it at home and on the cover; a visit shows it itself."""
         if self._home is not None:
             self._home.banner.show_message(what, then)
         if self.entry is not None and self.is_covered:
@@ -379,7 +379,7 @@ class MainWindow(QWidget):
     def _on_library_back(self, what: str, then: str) -> None:
         self._on_library_gone(what, then)
         self._has_come_back = True
-        self._on_changed_elsewhere()  # nobody received what others did meanwhile
+        self._on_changed_elsewhere()  # what others did meanwhile was not received
         if not self.is_covered:
             self._recover_what_came_home()
 
@@ -445,7 +445,7 @@ class MainWindow(QWidget):
     def _apply_settings(self) -> None:
         scheme, system = self._settings.scheme, QGuiApplication.styleHints().colorScheme()
         is_dark = scheme is Scheme.DARK or (scheme is Scheme.SYSTEM and system is Qt.ColorScheme.Dark)
-        if is_dark is not self._is_dark:  # else what the look was reported otherwise holds
+        if is_dark is not self._is_dark:  # else what the look was set to otherwise holds
             self._is_dark = is_dark
             self._look.set_dark(is_dark)
         if self._settings.scale != self._look.theme.scale:

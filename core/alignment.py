@@ -1,6 +1,6 @@
 """What was changed at a prosthesis before a walk: parts with angle, screw turns, shift and height, as a chain.
 
-Each condition ("Alignment B") states what was changed and from which condition ("Alignment A"). The changes of a chain
+Each condition ("Alignment B") names what was changed and from which condition ("Alignment A"). The changes of a chain
 add up, and what undoes them is their sum turned round. Nothing here is measured: a person has stated it, and no angle
 is computed from it.
 
@@ -42,13 +42,13 @@ class ProsthesisPart(StrEnum):
 
 @dataclass(frozen=True, slots=True)
 class FigureLimits:
-    """In which steps a figure is reported, and how much is plausible in one change, either way."""
+    """In which steps a figure is entered, and how much is plausible in one change, either way."""
 
     step: float
     most: float
 
 
-# Steps as prosthetists report them; the limits are beyond what adapters and pylons give, and catch slips of the hand.
+# Steps as prosthetists state them; the limits are beyond what adapters and pylons give, and catch slips of the hand.
 FIGURES: Mapping[str, FigureLimits] = {
     "angle_deg": FigureLimits(0.5, 30.0),
     "turns": FigureLimits(0.125, 12.0),
@@ -61,7 +61,7 @@ MOST_PARTS = 20  # of one change
 
 @dataclass(frozen=True, slots=True)
 class PartChange:
-    """What was changed at one part; `text` is typed freely. Signs as the module states.
+    """What was changed at one part; `text` is typed freely. Signs as in the module's docstring.
 
     Raises
     ------

@@ -394,7 +394,7 @@ def _lags_in(recording: Recording, lags: dict[tuple[str, Joint], float]) -> dict
 def _clock_offset_s(
     tracks: SensorTracks, recording: Recording, side: Side, lags: dict[tuple[str, Joint], float]
 ) -> float:
-    """What brings the clock of the sensor that reports the events to the thigh's."""
+    """What brings the clock of the sensor that gives the events to the thigh's."""
     site = site_of_events(tracks, recording, side)
     return _offset_of_s(recording, site or Site(f"{side}_{Segment.SHANK}"), lags)
 

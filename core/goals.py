@@ -140,7 +140,7 @@ class AgreedGoals:
 
     @property
     def reported(self) -> tuple[Goal, ...]:
-        """Goals of which may be stated whether they are reached: agreed before the day, and held at its end."""
+        """Goals of which it may be stated whether they are reached: agreed before the day, and held at its end."""
         return tuple(goal for goal in self.held if self.day is not None and goal.agreed < self.day)
 
     def is_chosen(self, column: str, sides: Iterable[Side]) -> bool:

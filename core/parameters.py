@@ -142,7 +142,7 @@ class Parameter:
     error
         Whose error of a difference it has; None: no difference of it is judged.
     definition
-        For the reader of a file; empty where `core.verdicts.fitting`, a window or an excursion states it.
+        For the reader of a file; empty where `core.verdicts.fitting`, a window or an excursion gives it.
     sign
         Which direction is positive, where it is not the joint's flexion.
     most
@@ -288,7 +288,7 @@ REGISTRY = (
 BY_COLUMN = {parameter.column: parameter for parameter in REGISTRY}
 
 KNEE, PUSH_OFF, STANCE, SPEED = "knee_stance_to_swing_deg", "ankle_push_off_deg", "stance_percent", "speed_m_s"
-"""What represents knee and ankle are excursions, which need no zero."""
+"""Knee and ankle are represented by excursions, which need no zero."""
 KNEE_RANGE, ANKLE_RANGE = "knee_range_deg", "ankle_range_deg"
 CADENCE = "cadence_steps_min"  # of both legs; of one, two steps in each of its strides
 STRIDE_LENGTH = "stride_length_m"  # in walking straight on both feet travel equally far: never compared between legs
@@ -299,7 +299,7 @@ MOVEMENTS: Mapping[JointKind, tuple[str, ...]] = {  # of a joint, without a zero
     JointKind.HIP: ("hip_range_deg", "hip_abduction_range_deg"),
     JointKind.ANKLE: (PUSH_OFF, "ankle_rocker_deg", "ankle_heel_rocker_deg", "ankle_toes_lifted_deg", ANKLE_RANGE),
 }
-BETWEEN_LEGS = (  # of hips no error of a difference is known: it is in tables and never in a sentence
+BETWEEN_LEGS = (  # of hips no error of a difference is known: it is shown in tables and never in a sentence
     *MOVEMENTS[JointKind.KNEE], *MOVEMENTS[JointKind.ANKLE], STANCE, STEP_TIME, "hip_range_deg"
 )  # fmt: skip
 COMPARED = (  # between walks, visits and legs, as tables have them; those with `most` as goals have them

@@ -52,8 +52,8 @@ class JointCalibration:
     before the sign, `offset_rad` (the goniometer's value) added after it.
     `is_same_joint` is False where both sensors do not move as adjacent segments; its evidence is `disagreement`, what
     the best common joint leaves of their accelerations (0 nothing, 1 all), and `is_lag_at_border`, that they would
-    coincide best at a lag that no clock has. `is_clock_shared`: both sensors are given to share one clock, so there is
-    no lag to find. `is_prosthetic`: its side is declared to wear a prosthesis.
+    coincide best at a lag that no clock has. `is_clock_shared`: both sensors are declared to share one clock, so there
+    is no lag to find. `is_prosthetic`: its side is declared to wear a prosthesis.
     """
 
     joint: Joint
@@ -195,7 +195,7 @@ class RecordingAnalysis:
 
 @dataclass(frozen=True, slots=True)
 class Analysis:
-    """Everything one session reports. `calibrations` one per span of validity, in order of time.
+    """Everything one session gives. `calibrations` one per span of validity, in order of time.
 
     `stiff_sides` are those that a patient's device or condition may stiffen: the affected and the prosthetic ones.
     """

@@ -104,7 +104,7 @@ class ImuBlock:
 
 @dataclass(frozen=True, slots=True)
 class SensorInfo:
-    """What is known of the sensor worn at one site. `rate_kind` None: not reported, to be found from the data.
+    """What is known of the sensor worn at one site. `rate_kind` None: not given, to be found from the data.
 
     Sensors whose `clock` is the same share one; empty: not known.
     """
@@ -139,10 +139,10 @@ class Patient:
 class Recording:
     """All sensors from one start to one stop.
 
-    `imu` states which site each block of samples was worn at; the sites share one clock up to a small lag.
+    `imu` names the site that each block of samples was worn at; the sites share one clock up to a small lag.
     `left_out_s` holds, for each side, one time inside of each stride that a person has left out, ascending, seconds on
     the recording's clock: a time goes on naming the same stride when its events are found a little earlier or later.
-    `alignment` is what was changed at the prosthesis before the walk; None where nobody has stated anything.
+    `alignment` is what was changed at the prosthesis before the walk; None where nobody has entered anything.
     `test` is the timed test that the walk is, with the instants of its keys; None of other walks.
     """
 

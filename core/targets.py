@@ -72,7 +72,7 @@ class Target:
 
 @dataclass(frozen=True, slots=True)
 class TargetTally:
-    """How many of the `strides` that a value was given of reached the target."""
+    """How many of the `strides` with a value reached the target."""
 
     target: Target
     reached: int
@@ -90,7 +90,7 @@ def shown_value(value: float) -> int:
 
 
 def with_tallies(note: str, tallies: Iterable[TargetTally]) -> str:
-    """A recording's note with a line for each tally below what it states already."""
+    """A recording's note with a line for each tally below what it contains already."""
     lines = [_line(tally) for tally in tallies if tally.strides]
     return "\n".join(filter(None, [note, *lines]))
 

@@ -41,10 +41,10 @@ class Driver:
     bauds
         Of its serial ports, the likeliest first.
     hint
-        What a port's description states where one of these is plugged in, so that it is spoken to although it is
+        What a port's description gives where one of these is plugged in, so that it is spoken to although it is
         silent.
     knock
-        Harmless to anything else; what is silent until it is given to send answers with `knocked`.
+        Harmless to anything else; what is silent until it is asked to send answers with `knocked`.
     """
 
     key: str

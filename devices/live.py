@@ -34,9 +34,9 @@ class SourceRestartedError(SourceLostError):
 
 @dataclass(frozen=True, slots=True)
 class SensorDetails:
-    """What a sensor states of itself. `rate_hz`, `rate_kind` and `battery` (0 to 1) None: it does not report.
+    """What a sensor reports about itself. `rate_hz`, `rate_kind` and `battery` (0 to 1) None: not given.
 
-    `clock` is the same of those that share one; empty: its own. Not `is_loss_seen`: it reports neither time nor number,
+    `clock` is the same of those that share one; empty: its own. Not `is_loss_seen`: it sends neither time nor number,
     so that nobody sees where single samples are missing.
     """
 
@@ -94,7 +94,7 @@ class LiveSource(Protocol):
         """Stop listening; never raises, and may be called of a source that is closed."""
 
     def details(self) -> Mapping[str, SensorDetails]:
-        """What each sensor states of itself, by name."""
+        """What each sensor reports about itself, by name."""
 
     def identify(self, sensor: str) -> bool:
         """Light the sensor's LED; False where it has none."""

@@ -1,4 +1,4 @@
-"""The public names of `devices`, each from the module that defines it; `devices/__init__.py` states what they are."""
+"""The public names of `devices`, each from the module that defines it; `devices/__init__.py` explains them."""
 
 from devices.clocks.host_clock import host_time_ns as host_time_ns
 from devices.drivers.csv_serial import Columns as Columns

@@ -32,7 +32,7 @@ from devices.transport.ports import PortInfo, SerialPort, list_ports
 
 LISTEN_S = 0.4  # ten samples of the slowest rate that is of use, and a sensor's whole burst
 LEAST = 3  # messages
-ANSWER_S, MOST_ANSWER = 0.5, 4096  # what states more is something else
+ANSWER_S, MOST_ANSWER = 0.5, 4096  # what sends more is something else
 ANNOUNCED_AT = 10000  # the port where x-IMU3s report once a second that they are there
 ANNOUNCED_S = 1.3
 MOST_DATAGRAM = 2048
@@ -42,7 +42,7 @@ NO_COLUMNS: Mapping[str, Columns] = MappingProxyType({})
 
 @dataclass(frozen=True, slots=True)
 class FoundSensor:
-    """A sensor that was received, or `count` of them in one stream.
+    """A sensor that was found, or `count` of them in one stream.
 
     `make` gives a source of it; nothing is open until that is opened. `rssi_dbm`: how strongly it was received by air.
     """
@@ -58,7 +58,7 @@ class FoundSensor:
 
 @dataclass(frozen=True, slots=True)
 class Passed:
-    """A port that no sensor was received at, and what to do about it."""
+    """A port at which no sensor was found, and what to do about it."""
 
     port: PortInfo
     refusal: SourceRefusedError
@@ -66,9 +66,9 @@ class Passed:
 
 @dataclass(frozen=True, slots=True)
 class SearchResult:
-    """What one search received: sensors, ports that were passed over and why, ports that send lines of numbers.
+    """What one search found: sensors, ports that were passed over and why, ports that send lines of numbers.
 
-    `deaf` states why nothing was received by Bluetooth LE, where it was to be.
+    `deaf`: why nothing was received by Bluetooth LE, where it should have been.
     """
 
     sensors: tuple[FoundSensor, ...] = ()
@@ -128,7 +128,7 @@ def search(
 
 
 def _by_radio(radio: Radio) -> Sequence[FoundSensor | SourceRefusedError]:
-    """The sensors that announce themselves by Bluetooth LE, DOTs all of one group; or why nobody could be received."""
+    """The sensors that announce themselves by Bluetooth LE, DOTs all of one group; or why none could be received."""
     try:
         announced = sorted(radio.run(radio.announced()), key=lambda one: one.address)
     except SourceRefusedError as refusal:
@@ -283,7 +283,7 @@ def search_streams(address: str) -> SearchResult:
 
 
 def _has_network() -> bool:
-    """Whether anybody but this machine could be received; where nobody could, no port is opened for them."""
+    """Whether data of any other machine could arrive; where none could, no port is opened for it."""
     try:
         devices = Path("/proc/net/dev").read_text(encoding="ascii").splitlines()[2:]
     except OSError:  # not Linux
@@ -292,7 +292,7 @@ def _has_network() -> bool:
 
 
 def announcement(datagram: bytes, address: str) -> FoundSensor | None:
-    """What an x-IMU3 states of itself on the network; None where it is something else."""
+    """What an x-IMU3 reports about itself on the network; None where it is something else."""
     try:
         details = json.loads(datagram)
     except (ValueError, RecursionError):
@@ -300,7 +300,7 @@ def announcement(datagram: bytes, address: str) -> FoundSensor | None:
     if not isinstance(details, dict) or not isinstance(serial := details.get("sn"), str) or not serial:
         return None
     tcp, send, receive = (_port(details.get(key)) for key in ("port", "send", "receive"))
-    # what the sensor reported is its address is not believed: a datagram is no reason to speak with somebody else
+    # the address that the sensor gives is not believed: a datagram is no reason to speak with somebody else
     channel: Callable[[], Channel]
     if tcp:
         channel, place = lambda: TcpChannel(address, tcp), f"TCP {address}:{tcp}"

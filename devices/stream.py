@@ -93,7 +93,7 @@ class SensorProtocol(Framing, Protocol):
         Raises
         ------
         SourceRefusedError
-            It is something else, or gives nothing.
+            It is something else, or does not answer.
         """
 
     def identifying(self) -> bytes:
@@ -109,7 +109,7 @@ def decoded(
     clock: tuple[str, float] | None = None,
     again: Collection[int] = (),
 ) -> DecodedSensor:
-    """Put what was known of one sensor in order, its rows having arrived at `host_s` (n,); see `put_in_order`.
+    """Put what was received of one sensor in order, its rows having arrived at `host_s` (n,); see `put_in_order`.
 
     Parameters
     ----------
@@ -257,7 +257,7 @@ class ByteSource:
         except BaseException:
             self._channel.close()
             raise
-        if self._info.sensors:  # it keeps its name, whatever it states of itself after it was lost
+        if self._info.sensors:  # it keeps its name, whatever it reports about itself after it was lost
             info = replace(info, sensors=self._info.sensors)
         self._info, self._details = info, details
         self._framer, self._is_open = self._protocol.framer(info), True
@@ -352,7 +352,7 @@ def _clock(info: SourceInfo) -> _Clock:
 
 
 def _orientation(rows: Sequence[Row], ordered: Ordered) -> FloatArray | None:
-    """The orientation (n, 4) that was given of the same instant as each sample; NaN where none was."""
+    """The orientation (n, 4) that was sent for the same instant as each sample; NaN where none was."""
     if not rows:
         return None
     details = np.array(rows, dtype=float)

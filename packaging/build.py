@@ -89,7 +89,7 @@ def fingerprint() -> str:
 
 
 def freeze(python: Path, *, is_with_tour: bool) -> Path:
-    """Let PyInstaller make the folder, always again, and give it."""
+    """Let PyInstaller make the folder, always from nothing, and return it."""
     folder = WORK / "folder"
     shutil.rmtree(folder, ignore_errors=True)
     say("Freezing. This takes some minutes.")
@@ -122,7 +122,7 @@ def megabytes(place: Path) -> int:
 
 
 def run(command: Sequence[str | Path], environment: Mapping[str, str] | None = None) -> None:
-    """Run a step to its end; what it states is shown.
+    """Run a step to its end; its output is shown.
 
     Raises
     ------

@@ -80,7 +80,7 @@ def owners() -> dict[str, str]:
 
 
 def sorted_out(files: Iterable[Path], owned: dict[str, str], stdlib: Path) -> tuple[set[str], set[Path]]:
-    """Report distributions and libraries of the system apart.
+    """Distinguish distributions from libraries of the system.
 
     Returns
     -------
@@ -109,7 +109,7 @@ def sorted_out(files: Iterable[Path], owned: dict[str, str], stdlib: Path) -> tu
 
 
 def part_of(name: str) -> Part:
-    """Read what a distribution states of itself.
+    """Read a distribution's metadata and the texts of its licence.
 
     Raises
     ------

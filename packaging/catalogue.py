@@ -20,7 +20,7 @@ from babel.messages.pofile import read_po, write_po
 ROOT = Path(__file__).resolve().parents[1]
 TEMPLATE = ROOT / "resources" / "locale" / "gaitwright.pot"
 TAKERS = {"tr": 1, "tr_n": 2, "later": 1}  # of app.wording.translation, with the number of sentences each takes
-# which are put into the user's language where they are shown: what, remedy; of some the first states where
+# which are put into the user's language where they are shown: what, remedy; of some the first is the place
 REFUSALS = {
     "SourceRefusedError": 0,
     "DotRefusedError": 0,
@@ -53,7 +53,7 @@ msgstr ""
 
 
 def sentences(file: Path) -> Iterator[str | tuple[str, ...]]:
-    """Find what is inside the functions of `app.wording`, in the order of reading; one and many as a pair."""
+    """Find what is passed to the functions of `app.wording`, in the order of reading; one and many as a pair."""
     calls = [node for node in ast.walk(ast.parse(file.read_text(encoding="utf-8"))) if isinstance(node, ast.Call)]
     for call in sorted(calls, key=lambda call: (call.lineno, call.col_offset)):
         function = call.func.id if isinstance(call.func, ast.Name) else ""
@@ -67,7 +67,7 @@ def sentences(file: Path) -> Iterator[str | tuple[str, ...]]:
 
 
 def refused(file: Path) -> Iterator[tuple[ast.Call, list[str]]]:
-    """Find what a module of `devices` refuses, and how it reports it: in place, or by a constant's name."""
+    """Find what a module of `devices` refuses, and the sentences for that: in place, or by a constant's name."""
     module = import_module(".".join(file.relative_to(ROOT).with_suffix("").parts))
     for call in ast.walk(ast.parse(file.read_text(encoding="utf-8"))):
         if isinstance(call, ast.Call) and isinstance(call.func, ast.Name) and call.func.id in REFUSALS:
@@ -79,7 +79,7 @@ def refused(file: Path) -> Iterator[tuple[ast.Call, list[str]]]:
 
 @cache
 def gathered() -> Catalog:
-    """Give every sentence of `app`, those that findings are given by, and the refusals and drivers of `devices`."""
+    """Return every sentence of `app`, those of findings, and the refusals and drivers of `devices`."""
     catalogue = Catalog(charset="utf-8")
     for file in sorted((ROOT / "app").rglob("*.py")):
         for message in sentences(file):

@@ -58,7 +58,7 @@ def make_archive(folder: Path, version: str, out: Path) -> Path:
 
 
 def readme() -> str:
-    """Report what to do with the archive, and which libraries Debian of the day of the build calls how."""
+    """Describe what to do with the archive, and name the libraries as Debian does on the day of the build."""
     names = " ".join(name.partition(" | ")[0] for name in depends())
     return (INSTALLERS / "archive.txt").read_text(encoding="utf-8").replace("{libraries}", names)
 

@@ -1,6 +1,6 @@
 """Make the sounds of the application again: `python packaging/make_sounds.py`.
 
-They are our own, so that nobody's licence comes with them, and made here, so that one that is not received in a
+They are our own, so that nobody's licence comes with them, and made here, so that one that is inaudible in a
 practice can be mended. Each is a row of tones that rise and fall softly: a tone that begins at once begins with a
 click.
 """
@@ -17,7 +17,7 @@ ROOT = Path(__file__).resolve().parents[1]
 FOLDER = ROOT / "resources" / "sounds"
 
 RATE_HZ = 48_000  # what sound cards run at: nothing has to be resampled
-PEAK = 10 ** (-18 / 20)  # -18 dB of full scale: received over steps on a wooden floor, no fright beside the machine
+PEAK = 10 ** (-18 / 20)  # -18 dB of full scale: audible over steps on a wooden floor, no fright beside the machine
 FULL_SCALE = 2**15 - 1
 
 
@@ -33,7 +33,7 @@ class Tone:
 
 
 PAUSE = Tone(0.0, 0.08)
-# The speakers of a laptop hardly give 220 Hz; the ear receives it from its multiples.
+# The speakers of a laptop hardly give 220 Hz; the ear infers it from its multiples.
 LOW = Tone(220.0, 0.18, overtones=(0.6, 0.4))
 
 SOUNDS: Mapping[str, tuple[Tone, ...]] = {

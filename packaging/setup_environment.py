@@ -78,7 +78,7 @@ def python() -> Path:
 
 
 def fingerprint() -> str:
-    """Report what the environment is made from. Folder and packages count, because what is inside points at them."""
+    """Hash what the environment is made from. Folder and packages count, because what is inside points at them."""
     packages = sorted(file.parent.name for file in ROOT.glob("*/__init__.py"))
     made_from = hashlib.sha256(f"{PYTHON_VERSION}\n{ROOT}\n{packages}\n".encode())
     for name in ("pyproject.toml", "packaging/requirements.lock"):
@@ -91,7 +91,7 @@ def is_current() -> bool:
 
 
 def make_environment() -> None:
-    """Bring `.venv` to what the lock states: a sound one is updated, a half-made or foreign one is made again."""
+    """Bring `.venv` to what the lock contains: a sound one is updated, a half-made or foreign one is made again."""
     if _stamp() == UNFINISHED or not _is_sound():
         say(f"Making a place for Gaitwright's parts in {VENV}.")
         shutil.rmtree(VENV, ignore_errors=True)
@@ -124,7 +124,7 @@ def missing_libraries() -> list[str]:
 
 
 def install(packages: Sequence[str]) -> bool:
-    """Install system packages where this user may; show whether they are there now."""
+    """Install system packages where this user may; return whether they are there now."""
     if shutil.which("apt-get") is None or os.geteuid() != 0:
         return False
     names = " ".join(packages)

@@ -1,6 +1,6 @@
 """Make the list of parts that others made: `python packaging/soup.py`.
 
-`packaging/safety/soup.toml` states of each why it is there, what fails if it is wrong, and which anomalies are known;
+`packaging/safety/soup.toml` gives for each why it is there, what fails if it is wrong, and which anomalies are known;
 `packaging/requirements.lock` has its version. Together they are `packaging/safety/soup.md`. A locked part that is
 in neither list of the TOML, or one that is not locked, is reported and nothing is written.
 """

@@ -27,7 +27,7 @@ def main(arguments: list[str]) -> None:
         say("There is no screen here, so the demonstration is computed instead of opening the window.")
         say(f"Its result goes to {Path('gaitwright-demo').resolve()}.")
         arguments = ["demo"]
-    # -P: a folder named `app` where the user is is not ours
+    # -P: a folder named `app` in the user's current folder is not ours
     hand_over([str(python), "-P", "-m", "app", *arguments])
 
 

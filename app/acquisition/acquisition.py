@@ -124,11 +124,11 @@ class Acquisition:
 
     @property
     def standstills(self) -> tuple[ProcessStall, ...]:
-        """When this process stood still since `start`, and received nobody."""
+        """When this process stood still since `start`, and received nothing."""
         return self._heartbeat.standstills
 
     def awake_s(self) -> float:
-        """A clock that is still with this process, give or take half a second."""
+        """A clock that stops with this process, give or take half a second."""
         return self._heartbeat.awake_s()
 
     def latest(self, sensor: str, seconds: float) -> ImuBlock:
@@ -153,7 +153,7 @@ class Acquisition:
         """
         from app.acquisition.sensor_memory import MemoryRecording  # with bleak's part of the sensors
 
-        assert self.dots is not None  # `is_in_memory` has reported
+        assert self.dots is not None  # checked by `is_in_memory`
         recording = MemoryRecording(self.dots)
         recording.begin(started_s)
         self._in_memory = recording
@@ -205,7 +205,7 @@ class Acquisition:
         return max((length_s for length_s in reported if length_s is not None), default=None)
 
     def set_up(self, changes: Sequence[NetChange]) -> None:
-        """Report the simulated user of a prosthesis what was changed at it; at a real one somebody has turned it."""
+        """Report to the simulated user of a prosthesis what was changed at it; at a real one somebody has turned it."""
         for reader in self._readers:
             if isinstance(reader.source, ProsthesisUser):
                 reader.source.set_up(changes)

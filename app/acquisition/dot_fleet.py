@@ -72,7 +72,7 @@ class DotFleet:
         return any(one.sensor.info is not None and one.sensor.info.model == EMULATED for one in self.dots)
 
     def ask(self, number: int, tick: Tick | None = None) -> DotAsked:
-        """Let one of them report of itself and of what it does. Its link is left: adapters have few."""
+        """Ask one of them what it is and what it does. Its link is left: adapters have few."""
         with self._talking:
             try:
                 return self.radio.run(_left(self.dots[number].sensor, _asked), tick)
@@ -80,7 +80,7 @@ class DotFleet:
                 return DotAsked.SILENT
 
     def identify(self, number: int) -> bool:
-        """Let its light blink; whether it was reported."""
+        """Let its light blink; whether it was asked to."""
         with self._talking:
             try:
                 return self.radio.run(_left(self.dots[number].sensor, _identified))
@@ -141,6 +141,6 @@ async def _asked(sensor: DotSensor) -> DotAsked:
 async def _identified(sensor: DotSensor) -> bool:
     await reached(sensor, ANSWERS_S)
     if await sensor.state() is DotAnswer.RECORDING:
-        return False  # nothing is given to one that records
+        return False  # nothing is sent to one that records
     await sensor.identify()
     return True

@@ -1,4 +1,4 @@
-"""What lies in the memories of sensors that are worn: reported, fetched once more, and erased.
+"""What lies in the memories of sensors that are worn: listed, fetched once more, and erased.
 
 A file is named by the second in which it was begun, and so is the recording that it belongs to.
 """

@@ -16,7 +16,7 @@ from devices.clocks.host_clock import host_time_ns
 
 BEAT_S = 0.1
 STOOD_S = 0.5  # a beat so late counts as no time at all: shorter than what makes a disk late
-REPORTED_S = 1.0  # so long a standstill is stated: it may cost samples
+REPORTED_S = 1.0  # so long a standstill is reported: it may cost samples
 
 
 @dataclass(frozen=True, slots=True)
@@ -28,7 +28,7 @@ class ProcessStall:
     began_s, ended_s
         On the acquisition's clock.
     lasted_s, asleep_s
-        On the machine's; how much of it the machine slept, as far as its clocks report them apart.
+        On the machine's; how much of it the machine slept, as far as its clocks distinguish the two.
     lost_before
         How many samples each sensor lacked when it began.
     """
@@ -64,7 +64,7 @@ class Heartbeat:
     lost
         How many samples each sensor lacks now.
     clock_s, running_s
-        The machine's clocks: one goes on while it sleeps, the other is still then, where there is one that does.
+        The machine's clocks: one goes on while it sleeps, the other stops then, where there is one that does.
     """
 
     def __init__(

@@ -12,7 +12,7 @@ from devices.live import LiveSource
 from devices.source import SourceInfo
 
 Shape = tuple[bool, bool, bool, tuple[str, ...]]
-BYTES = ""  # the name that a source's bytes are given of by
+BYTES = ""  # the name by which a source's bytes are announced
 
 
 class JournalStream:

@@ -23,8 +23,8 @@ def live_sensors(
     rests
         Of the sensors that have lain still; the others are taken as without bias, which the orientation filter then
         finds by itself as far as it can.
-    untold
-        What the rates stand for where the sensor does not report: what an analysis of the free motion has found.
+    not_reported
+        What the rates stand for where the sensor does not name it: what an analysis of the free motion has found.
     """
     found = {}
     for name in sensors:

@@ -32,8 +32,8 @@ for a while."""
 
 @dataclass(frozen=True, slots=True)
 class OrderedFile:
-    """When a file was first asked to begin, stated that it is recorded, and that it had ended, ns of the host's
-    clock."""
+    """When a file was first asked to begin, when the sensor confirmed that it is recorded, and that it had ended, ns
+    of the host's clock."""
 
     reported_ns: int
     recording_ns: int
@@ -195,7 +195,7 @@ class MemoryFetching:
     def erase(
         self, sensor: str, utc_s: int, *, is_confirmed: bool, may_lack: bool = False, others: Sequence[int] = ()
     ) -> None:
-        """Erase a sensor's memory, all of which must be in the journal: `look_into` has stated so, and the user agrees.
+        """Erase a sensor's memory, all of which must be in the journal: `look_into` has found so, and the user agrees.
 
         Parameters
         ----------
@@ -234,7 +234,7 @@ class FetchedBefore:
 
 
 def fetched_files(mark: str) -> Mapping[str, FetchedBefore]:
-    """What `MemoryFetching.reported` has reported, by the sensor's name; nothing where it is not that."""
+    """What `MemoryFetching.reported` has noted, by the sensor's name; nothing where it is not that."""
     try:
         reported = json.loads(mark.removeprefix(FETCHED))
         return {

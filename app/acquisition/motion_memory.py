@@ -95,7 +95,7 @@ class Looks:
 def tracks_in_steps(
     blocks: Mapping[str, ImuBlock], sensors: Mapping[str, LiveSensor]
 ) -> Generator[None, None, dict[str, list[OrientedTrack]]]:
-    """Oriented stretches of each block, with bias and kind of rate where `sensors` report; a step for each."""
+    """Oriented stretches of each block, with bias and kind of rate where `sensors` has them; a step for each."""
     tracks = {}
     for name, block in blocks.items():
         sensor = sensors.get(name)

@@ -87,7 +87,7 @@ class Recorder:
         memories.
 
         `on_trouble` is called from any thread; `journal.disk.REPORTED` has the words. One that begins in the
-        shelter already does not call it: `is_away` reports. The row waits for `turn`:
+        shelter already does not call it: `is_away` shows it. The row waits for `turn`:
         until then the session's placement may not be there. The recording waits a second for both, and no longer.
 
         Raises

@@ -2,7 +2,7 @@
 
     sensors synchronised at the rate of their memories -> begin -> end -> fetch -> is it in the journal? -> erase
 
-When each sensor was given to begin and to end is noted: nothing else gives where its file lies in time.
+When each sensor was asked to begin and to end is noted: nothing else shows where its file lies in time.
 """
 
 from collections.abc import Mapping, Sequence
@@ -16,7 +16,7 @@ from devices.dot.source import DotGroup
 from devices.live import SourceLostError, SourceRefusedError
 from devices.transport.bluetooth import Tick
 
-EARLY_S = 2.0  # a file that is shorter by less ended when it was given to: beginnings and clocks differ so much
+EARLY_S = 2.0  # a file that is shorter by less ended when it was asked to: beginnings and clocks differ so much
 
 
 class MemoryRecording:
@@ -97,7 +97,7 @@ class MemoryRecording:
         return {} if self.fetching is None else self.fetching.look_into(segments, data_key)
 
     def lacks(self) -> tuple[Lack, ...]:
-        """As `MemoryFetching.lacks`; which sensors ended before they were given to is known, too."""
+        """As `MemoryFetching.lacks`; which sensors ended before they were asked to is known, too."""
         return () if self.fetching is None else self.fetching.lacks(self.ended_early_s())
 
     def reported(self) -> str:
@@ -113,7 +113,7 @@ class MemoryRecording:
         return RequiredFile(sensor, self._utc_s, None, rate_hz, self._clocks[name], orders, max(about, 1))
 
     def ended_early_s(self) -> Mapping[str, float]:
-        """Which sensors ended before they were given to, by their button or a full memory, and how long before, s.
+        """Which sensors ended before they were asked to, by their button or a full memory, and how long before, s.
 
         One whose end was not fetched may hold more than came, and is not among them.
         """

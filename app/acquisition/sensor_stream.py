@@ -1,4 +1,4 @@
-"""What was known of one sensor: its last seconds, and what is missing of them."""
+"""What was received from one sensor: its last seconds, and what is missing of them."""
 
 from collections import deque
 from dataclasses import dataclass

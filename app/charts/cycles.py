@@ -25,7 +25,7 @@ class SideCycle:
         return float(np.mean(self.mean.mean)) if self.mean.n else 0.0
 
     def about_mean(self) -> "SideCycle":
-        """The same without its height, as it is drawn where that gives nothing."""
+        """The same without its height, as it is drawn where that means nothing."""
         lowered = replace(self.mean, mean=self.mean.mean - self.height_deg)
         return replace(self, mean=lowered, strides_deg=self.strides_deg - self.height_deg)
 

@@ -1,4 +1,4 @@
-"""What is out on the curves of a stride: two points that differ, and where a curve lies outside a limit."""
+"""What is notable on the curves of a stride: two points that differ, and where a curve lies outside a limit."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
@@ -11,7 +11,7 @@ from core.body import Joint, JointKind
 from core.samples import FloatArray
 
 MOST_MARKS = 2  # in one chart; more would hide the curves
-LEAST_GAP_PERCENT = 4  # a shorter one is hardly seen, and states little
+LEAST_GAP_PERCENT = 4  # a shorter one is hardly seen, and means little
 BAND_SDS = 2.0
 
 

@@ -173,7 +173,7 @@ def _paint_axes(painter: QPainter, theme: Theme, frame: Frame, chart: StrideChar
 
 
 def _paint_strides(painter: QPainter, theme: Theme, frame: Frame, curve: StrideCurve) -> None:
-    """Fine lines; of many, hairlines in the pale colour, a cloud from which the mean is out."""
+    """Fine lines; of many, hairlines in the pale colour, a cloud from which the mean is set apart."""
     is_few = len(curve.strides_deg) <= SMOOTH_UP_TO
     painter.setRenderHint(QPainter.RenderHint.Antialiasing, is_few)
     colour = theme.curve(curve.side) if is_few else theme.soft(curve.side)

@@ -35,8 +35,8 @@ class StrideCurve:
     """One leg in one walk, condition or visit: its mean `angle_deg` (101,), NaN where it is not known or not shown.
 
     `order` is its place among how many are compared, the earliest first. `sd_deg` (101,) is shown where it is given,
-    `strides_deg` (k, 101) are single strides; of a not reported curve they are evidence, not to be read. `is_few`: of
-    too few strides for a mean. `is_bare`: its single strides alone, without mean and letters.
+    `strides_deg` (k, 101) are single strides; of a curve that is not reported they are evidence, not to be read.
+    `is_few`: of too few strides for a mean. `is_bare`: its single strides alone, without mean and letters.
     """
 
     letter: str
@@ -97,8 +97,8 @@ def toe_offs_in_order(curves: Sequence[StrideCurve], decimals: int) -> list[Stri
 def curves_of_walk(
     cycles: Mapping[Side, SideCycle], not_reported: frozenset[Side], *, has_strides: bool
 ) -> tuple[StrideCurve, ...]:
-    """Each side of one walk, its mean unless that is not reported; strides where they are required, or not reported
-    and few."""
+    """Each side of one walk, its mean unless that is not reported; strides where they are asked for, or where the
+    mean is not reported and they are few."""
     curves = []
     for side, cycle in cycles.items():
         is_not_reported, n = side in not_reported, cycle.mean.n

@@ -208,7 +208,7 @@ def _adopt(opened: "OpenedLibrary", one: "Interrupted", into: LibrarySession | N
 
     when = f"{one.began_at:%Y-%m-%d %H:%M} UTC" if one.began_at else "an unknown time"
     if into is None and one.belonging is not None:
-        with suppress(LibraryError):  # the session that it states it is of is gone
+        with suppress(LibraryError):  # the session that it names is gone
             recovered = adopt_home(opened, one, report)
             where = f"{PREFIX}{recovered.stored.session_id}"
             return f"{recovered.stored.details.name}: {clock(recovered.recorded_s, 2)} was recovered into {where}."
@@ -231,7 +231,7 @@ def _counted(folder: Path, code: str) -> Iterator[None]:
 
     slots, delay = KeySlots(folder / KEYS), LoginDelay(folder, time.monotonic)
     if not slots.exists or not (code or len(slots.codes) == 1):
-        yield  # which is refused, and gives nothing of a passphrase
+        yield  # which is refused, and reveals nothing of a passphrase
         return
     code = code or slots.codes[0]
     delay.read()

@@ -47,7 +47,7 @@ OF_LIBRARY = "the folder of the library (your own)"
 
 
 def main(argv: Sequence[str] | None = None) -> int:
-    """Do what the command line states and give the exit code.
+    """Do what the command line asks for and give the exit code.
 
     Raises
     ------

@@ -74,8 +74,8 @@ def simulated_patients(now: datetime.datetime) -> tuple[SimulatedPatient, ...]:
 class _Recovery:
     """How the patient with a new knee walks, so many days ago.
 
-    Seeds are such that all but what is meant to be not reported can be read: of walks drawn at random some would be to
-    be read with care.
+    Seeds are such that all but what is meant not to be reported can be read: of walks drawn at random some would have
+    to be read with care.
     """
 
     seed: int

@@ -59,7 +59,7 @@ def add_patients(opened: OpenedLibrary, patients: tuple[SimulatedPatient, ...]) 
 def take_in(opened: OpenedLibrary, visit: SimulatedVisit, session: Session) -> UUID:
     """Write what was recorded into journals of the library, as the next visit of its patient.
 
-    That its report was written is stated and not done: nobody is to look for a file.
+    That its report was written is only noted, not done: nobody is to look for a file.
 
     Raises
     ------

@@ -1,7 +1,7 @@
 """What is edited here and may be edited at another station meanwhile: how it is saved, merged, asked about and settled.
 
 What was typed last holds on the screen at once. The library merges it with what another station changed; where both
-changed the same, theirs is until somebody has chosen.
+changed the same, theirs holds until somebody has chosen.
 """
 
 import datetime
@@ -73,7 +73,7 @@ class EditedRecord(QObject, Generic[T]):
             self.asked.emit(EditQuestion(self._called(edited.stored), edited.contests, settle))
 
     def _settle(self, stored: T, contests: Sequence[MergeConflict], fields: frozenset[str]) -> None:
-        """Choose our own value in `fields`; a further change since the question is asked again."""
+        """Choose our own value in `fields`; a change made after the question leads to another question."""
         required = [contest for contest in contests if contest.field in fields]
         if required:
             self._choose(stored, {one.field: one.theirs for one in required}, {one.field: one.mine for one in required})

@@ -41,7 +41,7 @@ class PatientRecord(EditedRecord[StoredPatient]):
     def __init__(
         self, controller: LibraryController, parent: QObject, refuses: Callable[[str], tuple[str, str]]
     ) -> None:
-        """`refuses` states why a code cannot take the place of the patient's, and what to do; empty where it can."""
+        """`refuses` returns why a code cannot take the place of the patient's, and what to do; empty where it can."""
         super().__init__(controller, parent)
         self._refuses = refuses
         self.has_this_session_only = False
@@ -68,7 +68,7 @@ class PatientRecord(EditedRecord[StoredPatient]):
 
     @property
     def is_saving(self) -> bool:
-        """Whether the library is still to answer, or to be given what was typed meanwhile."""
+        """Whether the library is still to answer, or to be sent what was typed meanwhile."""
         return self.is_busy or self._pause.isActive()
 
     @property
@@ -80,7 +80,7 @@ class PatientRecord(EditedRecord[StoredPatient]):
         self._show(stored)
 
     def choose_from_list(self, listed: StoredPatient) -> None:
-        """Choose a patient as a list has it: the visit before may have changed what was reported since it was read."""
+        """Choose a patient as a list has it: the visit before may have changed what was entered since it was read."""
         self._phase = RecordPhase.READING
         self._show(listed)
         self._read(listed)
@@ -147,7 +147,7 @@ class PatientRecord(EditedRecord[StoredPatient]):
         self._end_work()
         if edited is not None:
             self._ask(edited)  # before anybody goes on
-        if is_overtaken:  # it is saved, and another is here now
+        if is_overtaken:  # it is saved, and another is shown now
             self.changed.emit()
         elif edited is None:
             self.code_taken.emit(self.details.code)

@@ -26,7 +26,7 @@ class RecordingEdits(EditedRecord[StoredRecording]):
     Parameters
     ----------
     find
-        Gives a recording as it is on the screen, by its id.
+        Gives a recording as it is shown on the screen, by its id.
     name_of
         Gives what one is called there, by its name.
 
@@ -47,21 +47,21 @@ class RecordingEdits(EditedRecord[StoredRecording]):
     ) -> None:
         super().__init__(controller, parent)
         self._find, self._name_of = find, name_of
-        self._saying: deque[tuple[UUID, Recording | None]] = deque()  # stated and not answered yet, oldest first
+        self._saying: deque[tuple[UUID, Recording | None]] = deque()  # entered and not answered yet, oldest first
 
     def is_saving(self, recording_id: UUID) -> bool:
         """Whether something that was stated about a recording is still to be answered."""
         return any(stated == recording_id for stated, _ in self._saying)
 
     def stated(self, recording: SessionRecording) -> Recording:
-        """What is given of a recording: what is to be saved last, or what is saved."""
+        """What is stated about a recording: what is to be saved last, or what is saved."""
         saying = (
             reported for stated, reported in reversed(self._saying) if reported is not None and stated == recording.id
         )
         return next(saying, recording.details)
 
     def save(self, recording_id: UUID, base: Values, stated: Values) -> None:
-        """Save what is `stated` on the values that stood on the screen."""
+        """Save what is `stated`, based on the values that stood on the screen."""
         self._say(recording_id, stated, lambda opened: opened.library.edits.recording(recording_id, base, stated))
 
     def decide(self, recording_id: UUID, is_kept: bool) -> None:

@@ -73,7 +73,7 @@ class SessionRecord(EditedRecord[StoredSession]):
         self._say(_fields_of(stored))
 
     def take(self, stored: StoredSession) -> None:
-        """Go on from what the library holds; what was stated since it was read last stays stated, and is saved."""
+        """Go on from what the library holds; what was stated since it was read last is kept, and saved."""
         self._take(stored, _fields_of(self.stored or stored))
 
     def take_instead(self, stored: StoredSession) -> None:
@@ -107,7 +107,7 @@ class SessionRecord(EditedRecord[StoredSession]):
         self._reported, self.comment, self.limits = with_session_fields(details, comment, limits, stated)
 
     def _change(self, stated: Values, base: Values | None = None) -> None:
-        """Save what is stated about the session; `base`: where it was stated on something else than the library has."""
+        """Save what is stated about the session; `base`: what it was based on, if not what the library has."""
         self._say({field: stated.get(field, before) for field, before in self._stated.items()})
         if self.stored is not None and not self._is_busy:
             self._save(self.stored, base or {})
@@ -136,7 +136,7 @@ class SessionRecord(EditedRecord[StoredSession]):
         self._ask(edited)
 
     def _take(self, session: StoredSession, base: Values) -> None:
-        """Go on from what the library holds; what was stated since `base` stays stated, and is saved."""
+        """Go on from what the library holds; what was stated since `base` is kept, and saved."""
         held = _fields_of(session)
         shown, stated = rebased(base, self._stated, held)
         self.stored = session

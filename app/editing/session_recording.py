@@ -1,4 +1,4 @@
-"""One recording of a visit as it is: the one that goes on, those that have ended, and which of them count."""
+"""One recording of a visit at present: the one that goes on, those that have ended, and which of them count."""
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
@@ -48,7 +48,7 @@ class SessionRecording:
 def counted(recordings: Sequence[SessionRecording]) -> tuple[Recording, ...]:
     """Those of one session's recordings that count and have been read, in order of time, as an analysis takes them.
 
-    That sensors were strapped again before one that does not count is given of the next.
+    That sensors were strapped again before one that does not count is noted with the next one that does.
     """
     found = []
     is_restrapped = False
@@ -62,6 +62,6 @@ def counted(recordings: Sequence[SessionRecording]) -> tuple[Recording, ...]:
 
 
 def _with_its_keys(reported: "PlannedTest | None", read: "PlannedTest | None") -> "PlannedTest | None":
-    """The test as it is reported; a recovered recording's keys are in its journal alone."""
+    """The test as it was entered; a recovered recording's keys are in its journal alone."""
     has_keys = reported is not None and (reported.start_key_s, reported.end_key_s) != (None, None)
     return reported if reported is None or read is None or has_keys or read.protocol is not reported.protocol else read

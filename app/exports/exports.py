@@ -136,13 +136,13 @@ def export_from_library(
 
 
 def preview_from_folder(session: Session, kept: Collection[Typed] = ()) -> list[Row]:
-    """All that `export_from_folder` would report beside the figures."""
+    """All that `export_from_folder` would disclose beside the figures."""
     pseudonyms, patient_id = pseudonyms_of_folder(session)
     return what_leaves(pseudonyms.session(patient_id, session, kept))
 
 
 def preview_from_library(opened: OpenedLibrary, session_id: UUID, kept: Collection[Typed] = ()) -> list[Row]:
-    """All that `export_from_library` would report beside the figures.
+    """All that `export_from_library` would disclose beside the figures.
 
     Raises
     ------

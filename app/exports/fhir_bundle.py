@@ -98,7 +98,7 @@ def _patient(session: Session) -> dict[str, Any]:
 
 
 def _age(session: Session, patient_url: str) -> Iterator[tuple[str, dict[str, Any]]]:
-    """The age at the visit, where it is in place of the year of birth."""
+    """The age at the visit, where it is given in place of the year of birth."""
     reported = str(session.patient.unknown.get(AGE, ""))
     if (found := AGE_REPORTED.fullmatch(reported)) is None:
         return
@@ -187,7 +187,7 @@ def _quantity(value: float, unit: str) -> Mapping[str, Any]:
 
 
 def _when(started: str) -> str:
-    """An instant as FHIR takes it: with a time only where its zone is reported."""
+    """An instant as FHIR takes it: with a time only where its zone is given."""
     try:
         instant = datetime.datetime.fromisoformat(started)
     except ValueError:

@@ -26,7 +26,7 @@ def key_file() -> Path:
 
 
 def pseudonyms_of_folder(session: Session) -> tuple[Pseudonyms, UUID]:
-    """Give the pseudonyms of this computer, and what is there for the patient of a session with its samples."""
+    """Give the pseudonyms of this computer, and what identifies the patient of a session with its samples."""
     return Pseudonyms(_key(key_file())), _identity(session)
 
 

@@ -1,6 +1,6 @@
-"""What had been agreed by the day of each walk, and how the walk is to it: `goals.csv`, and in `summary.json`.
+"""What had been agreed by the day of each walk, and how the walk compares: `goals.csv`, and in `summary.json`.
 
-Who agreed on a goal and what was typed of it is in the library and in an identified export alone.
+Who agreed on a goal and what was typed about it is in the library and in an identified export alone.
 """
 
 import math
@@ -34,7 +34,7 @@ def goal_rows(analysis: Analysis, recordings: Sequence[Recording], agreed: Agree
 
 
 def goals_of_walk(analysis: Analysis, walk: RecordingAnalysis, agreed: AgreedGoals) -> tuple[GoalFigure, ...]:
-    """How one walk is to what had been agreed by its day."""
+    """How one walk compares with what had been agreed by its day."""
     return of_part(Part("", walk.name, (walk,), analysis.calibrated_for(walk), agreed=agreed))
 
 

@@ -140,7 +140,7 @@ def _parts(time_s: FloatArray, columns: Mapping[str, FloatArray]) -> list[Motion
 
 
 def _of_hips_and_pelvis(recording: RecordingAnalysis) -> Mapping[str, FloatArray]:
-    """What else may be given of hips and pelvis, by the model's names and signs; nothing without a pelvis sensor."""
+    """What else may be given for hips and pelvis, by the model's names and signs; none without a pelvis sensor."""
     found = {
         name: reported_abduction_deg(recording, joint) for joint, name in ADDUCTION.items() if joint in recording.hips
     }

@@ -15,6 +15,6 @@ def session_name(code: str, started: str, what: str = "") -> str:
 
 
 def free_name(place: Path, name: str) -> str:
-    """A name that is not taken in a folder: a second session of a day is beside the first."""
+    """A name that is not taken in a folder: a second session of a day is put beside the first."""
     names = (name, *(f"{name}_{number}" for number in range(2, 1000)))
     return next((one for one in names if not (place / one).exists()), name)

@@ -166,7 +166,7 @@ def _score_deg(recording: RecordingAnalysis, joint: Joint) -> float:
 def _difference_deg(recording: RecordingAnalysis, kind: str) -> float:
     joints = [Joint(f"{side}_{kind}") for side in Side]
     if not all(recording.verdicts.joint(joint).height.is_reported for joint in joints):
-        return math.nan  # each would be distinguished from a zero of its own
+        return math.nan  # each would be measured from a zero of its own
     means = [mean_curve(recording, joint).mean for joint in joints]
     return math.degrees(curve_difference(means[0], means[1]))
 
@@ -188,7 +188,7 @@ def _side_difference(part: Part, name: str, sides: tuple[Side, Side]) -> dict[st
 
 
 def _verdicts(found: Verdicts) -> dict[str, Any]:
-    """Give every verdict of a walk with its reasons in words; a joint or leg that was not worn reports it."""
+    """Give every verdict of a walk with its reasons in words; a joint or leg that was not worn is marked so."""
     joints = {str(joint): _parts(found.joint(joint), ("shape", "height", "sign")) for joint in found.reported_joints}
     legs = {str(side): _parts(found.leg(side), ("timing", "distance")) for side in Side}
     more = {}

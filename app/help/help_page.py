@@ -139,7 +139,7 @@ class HelpPage(Themed):
         self._row.addWidget(page, 1)
 
     def _mark(self) -> None:
-        """Mark what is searched for, and report every topic how often it has it."""
+        """Mark what is searched for, and show at every topic how often it has it."""
         words = self.search.text.strip()
         required = words if len(words) >= SHORTEST_SEARCH else ""
         counts = {topic: plain_words_of(topic).count(required.casefold()) if required else None for topic in Topic}
@@ -257,7 +257,7 @@ class _TopicRow(QAbstractButton):
         self.show_count(None)
 
     def show_count(self, count: int | None) -> None:
-        """Report how often the topic has what is searched for; None while nothing is."""
+        """Show how often the topic has what is searched for; None while nothing is."""
         self._count = count
         found = "" if count is None else tr_n("{count} match", "{count} matches", count).format(count=count)
         self.setAccessibleName(", ".join(filter(None, [self.text(), found])))

@@ -204,7 +204,7 @@ class SessionScreen(Themed):
         self._fit()
 
     def _fit(self) -> None:
-        """Report the pages how much room there is, in px of the design."""
+        """Pass to the pages how much room there is, in px of the design."""
         scale = self._look.theme.scale
         width, height = self.width() / scale, self.height() / scale
         is_narrow = width < NARROW_BELOW

@@ -1,6 +1,6 @@
 """A session as it would be made of the files of another program: what is proposed, for somebody to confirm or change.
 
-What a sensor's name states of its site is proposed; without names, the motion gives which sensors make up a leg and
+What a sensor's name gives of its site is proposed; without names, the motion shows which sensors make up a leg and
 which is its thigh, shank and foot, but never which leg is the left one.
 """
 
@@ -20,7 +20,7 @@ from devices.files.imports import add_recording, folder_for, free_name, place_se
 from devices.files.site_names import site_of_name
 from devices.files.trial import ImportedSensor, ImportedTrial
 
-QUIET_RAD_S = 0.15  # somebody who is sways less, nine of ten times
+QUIET_RAD_S = 0.15  # somebody who is standing sways less, nine of ten times
 LONGEST_STANDING_S = 120.0
 KINDS_IN_NAMES = {
     RecordingKind.STANDING: r"stand|static|still|npose|n-pose",
@@ -60,14 +60,14 @@ class DraftRecording:
 
 @dataclass(frozen=True, slots=True)
 class SessionDraft:
-    """Recordings of one patient on one day, in order of time as far as the files report it, else of their names."""
+    """Recordings of one patient on one day, in order of time as far as the files give it, else of their names."""
 
     recordings: tuple[DraftRecording, ...]
     sensors: tuple[DraftSensor, ...]
 
     @property
     def started(self) -> str:
-        """When the first of them began, as the files report it; empty where they do not."""
+        """When the first of them began, as the files give it; empty where they do not."""
         return next(filter(None, (_when(one.trial) for one in self.recordings)), "")
 
 
@@ -100,7 +100,7 @@ def session_of(
     sites
         Of each sensor by its key; None: it was not worn on a leg.
     day
-        Of the session, ISO 8601, where its files do not report it.
+        Of the session, ISO 8601, where its files do not give it.
 
     Raises
     ------
@@ -122,7 +122,7 @@ def session_of(
 
 
 def chains_of_motion(draft: SessionDraft, worn: Sequence[str]) -> Chains | None:
-    """The legs that the liveliest recording reports; None where it reports none.
+    """The legs that the liveliest recording gives; None where it gives none.
 
     Parameters
     ----------
@@ -154,7 +154,7 @@ def chains_of_motion(draft: SessionDraft, worn: Sequence[str]) -> Chains | None:
 
 
 def _draft(trials: Sequence[tuple[str, ImportedTrial]]) -> SessionDraft:
-    in_order = sorted(trials, key=lambda one: _when(one[1]))  # stable: those that report nothing stay as they were
+    in_order = sorted(trials, key=lambda one: _when(one[1]))  # stable: those that give no time stay as they were
     recordings = tuple(DraftRecording(title, trial, *_kind(title, trial)) for title, trial in in_order)
     names: dict[str, list[str]] = {}
     for _, trial in in_order:
@@ -208,7 +208,7 @@ def _are_of_one_session(one: ImportedTrial, other: ImportedTrial) -> bool:
 
 
 def _when(trial: ImportedTrial) -> str:
-    """When it began, ISO 8601; empty where the files report nothing that is a time."""
+    """When it began, ISO 8601; empty where the files give nothing that is a time."""
     try:
         return datetime.datetime.fromisoformat(trial.started).isoformat()
     except ValueError:

@@ -22,7 +22,7 @@ def read_foreign_session(folder: Path, waiting: "Waiting") -> "Session":
     Raises
     ------
     FileRefusedError
-        The folder is not what it states it is, or cannot be read within the limits.
+        The folder is not what it claims to be, or cannot be read within the limits.
     """
     from devices.files.limited_reader import LimitedReading
     from devices.files.session_folder import read_session
@@ -55,7 +55,7 @@ def read_foreign_trial(
 ) -> "ImportedTrial":
     """What the files of one trial of another program hold, as its reader in `devices.files` gives it.
 
-    `format_name` empty: reported by the content.
+    `format_name` empty: recognised by the content.
 
     Raises
     ------
@@ -81,7 +81,7 @@ def read_foreign_reference(path: Path, waiting: "Waiting") -> "ReferenceFile":
 
 
 def gather_foreign(paths: Sequence[Path], waiting: "Waiting") -> "Gathered":
-    """Which of these files and folders belong together, as `devices.files.gathering.gather` states.
+    """Which of these files and folders belong together, as `devices.files.gathering.gather` returns them.
 
     Raises
     ------

@@ -240,7 +240,7 @@ class LaneRow:
             self._add_change(one, visits, has_sides=len(lane.changes) > 1)
 
     def _add_goals(self, lane: CourseLane, one: LaneChange, visits: Sequence[CourseVisit]) -> None:
-        """How the last value is to goals that were agreed before it."""
+        """How the last value compares with goals that were agreed before it."""
         for found in reported_goals(lane, one, visits):
             self.changes.add(Text(self._look, brief_standing(found.standing), 12, wraps=True))
 

@@ -123,7 +123,7 @@ class CycleCharts(Themed):
             frame.chart.redraw()
 
     def show_beside(self, found: Comparison | None, words: str = "") -> None:
-        """Draw thin what the walk is beside, or say why nothing; marks are to be shown again, and the next walk is
+        """Draw thin what the walk is compared with, or say why nothing; marks are to be shown again, the next walk is
         without."""
         for frame in self._frames:
             frame.show_beside(found, words)
@@ -135,7 +135,7 @@ class CycleCharts(Themed):
             frame.show_stride(found[0] if found else None)
 
     def show_marks(self, deviations: Sequence[Deviation], gaps: Sequence[Gap] = ()) -> None:
-        """Mark on the curves what is out, degrees as measured; the next walk shown is without."""
+        """Mark what is notable on the curves, degrees as measured; the next walk shown is without."""
         for frame in self._frames:
             frame.show_marks(
                 [found for found in deviations if found.kind is frame.kind],

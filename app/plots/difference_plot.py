@@ -38,7 +38,7 @@ class Dot:
 
 @dataclass(frozen=True, slots=True)
 class DifferenceRow:
-    """`words` report the last dot; `error` is that of the last dot, NaN where it is not judged."""
+    """`words` describe the last dot; `error` is that of the last dot, NaN where it is not judged."""
 
     side: Side | None
     words: str

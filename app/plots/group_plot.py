@@ -137,7 +137,7 @@ class GroupPlot(Themed):
             text.paint(painter, c)
 
     def event(self, event: QEvent) -> bool:
-        """Report the whole of a name that is cut, under the mouse."""
+        """Show the whole of a name that is cut, under the mouse."""
         if isinstance(event, QHelpEvent) and event.type() is QEvent.Type.ToolTip:
             row = int(event.pos().y() // self._look.theme.px(ROW))
             is_label = event.pos().x() <= self._label_width() and 0 <= row < len(self.lines)

@@ -160,7 +160,7 @@ class MovingLegs(Card):
 
 
 class _LegsPicture(Themed):
-    """The legs over the floor, and below them when each foot is in one stride of the reference leg."""
+    """The legs over the floor, and below them when each foot is on the floor in one stride of the reference leg."""
 
     pointed = Signal(float)
 

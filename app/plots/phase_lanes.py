@@ -28,7 +28,7 @@ from core.samples import FloatArray, IntArray
 LANE, BETWEEN = 26, 8
 GAP_PX = 1.5  # of surface between two phases
 HATCH_PX = 4.5
-LEAST_PHASE_PX = 5.0  # on the average in sight; narrower, nobody can report them apart
+LEAST_PHASE_PX = 5.0  # on the average in sight; narrower, nobody can distinguish them
 ZOOM_IN = later("Zoom in to see the phases")
 WHEEL_ZOOM = 1.02 ** (-1 / 8)  # per unit of the wheel, as the curves do
 
@@ -80,7 +80,7 @@ class Lane:
 
 
 class PhaseFrame(Card):
-    """Both lanes with their legend, and what is at the reading line."""
+    """Both lanes with their legend, and what is shown at the reading line."""
 
     def __init__(self, look: ThemeNotifier) -> None:
         self.lanes = PhaseLanes(look)

@@ -59,7 +59,7 @@ def legend(items: Sequence[tuple[Picture, str]], columns: int = 3) -> Block:
 
 
 def if_room(blocks: Sequence[Block]) -> Block:
-    """What is reported only where its page has the room: it explains, and what it explains can be read without it."""
+    """What is printed only where its page has the room: it explains, and what it explains can be read without it."""
     return {"kind": "if_room", "blocks": list(blocks)}
 
 

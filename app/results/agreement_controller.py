@@ -57,7 +57,7 @@ class AgreementController(QObject):
     -------
     writing
         The folder that was chosen, and the call that writes the files into it: whoever shows the page knows on which
-        thread, and who must be given of an export.
+        thread, and who must be notified of an export.
     """
 
     writing = Signal(object, object)

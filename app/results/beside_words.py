@@ -1,4 +1,4 @@
-"""A walk against what is beside it, in the answer's table and key figures."""
+"""A walk compared with what is shown beside it, in the answer's table and key figures."""
 
 from collections.abc import Sequence
 from dataclasses import replace

@@ -69,7 +69,7 @@ class ComparePage(Themed):
     Signals
     -------
     visits_requested
-        The earlier visits are required, and not known yet: `show_visits` is to follow.
+        The earlier visits are requested, and not known yet: `show_visits` is to follow.
     """
 
     visits_requested = Signal()
@@ -238,7 +238,7 @@ class ComparePage(Themed):
                 shortcut.activated.connect(partial(self.choose_pair, digit - 1, is_second=is_second))
 
     def _place_words(self) -> None:
-        """Put what is stated over all of the page, or, where that is low, into the card, which scrolls."""
+        """Put the message over all of the page, or, where that is low, into the card, which scrolls."""
         if self._is_compact:
             self.card.begin_with(self._words)
         else:
@@ -354,7 +354,7 @@ class ComparePage(Themed):
     def choose_pair(self, number: int, *, is_second: bool) -> None:
         """Show two alone: the one of this number from 0 against the one it was changed from, or the first.
 
-        `is_second`: it is the one that what is shown is against.
+        `is_second`: this one is what the one shown is compared with.
         """
         parts = self._parts()
         if self.kind is Contrast.SIDES or not 0 <= number < len(parts) or len(parts) < 2:

@@ -1,4 +1,4 @@
-"""A comparison as dots over the grey of their error: which measures have a row, and what is in it."""
+"""A comparison as dots over the grey of their error: which measures have a row, and what is drawn in it."""
 
 import math
 from collections.abc import Sequence

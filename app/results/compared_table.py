@@ -36,7 +36,7 @@ def comparison_table(found: Comparison, most_visits: int, *, is_brief: bool = Fa
     Parameters
     ----------
     most_visits
-        As many have a column of their own: that which all are reported against, and the latest ones. Trends have all.
+        As many have a column of their own: that which all are compared with, and the latest ones. Trends have all.
     is_brief
         Without the measures that say much the same as others, unless a change of theirs exceeds its error.
     """
@@ -67,7 +67,7 @@ def side_table(rows: Sequence[SideRow], first: Side, second: Side) -> TableOfPar
 
 
 def head_cell(words: str, small: str = "", spoken: str = "") -> TextCell:
-    """What is over a column of figures."""
+    """What is shown above a column of figures."""
     return TextCell(words, small, align=RIGHT, size=12, tone="ink2", spoken=spoken)
 
 
@@ -148,7 +148,7 @@ def side_table_row(row: SideRow, heads: Sequence[str]) -> TableRow:
 def _table_row(
     name: str, side: Side | None, heads: Sequence[str], cells: Sequence[TextCell | TrendCell], small: str = ""
 ) -> TableRow:
-    """A row whose cells say which leg, measure and part they are of, for who receives one cell at a time."""
+    """A row whose cells say which leg, measure and part they are of, for a screen reader, cell by cell."""
     chip = EMPTY if side is None else TextCell(side=side, spoken=side_name(side))
     who = name if side is None else f"{side.letter} {name}"
     stated = (replace(cell, spoken=f"{who}, {head}: {cell.stated}") for head, cell in zip(heads, cells, strict=True))
@@ -156,7 +156,7 @@ def _table_row(
 
 
 def _figure(value: str, small: str = "", *, is_marked: bool = False, is_grey: bool = False) -> TextCell:
-    """A value and what is smaller behind it; marked: beyond the error; grey: not to be relied on."""
+    """A value and what follows it in smaller type; marked: beyond the error; grey: not to be relied on."""
     return TextCell(
         value,
         small,
@@ -169,7 +169,7 @@ def _figure(value: str, small: str = "", *, is_marked: bool = False, is_grey: bo
 
 
 def value_cell(value: MeanAndSd, verdict: Verdict, decimals: int, *, has_spread: bool = True) -> TextCell:
-    """A mean with its spread, grey from few strides; where it may not be reported, that alone."""
+    """A mean with its spread, grey from few strides; where it may not be reported, only that is stated."""
     if verdict is Verdict.NOT_REPORTED:
         return TextCell(small=verdict_word(verdict), align=RIGHT, mark=Icon.NOT_REPORTED)
     if not value.n:
@@ -180,7 +180,7 @@ def value_cell(value: MeanAndSd, verdict: Verdict, decimals: int, *, has_spread:
 
 
 def _changed(row: Compared | SideRow, against: Part | None = None) -> TextCell:
-    """A difference; where it is not reported against the part that the others are, that is stated beside it."""
+    """A difference; where it is against another part than the others are, that is stated beside it."""
     if not row.is_reported:
         return _figure(NOTHING, is_grey=True)  # the values beside it say why
     words = change_in_words(row.difference.difference, row.measure)

@@ -46,7 +46,7 @@ def change_in_words(value: float, measure: Measure) -> str:
 
 
 def unit_behind(measure: Measure) -> str:
-    """As it is behind a figure."""
+    """As it is shown behind a figure."""
     return measure.unit if measure.unit == "°" else f"\N{NO-BREAK SPACE}{tr(measure.unit)}"
 
 
@@ -128,7 +128,7 @@ def conclusion(worth: Sequence[str], reported: Sequence[Compared | SideRow], lat
     Parameters
     ----------
     reported
-        The rows that the table shows; of no others anything is reported.
+        The rows that the table shows; nothing is reported about any others.
     latest
         The visit that all of them lead to; None: they are those of any parts.
     """

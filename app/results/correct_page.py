@@ -1,4 +1,4 @@
-"""What was stated or found wrongly, and is put right after the fact: conditions, what counts, signs and sides."""
+"""What was entered or found wrongly, and put right after the fact: conditions, what counts, signs and sides."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -40,7 +40,7 @@ class JointLine:
 
 
 class CorrectPage(Themed):
-    """Each correction is reported at once; the page is shown what came of it.
+    """Each correction is emitted at once; the page is then shown what came of it.
 
     Signals
     -------

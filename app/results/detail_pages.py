@@ -1,4 +1,4 @@
-"""What is behind results: how a joint was found, and what an optical system measured. Each has a page of its own.
+"""What lies behind results: how a joint was found, and what an optical system measured. Each has its own page.
 
 The pages and whoever fills them are made at the first time: most visits never ask.
 """
@@ -110,7 +110,7 @@ class DetailPages(QObject):
                 page.focus()
 
     def set_room(self, width: float, height: float) -> None:
-        """Report how much room there is, in px of the design."""
+        """Set how much room there is, in px of the design."""
         self._room = width, height
         if self.found is not None:
             self.found.set_room(width, height)

@@ -43,7 +43,7 @@ class DiagnosticsController(QObject):
         What could not be shown, and what follows.
     writing
         The folder that was chosen, and the call that writes the files into it: whoever shows the page knows on which
-        thread, and who must be given of an export.
+        thread, and who must be notified of an export.
     """
 
     refused = Signal(str, str)
@@ -161,7 +161,7 @@ def saved_from_library(
 
 
 def cannot_write(folder: Path) -> tuple[str, str]:
-    """What is stated about a folder that takes no files."""
+    """The message about a folder that takes no files."""
     return tr("{folder} is not writable").format(folder=folder.name), tr(
         "Choose another folder; the recordings are unchanged"
     )

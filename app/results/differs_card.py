@@ -39,7 +39,7 @@ class DiffersCard(Card):
         self.column.addWidget(self.table)
 
     def show_facts(self, facts: Facts, found: Comparison | None = None) -> None:
-        """What the legs differ in, or else this walk and what it is beside."""
+        """What the legs differ in, or else this walk and what is shown beside it."""
         if found is not None:
             self._columns, self._rows = beside_columns(found), beside_rows(found)
         else:

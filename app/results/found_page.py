@@ -47,7 +47,7 @@ SIDE_BY_SIDE_FROM = 940  # what the first two pictures need beside each other
 MAPS_FROM = 500  # what both maps need beside each other
 WHOLE, TEN_SECONDS = "whole", "ten-seconds"
 CLOSE_S = 10.0
-MIN_APART = 0.2  # of how alike the curves are; less apart, this second reports no pairing
+MIN_APART = 0.2  # of how alike the curves are; less apart, this second distinguishes no pairing
 
 
 class FoundPage(Themed):

@@ -190,7 +190,7 @@ class QualityPage(Themed):
             self._doors.addWidget(door, *place)
 
     def _fill(self) -> None:
-        """Make a card of each line again."""
+        """Make a new card of each line."""
         for card in self._line_cards:
             self._list.removeWidget(card)
             card.hide()
@@ -223,7 +223,7 @@ class QualityPage(Themed):
 
 
 class LineCard(Themed):
-    """One thing that is against a figure: yellow where it withholds one."""
+    """One thing that speaks against a figure: yellow where it keeps one from being reported."""
 
     def __init__(self, look: ThemeNotifier, line: QualityLine, *, can_repeat: bool) -> None:
         super().__init__()

@@ -55,7 +55,7 @@ BESIDE_TABLE, NOT_REPORTED, NOTE = (
     484,
     40,
     24,
-)  # px high: all else on a page, a not reported curve, strides left out by hand
+)  # px high: all else on a page, a curve not reported, strides left out by hand
 GAP = 12  # px between what is in one row
 PELVIS = 56  # px high: above the legs
 ANSWER_ICONS = {
@@ -75,7 +75,7 @@ class Behind(Enum):
 
 
 class ResultPage(Themed):
-    """`parts`: those that were made before. `reported`: what is stated in the bar beneath the page has changed."""
+    """`parts`: those that were made before. `reported`: the text in the bar beneath the page has changed."""
 
     reported = Signal()
 
@@ -85,7 +85,7 @@ class ResultPage(Themed):
         self._look = look
         self._visit: AnalysedVisit | None = None
         self._facts: Facts | None = None  # of the walk on the screen
-        self._found: Comparison | None = None  # with what it is beside
+        self._found: Comparison | None = None  # with what is beside it
         self._can_choose = self._is_live = False
         self._course: tuple[CourseVisit, ...] = ()
         self._stride: Mapping[Joint, FloatArray] = {}  # in force
@@ -171,7 +171,7 @@ class ResultPage(Themed):
         self.compare.set_has_visits(has_visits)
 
     def show_visits(self, visits: Sequence[ComparedVisits], walked: str = "", every: Sequence[Part] = ()) -> None:
-        """Show earlier visits, which `compare` requested, as `ComparePage.show_visits` states."""
+        """Show earlier visits, which `compare` requested, as `ComparePage.show_visits` describes."""
         self.compare.show_visits(visits, walked, every)
         if self.beside.currentData() is Beside.LAST_VISIT:
             self._show_beside()
@@ -205,7 +205,7 @@ class ResultPage(Themed):
             (self.whole.methods if self.view.isHidden() else self.view).focus()
 
     def leave_behind(self) -> bool:
-        """Go back to the answer from what is behind it; whether there was anything to leave."""
+        """Go back to the answer from the details behind it; whether there was anything to leave."""
         if self._behind is Behind.NOTHING:
             return False
         self._show_behind(Behind.NOTHING)
@@ -221,7 +221,7 @@ class ResultPage(Themed):
 
     @property
     def band_words(self) -> str:
-        """Whose band is behind the curves and how fast this walk was; empty where no curve is on one."""
+        """Whose band is drawn behind the curves and how fast this walk was; empty where no curve has a band."""
         is_shown = self.view.choice == ANSWER and self._behind is not Behind.QUALITY
         return self.cycles.band_words if is_shown and self.beside.currentData() is Beside.BAND else ""
 
@@ -403,7 +403,7 @@ class ResultPage(Themed):
         self._show_parts()
 
     def _show_parts(self) -> None:
-        """Show what belongs to the view, or what is behind the answer."""
+        """Show what belongs to the view, or the details behind the answer."""
         recording, view = self.recording, self.view.choice
         is_walk = recording is not None and recording.kind is RecordingKind.WALKING
         has_answer = is_walk and view == (ANSWER if self.view.segments[0].isEnabled() else WHOLE)
@@ -476,7 +476,7 @@ class ResultPage(Themed):
         return str(self._visit.shown_names.get(name, name)) if self._visit is not None else name
 
     def _show_beside(self) -> None:
-        """Show the walk with what it is beside: its curves, what differs and the key figures."""
+        """Show the walk with what is beside it: its curves, what differs and the key figures."""
         recording, visit = self.recording, self._visit
         if recording is None or visit is None or recording.kind is not RecordingKind.WALKING:
             self._facts = self._found = None

@@ -1,4 +1,4 @@
-"""The parts of the results, each made when it is required or a little before, and what a page has room for."""
+"""The parts of the results, each made when it is needed or a little before, and what a page has room for."""
 
 from dataclasses import dataclass
 from functools import cached_property
@@ -47,7 +47,7 @@ class PageRoom:
 
 
 class ResultParts:
-    """The parts of a result page that take long to be made: one at a time before they are required, or else when."""
+    """The parts of a result page that take long to be made: one at a time before they are needed, or else then."""
 
     def __init__(self, look: ThemeNotifier) -> None:
         self._look = look

@@ -22,7 +22,7 @@ from core.verdicts.quantities import values_of
 
 
 class StridesPage(Card):
-    """`turned` and `all_required` name a walk; nothing is changed here, but by whoever shows the walk again."""
+    """`turned` and `all_required` name a walk; nothing is changed here, only by whoever shows the walk again."""
 
     turned = Signal(str, object, bool)  # StrideLine, and whether it is to be left out
     all_required = Signal(str)

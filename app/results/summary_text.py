@@ -1,4 +1,4 @@
-"""What is round a walk's curves: its key figures, and in one line how far all of it can be trusted."""
+"""What is shown around a walk's curves: its key figures, and in one line how far all of it can be trusted."""
 
 import math
 from collections.abc import Sequence

@@ -20,7 +20,7 @@ from core.samples import BoolArray, FloatArray, RecordingKind
 
 
 class Place(StrEnum):
-    """Where a curve lies, and what its name states of it."""
+    """Where a curve lies, and what its name states about it."""
 
     HEIGHT = ""
     SHAPE = ", shape"
@@ -63,7 +63,7 @@ def is_pose(recording: RecordingAnalysis, joint: Joint, time_s: FloatArray) -> B
 
 
 def name_of_view(analysis: Analysis, joint: Joint) -> str:
-    """What is above a joint's curves: its name, and what is missing where no walk has more."""
+    """What is shown above a joint's curves: its name, and what is missing where no walk has more."""
     walks = tuple(r for r in analysis.recordings if r.kind is RecordingKind.WALKING and joint in r.measured)
     found = places(replace(analysis, recordings=walks or analysis.recordings), joint)
     name = joint.replace("_", " ")

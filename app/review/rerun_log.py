@@ -250,7 +250,7 @@ def _raw_chunks(timeline: str, site: Site, block: ImuBlock) -> Iterator[Chunk]:
 
 
 def _angle_chunks(timeline: str, joint: Joint, recording: RecordingAnalysis) -> Iterator[Chunk]:
-    """Yield a joint's curves where what may be stated about them lets them lie; a shape has its mean taken away."""
+    """Yield a joint's curves, placed as what may be reported about them allows; a shape has its mean taken away."""
     angle, time_s = recording.measured[joint], recording.time_s
     band_rad = angle.angle_rad[:, None] + BAND_SD * angle.sd_rad[:, None] * np.array([-1.0, 1.0])
     curves: dict[str, FloatArray | None] = {"result": angle.angle_rad}
@@ -390,7 +390,7 @@ def _leg_view(session: Session, analysis: Analysis) -> rrb.Spatial3DView:
 
 
 def side_views(analysis: Analysis, side: Side) -> rrb.Vertical | None:
-    """Stack a side's joints, each with its phases; what the lines are states the answer's panel, not a legend."""
+    """Stack a side's joints, each with its phases; the answer's panel explains the lines, not a legend."""
     axis = rrb.archetypes.TimeAxis(link=rrb.components.LinkAxis.LinkToGlobal)
     views = [
         rrb.TimeSeriesView(

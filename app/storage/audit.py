@@ -39,7 +39,7 @@ class Audit:
 
     @property
     def end(self) -> Checkpoint:
-        """How far it has come, as far as this program was reported."""
+        """How far it has come, as far as this program was informed."""
         return self._unit.end_of_audit
 
     def times(self) -> Iterator[datetime.datetime]:
@@ -61,7 +61,7 @@ class Audit:
             return (session.scalar(select(func.max(AuditRow.number))) or 0) - added
 
     def holds(self, checkpoint: Checkpoint) -> bool:
-        """Whether the entry that a checkpoint reports is there. The chain is not followed; see `verify`."""
+        """Whether the entry that a checkpoint names is there. The chain is not followed; see `verify`."""
         with self._unit.reading() as session:
             row = session.get(AuditRow, checkpoint.number)
             return row is not None and hmac.compare_digest(row.hash, checkpoint.hash)
@@ -131,13 +131,13 @@ class Audit:
             return {row.subject: entry_of(row) for row in session.scalars(required.order_by(AuditRow.number))}
 
     def verify(self, checkpoint: Checkpoint = BEGINNING) -> AuditReport:
-        """Check every link, and that the chain still holds what `checkpoint` reports."""
+        """Check every link, and that the chain still holds what `checkpoint` names."""
         with self._unit.reading() as session:
             return verify_rows(session, self._unit.audit_key, checkpoint)
 
 
 def note(unit: UnitOfWork, session: OrmSession, action: Action, subject: str, **details: object) -> None:
-    """Add an entry in the same transaction as what it reports."""
+    """Add an entry in the same transaction as what it describes."""
     append(session, unit.audit_key, unit.now(), unit.code, action, subject, details)
 
 
@@ -218,7 +218,7 @@ def canonical(content: object) -> str:
 
 
 def hash_of(entry: AuditEntry, key: bytes) -> str:
-    """HMAC-SHA256 of all that an entry states and of the hash before it."""
+    """HMAC-SHA256 of all that an entry contains and of the hash before it."""
     content = [entry.number, entry.at, entry.operator, entry.action, entry.subject, entry.details, entry.previous_hash]
     return hmac.digest(key, canonical(content).encode(), "sha256").hex()
 
@@ -229,8 +229,7 @@ def verify_rows(session: OrmSession, key: bytes, checkpoint: Checkpoint = BEGINN
 
 
 def verify(entries: Iterable[AuditEntry], key: bytes, checkpoint: Checkpoint = BEGINNING) -> AuditReport:
-    """Follow the chain from its beginning; after a fault it goes on from what is there, so that one is reported
-    once."""
+    """Follow the chain from its beginning; after a fault it goes on from what is there, so one is reported once."""
     end, faults = BEGINNING, []
     is_held = checkpoint.number == 0
     for entry in entries:

@@ -225,7 +225,7 @@ def _copy_database(library: Path, folder: Path, data_key: KeyMaterial | None, wo
             assert connection is not None  # both are open
             assert copy is not None
             connection.execute("BEGIN")
-            connection.execute("SELECT count(*) FROM sqlite_master").fetchone()  # from here on it is still
+            connection.execute("SELECT count(*) FROM sqlite_master").fetchone()  # from here on it stays the same
 
             def reported(_status: int, left: int, total: int) -> None:
                 work.add(work.database_bytes * min(PAGES, total) // max(total, 1), "backup")
@@ -343,7 +343,7 @@ def _write_list(folder: Path, backup: Backup, hashes: dict[str, str]) -> None:
 
 
 def _read_list(folder: Path) -> tuple[Backup, dict[str, str]]:
-    """What a backup states of itself, and the hashes of its files but the database.
+    """What a backup states about itself, and the hashes of its files but the database.
 
     Raises
     ------

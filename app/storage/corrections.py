@@ -113,7 +113,7 @@ def apply(
         if row is None or plain(getattr(row, change.field)) != change.old:
             raise changed_meanwhile()
         setattr(row, change.field, _typed(type(row), change.field, change.new))
-        if isinstance(row, JointRow):  # it is part of its session, whose version has to report
+        if isinstance(row, JointRow):  # it is part of its session, whose version has to show it
             flag_modified(session.get_one(SessionRow, row.session_id), "started")
     last = session.scalar(select(func.max(CorrectionRow.number))) or 0  # the write lock is held: nobody takes the next
     correction = CorrectionRow(
@@ -136,7 +136,7 @@ def apply(
 def take_back(
     unit: UnitOfWork, session: OrmSession, changes: Sequence[Change], patient_id: UUID, session_id: UUID | None = None
 ) -> None:
-    """Make `changes` and take them back at once: they were required, did not come to hold, and stand in the history."""
+    """Make `changes` and take them back at once: they were requested, did not take effect, and are in the history."""
     session.flush()
     made = apply(unit, session, changes, patient_id, session_id)
     session.flush()
@@ -146,7 +146,7 @@ def take_back(
 
 
 def author_of(session: OrmSession, patient_id: UUID, change: Change) -> tuple[str, datetime.datetime | None]:
-    """Who made one value of a row what it is, `change.old`, and when; nobody where no correction reports."""
+    """Who made one value of a row what it is, `change.old`, and when; nobody where no correction names them."""
     latest = select(CorrectionRow).where(CorrectionRow.patient_id == patient_id).order_by(CorrectionRow.number.desc())
     rows = session.scalars(latest.limit(SEARCHED)).all()
     taken_back = {

@@ -21,7 +21,7 @@ class Courses:
         self._unit = unit
 
     def find(self, session_ids: Collection[UUID]) -> dict[UUID, tuple[str, Course]]:
-        """Key and figures of those sessions that have some; the key gives whether they still hold (`kept_courses`)."""
+        """Key and figures of those sessions that have some; the key shows whether they still hold (`kept_courses`)."""
         found = {}
         with self._unit.reading() as session:
             for row in session.scalars(select(CourseRow).where(CourseRow.session_id.in_(session_ids))):

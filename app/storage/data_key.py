@@ -26,7 +26,7 @@ class Secret(bytearray):
         self.wipe()
 
     def wipe(self) -> None:
-        """Overwrite it where it is."""
+        """Overwrite it in place."""
         self[:] = bytes(len(self))  # of the same length, so in place
         self.clear()
 

@@ -1,7 +1,7 @@
 """What can be edited of a patient, a session and a recording: plain values by the field's name, and back.
 
-What is stated about a joint or a side is a field of its own, "zero_rad.left_knee": two people may say two joints'
-zeros.
+What is stated about a joint or a side is a field of its own, "zero_rad.left_knee": two people may enter
+two joints' zeros.
 """
 
 from collections.abc import Mapping
@@ -33,7 +33,7 @@ RECORDING_CORRECTABLE = ("name", "kind", "condition", "started", "is_kept", "not
 
 
 def patient_fields(reported: Patient) -> dict[str, Value]:
-    """Both sides are one field: which is affected and which prosthetic is stated in one go."""
+    """Both sides are one field: which is affected and which is prosthetic are entered in one go."""
     values: dict[str, Value] = {name: getattr(reported, name) for name in PATIENT_CORRECTABLE if name not in SIDES}
     values |= {"sides": ",".join(getattr(reported, name) for name in SIDES)}
     return values | {

@@ -51,7 +51,7 @@ PIECE_ROWS = 10_000  # so that a long recording is not held a second time
 
 @dataclass(frozen=True, slots=True)
 class Imported:
-    """What came of an import. `differing`: what the library states of the patient otherwise, and goes on saying."""
+    """What came of an import. `differing`: what the library holds differently about the patient, and keeps."""
 
     session_id: UUID
     patient: StoredPatient
@@ -158,8 +158,8 @@ def recording_with_samples(
 def export_orphan(opened: OpenedLibrary, orphan: Interrupted, folder: Path, decoders: Decoders, report: Report) -> None:
     """Write one CSV file per sensor of a recording that no session knows, to be imported into the right one.
 
-    Nobody knows where its sensors were worn, so it is no session folder. It stays in the library. The audit is reported
-    before anything is written, and once more when all of it is.
+    Nobody knows where its sensors were worn, so it is no session folder. It stays in the library. The audit gets an
+    entry before anything is written, and another one when all of it is.
 
     Raises
     ------
@@ -185,7 +185,7 @@ def export_orphan(opened: OpenedLibrary, orphan: Interrupted, folder: Path, deco
 
 
 def was_exported(opened: OpenedLibrary, orphan: Interrupted) -> bool:
-    """Whether all of an orphan is in files already, so that nobody has to be given of it again."""
+    """Whether all of an orphan is in files already, so that nobody has to be notified of it again."""
     reported = opened.library.audit.entries(about("recording", orphan.recording_id))
     return any(entry.action == Action.EXPORT and entry.details == canonical(WHOLE) for entry in reported)
 

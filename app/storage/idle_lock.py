@@ -50,7 +50,7 @@ class IdleLock:
         self._idle_s = 0.0
 
     def unlock(self) -> None:
-        """The passphrase was right: count again."""
+        """The passphrase was right: start counting from zero."""
         self._is_locked = self.is_asked_for = False
         self._idle_s = 0.0
         self._seen_s = self._now_s()

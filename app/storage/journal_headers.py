@@ -33,7 +33,7 @@ def write_headers(database: Database, recordings: Path) -> None:
             try:
                 required = JournalHeader.parsed(found, file, wrapped_key).packed()
             except JournalRefusedError:
-                continue  # damaged before, and stated so wherever it is read
+                continue  # damaged before, and reported as such wherever it is read
             if required != found:
                 journal.seek(0)
                 journal.write(required)

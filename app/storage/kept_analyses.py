@@ -29,7 +29,7 @@ FIGURES_FROM = ("gaitwright", "numpy", "scipy", "vqf")  # whose next version may
 
 
 def bare(session: Session) -> Session:
-    """The session with all that an analysis reads, and without what was stated to people: names, notes, conditions.
+    """The session with all that an analysis reads, and without what is meant for people: names, notes, conditions.
 
     Nor with the strides that were left out by hand: they are left out of what was found (`core.gait.chosen_strides`).
     """
@@ -60,8 +60,7 @@ def bare(session: Session) -> Session:
 
 
 def is_same_question(one: Session, other: Session) -> bool:
-    """Whether both give an analysis the very same: the same samples, not only equal ones, and the same stated of
-    them."""
+    """Whether both give an analysis the very same samples, not only equal ones, and the same details about them."""
     both = (one, other)
     blocks = [[block for recording in session.recordings for block in recording.imu.values()] for session in both]
     if len(blocks[0]) != len(blocks[1]) or any(a is not b for a, b in zip(*blocks, strict=True)):
@@ -97,7 +96,7 @@ def keep_analysis(results: Results, session_id: UUID, session: Session, analysis
 
 
 def _reported(session: Session) -> tuple[Session, list[list[Site]]]:
-    """What an analysis is reported besides the samples, and at which sites they were measured."""
+    """What an analysis is given besides the samples, and at which sites they were measured."""
     given = bare(session)
     without_samples = tuple(replace(recording, imu={}) for recording in given.recordings)
     return replace(given, recordings=without_samples), [list(recording.imu) for recording in session.recordings]

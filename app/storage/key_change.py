@@ -211,7 +211,7 @@ def _wrap_journal(path: Path, row: JournalRow, old: DataKey, new: DataKey) -> No
                 before.update(piece)
                 after.update(piece)
     except (JournalRefusedError, FileNotFoundError):
-        return  # it was missing or damaged before, and is stated to be wherever it is read
+        return  # it was missing or damaged before, and is reported as such wherever it is read
     if row.sha256 == before.hexdigest():  # else it is not what it was when it was closed, and that stays to be seen
         row.sha256 = after.hexdigest()
     row.wrapped_key = required.wrapped_key

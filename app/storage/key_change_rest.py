@@ -35,7 +35,7 @@ def settle(folder: Path) -> None:
 
 
 def salt_of(database: Path) -> str | None:
-    """What reports one database of SQLCipher from another: random, in the open, drawn when it was made."""
+    """What distinguishes one database of SQLCipher from another: random, in the open, drawn when it was made."""
     try:
         with database.open("rb") as file:
             return file.read(16).hex()

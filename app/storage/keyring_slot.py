@@ -60,7 +60,7 @@ def open_remembered(slots: KeySlots, code: str) -> DataKey | None:
         return None
     try:
         secret = keyring.get_password(SERVICE, slot.salt)
-    except Exception:  # as above; the passphrase is asked for, which states enough
+    except Exception:  # as above; the passphrase is asked for, which is notice enough
         return None
     return slot.opened(secret.encode()) if secret else None
 

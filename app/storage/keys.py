@@ -35,11 +35,11 @@ BUSY_S = 5.0  # another program's change takes a tenth of it
 RECOVERY = "recovery"
 CONFIRMED = "is_recovery_key_confirmed"
 GIVEN = "given_passphrases"  # codes of those whose passphrase somebody else chose; files without it name nobody
-KEYRING = "keyring-"  # is before an operator's code; no code that is typed has a dash
+KEYRING = "keyring-"  # precedes an operator's code; no code that is typed has a dash
 
 
 class KeyRefusedError(Exception):
-    """The library does not open, or the slots cannot be changed as asked. States what and what to do."""
+    """The library does not open, or the slots cannot be changed as asked. States what is wrong and what to do."""
 
     def __init__(self, what: str, remedy: str) -> None:
         super().__init__(f"{what}. {remedy}.")
@@ -339,7 +339,7 @@ class KeySlots:
     def _write(
         self, slots: dict[str, Slot], *, is_confirmed: bool | None = None, given: frozenset[str] | None = None
     ) -> None:
-        """Keep the slots and what is stated beside them; None: as it is."""
+        """Keep the slots and what is recorded beside them; None: as it is."""
         if is_confirmed is None:
             is_confirmed = self.is_recovery_key_confirmed
         if given is None:

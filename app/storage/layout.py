@@ -12,7 +12,7 @@ moving-to-server                   it is being moved to a clinic's server, and n
 A station's folder has `station.json` and `cache/` in place of the database (`clinic.station`). The environment variable
 GAITWRIGHT_DATABASE_URL names the clinic's server, and GAITWRIGHT_JOURNALS the recordings' place.
 
-All of this is in the library's own folder, which `create_library` alone makes. One that is gone is never made again:
+All of this is in the library's own folder, which `create_library` alone makes. One that is gone is never recreated:
 recordings then go into a shelter on this computer (`app.storage.root`) until it is back (`app.storage.bringing_home`).
 """
 

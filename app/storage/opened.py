@@ -77,7 +77,7 @@ class OpenedLibrary:
         return self.library.root is None or self.library.root.is_there()
 
     def refuse_gone(self) -> None:
-        """See that the folder is where it was opened, before what is missing in it is stated to be missing.
+        """See that the folder is where it was opened, before what is missing in it is reported as missing.
 
         Raises
         ------
@@ -159,7 +159,7 @@ def _shared_journals(library: Library, folder: Path, data_key: DataKey) -> Share
     if library.station is None:
         return None
     place = library.station.journals
-    if not place:  # a station of an earlier version: from now on the place is its own, whatever the server states later
+    if not place:  # a station of an earlier version: from now on the place is its own, whatever the server names later
         place = str(library.settings.get(JOURNALS_SETTING, ""))
         JournalStore(place)  # refuses what is neither a folder nor a bucket
         replace(library.station, journals=place).write(folder)

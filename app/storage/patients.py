@@ -94,7 +94,7 @@ class Patients:
         return tuple(sorted(found, key=lambda patient: (patient.last_session, str(patient.id)), reverse=True))
 
     def change(self, patient: StoredPatient, reported: Patient) -> StoredPatient:
-        """Correct what was given of a patient; kept in the history, and undone from there.
+        """Correct what was entered about a patient; kept in the history, and undone from there.
 
         Raises
         ------
@@ -110,7 +110,7 @@ class Patients:
             return stored_patient(session, row)
 
     def merge(self, kept: StoredPatient, double: StoredPatient) -> StoredPatient:
-        """Give `kept` all sessions and goals of `double`, and what only `double` reports, which is then not listed.
+        """Give `kept` all sessions and goals of `double`, and what only `double` contains; it is then not listed.
 
         One correction of `kept`, undone as any other.
 
@@ -254,7 +254,7 @@ class Patients:
 
 
 def patient_changes(session: OrmSession, row: PatientRow, reported: Patient) -> list[Change]:
-    """What has to change in `row` so that it states what `reported` does; raises as `Patients.change`."""
+    """What has to change in `row` so that it contains what `reported` does; raises as `Patients.change`."""
     reported = _checked(reported)
     if folded(reported.code) != row.code_folded:
         _refuse_taken(session, reported.code)

@@ -31,7 +31,7 @@ from core.targets import tallies_of, with_tallies
 from devices.files.imports import folder_for, free_name
 
 AGE = "age_years"  # among what a patient's table of a session folder may hold beside what we read of it
-OLDEST_REPORTED = 89  # older people are so few that the age alone states who it is
+OLDEST_REPORTED = 89  # older people are so few that the age alone identifies them
 SEXES = ("female", "male", "other")
 LETTERS = 8  # of a pseudonym: 40 bits, so that two of ten thousand patients hardly ever share one
 LEAST_SHIFT, MOST_SHIFT = datetime.timedelta(days=30), datetime.timedelta(days=730)
@@ -173,7 +173,7 @@ def _sensor(info: SensorInfo, names: Mapping[str, str], clocks: Mapping[str, str
 def _alignment(
     reported: AlignmentChange | None, conditions: Mapping[str, str], *, is_kept: bool
 ) -> AlignmentChange | None:
-    """What was changed, with our word for the condition before. Without words what only they report is left out."""
+    """What was changed, with our word for the condition before. Without words what only they give is left out."""
     if reported is None:
         return None
     stated = (one if is_kept else _without_words(one) for one in reported.parts)
@@ -200,5 +200,5 @@ def _numbered(session: Session) -> Mapping[str, str]:
 
 
 def _numbers(word: str, names: Iterable[str]) -> Mapping[str, str]:
-    """A number for each name that states something, the same for the same."""
+    """A number for each name that is not empty, the same for the same."""
     return {name: f"{word} {number}" for number, name in enumerate(dict.fromkeys(filter(None, names)), 1)}

@@ -1,4 +1,4 @@
-"""The recordings of a library's sessions: which journals they are in, and what was given of them."""
+"""The recordings of a library's sessions: which journals they are in, and what was entered about them."""
 
 import datetime
 import json
@@ -156,7 +156,7 @@ class Recordings:
             note(self._unit, session, Action.DELETE, about("recording", row.id), is_final=True)
 
     def change(self, recording: StoredRecording, reported: Recording) -> StoredRecording:
-        """Correct what was given of a recording: condition, kept, strides left out and so on; undone from the history.
+        """Correct what was entered about a recording: condition, kept, strides left out etc.; undone from the history.
 
         Raises
         ------
@@ -186,7 +186,7 @@ class Recordings:
             return stored_recording(row)
 
     def find(self, recording_id: UUID) -> StoredRecording | None:
-        """The recording that a journal states it is; None: an orphan."""
+        """The recording that a journal names as its own; None: an orphan."""
         with self._unit.reading() as session:
             row = session.get(RecordingRow, recording_id)
             return None if row is None else stored_recording(row)
@@ -240,8 +240,7 @@ class Recordings:
         return found
 
     def destroyed(self, recording_ids: Iterable[UUID]) -> frozenset[UUID]:
-        """Which of these were ended and then destroyed for good, as the audit reports even where their rows are
-        gone."""
+        """Which of these were ended and then destroyed for good, as the audit shows even where their rows are gone."""
         ids = {about("recording", one): one for one in recording_ids}
         required = select(AuditRow.subject, AuditRow.action, AuditRow.details).where(AuditRow.subject.in_(ids))
         ended, gone = set(), set()
@@ -308,7 +307,7 @@ def _utc_s(started: str) -> int | None:
 
 
 def recording_changes(visit: SessionRow, row: RecordingRow, reported: Recording) -> list[Change]:
-    """What has to change in `row` so that it states what `reported` does; raises as `Recordings.change`."""
+    """What has to change in `row` so that it contains what `reported` does; raises as `Recordings.change`."""
     if reported.name != row.name:
         _refuse_taken(visit, reported.name)
     required = {name: getattr(reported, name) for name in RECORDING_CORRECTABLE}
@@ -331,7 +330,7 @@ def decide_row(unit: UnitOfWork, session: OrmSession, visit: SessionRow, row: Re
 
 
 def current_recording(session: OrmSession, recording: StoredRecording) -> RecordingRow:
-    """The row, as long as it is what `recording` states.
+    """The row, as long as it matches `recording`.
 
     Raises
     ------
@@ -356,7 +355,7 @@ def _free_number(session: OrmSession, visit: SessionRow, began_at: datetime.date
 
 
 def _instant(started: str) -> datetime.datetime | None:
-    """When a recording was begun; without a zone, as clocks show it here. None: nobody has stated."""
+    """When a recording was begun; without a zone, as clocks show it here. None: nobody has stated it."""
     try:
         return datetime.datetime.fromisoformat(started).astimezone()
     except ValueError:

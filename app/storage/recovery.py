@@ -36,12 +36,12 @@ from devices.files.imports import folder_for, free_name
 
 LAST_BYTES = (1 << 16, 1 << 22)  # where the last record is looked for: the longest has 1 MiB, most have far less
 EVERY_BYTES = 1 << 22  # between two reports
-FIRST_RECORDS = 100  # among which the mark is that states whose a recording is
+FIRST_RECORDS = 100  # among which is the mark that states whose a recording is
 
 
 @dataclass(frozen=True, slots=True)
 class Interrupted:
-    """A recording that nobody stopped, as its files' beginnings and ends report.
+    """A recording that nobody stopped, as its files' beginnings and ends show.
 
     Attributes
     ----------
@@ -56,7 +56,7 @@ class Interrupted:
     problem, remedy
         What keeps it from being recovered, and what to do; empty where nothing does.
     belonging
-        Of an orphan: which session it was begun in, and what was given of it; None where that is not known.
+        Of an orphan: which session it was begun in, and what was noted about it; None where that is not known.
     """
 
     recording_id: UUID
@@ -75,7 +75,7 @@ class Interrupted:
 
 @dataclass(frozen=True, slots=True)
 class Recovered:
-    """A recording that is closed now. `recorded_s` as all its records report; one report for each segment."""
+    """A recording that is closed now. `recorded_s` as all its records show; one report for each segment."""
 
     stored: StoredRecording
     recorded_s: float
@@ -212,7 +212,7 @@ class _Length:
 
 
 def _belonging(opened: OpenedLibrary, segments: Mapping[int, Path]) -> Belonging | None:
-    """What one of the first marks states of whose it is."""
+    """What one of the first marks states about whose it is."""
     for path in segments.values():
         first = islice(JournalReader(path, opened.data_key).records(), FIRST_RECORDS)
         for record in first:
@@ -246,7 +246,7 @@ def _last_of(content: bytes, seal: Seal) -> Record | None:
 
 
 class _Contents:
-    """What a whole reading of all segments states."""
+    """What reading all segments completely shows."""
 
     def __init__(self, opened: OpenedLibrary, interrupted: Interrupted, report: Report) -> None:
         self.is_simulated, self._length = False, _Length()

@@ -33,7 +33,7 @@ class Results:
             return None if row is None else stored_result(row)
 
     def analysed_by(self, algorithm: str) -> frozenset[UUID]:
-        """The sessions that have an analysis of this code, be it of what was given of them before."""
+        """The sessions that have an analysis of this code, even if of what was entered about them before."""
         required = select(ResultRow.session_id).where(
             ResultRow.kind == ResultKind.ANALYSIS, ResultRow.algorithm == algorithm
         )

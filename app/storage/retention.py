@@ -1,6 +1,6 @@
 """What was deleted thirty days ago is destroyed: the keys of its samples, its files, its rows.
 
-A journal opens with its own key only, which is wrapped in its header and in its row. Both are overwritten, then
+A journal opens with its own key only, which is kept wrapped in its header and in its row. Both are overwritten, then
 the file is removed; after a kill in between the next start goes on.
 
 A clock that is wrong destroys nothing. Stations go by their server's. A library in a folder goes by its audit: a time

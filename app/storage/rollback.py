@@ -16,7 +16,7 @@ from app.storage.library import Library
 from app.storage.stored import Checkpoint, LibraryError
 
 FORMAT = "gaitwright-seen/1"
-MOST_KEPT = 100  # checkpoints, to report from where on entries are missing
+MOST_KEPT = 100  # checkpoints, to show from where on entries are missing
 
 _log = logging.getLogger(__name__)
 
@@ -65,7 +65,7 @@ class SeenLibraries:
             self._latest[path] = end
 
     def accept(self, library: Library, rollback: Rollback) -> None:
-        """Go on from the library's state as it is; that this was stated is in its audit.
+        """Go on from the library's state as it is; that this was accepted is in its audit.
 
         Raises
         ------

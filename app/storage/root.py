@@ -89,7 +89,7 @@ def count_sheltered() -> int:
 
 
 def read_id(folder: Path) -> str:
-    """What the folder states which library it is; empty where it does not.
+    """Which library the folder states that it is; empty where it states none.
 
     Raises
     ------

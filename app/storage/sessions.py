@@ -50,7 +50,7 @@ class Sessions:
         self._unit = unit
 
     def create(self, patient_id: UUID, reported: Session, limits: Limits = NO_LIMITS) -> StoredSession:
-        """Add a visit that has no recordings yet; who the patient is is in the patient's own row.
+        """Add a visit that has no recordings yet; the patient's own row contains who the patient is.
 
         Raises
         ------
@@ -135,7 +135,7 @@ class Sessions:
     def change(
         self, visit: StoredSession, reported: Session, comment: str | None = None, limits: Limits | None = None
     ) -> StoredSession:
-        """Correct what was given of a visit: words, goniometer, turned signs, the clinician's `comment`, the `limits`.
+        """Correct what was entered about a visit: words, goniometer, turned signs, the `comment`, the `limits`.
 
         Kept in the history, and undone from there. Recordings, sensors and patient are changed where they belong.
 
@@ -204,7 +204,7 @@ class Sessions:
 def new_placement(
     unit: UnitOfWork, session: OrmSession, visit: SessionRow, sensors: Mapping[Site, PlacedSensor]
 ) -> PlacementRow:
-    """Add what is stated now of who is worn where; raises as `Sessions.place`."""
+    """Add what is stated now about which sensor is worn where; raises as `Sessions.place`."""
     if len({sensor.name for sensor in sensors.values()}) < len(sensors):
         raise LibraryError("One sensor cannot have two positions", "Assign each sensor once")
     row = PlacementRow(
@@ -225,7 +225,7 @@ def new_placement(
 def session_changes(
     row: SessionRow, reported: Session, comment: str | None = None, limits: Limits | None = None
 ) -> list[Change]:
-    """What has to change in `row` and its joints so that they say what is reported; raises as `Sessions.change`."""
+    """What has to change in `row` and its joints so that they match `reported`; raises as `Sessions.change`."""
     _refuse_wrong_joints(reported)
     needed = {name: getattr(reported, name) for name in SESSION_CORRECTABLE}
     if comment is not None:

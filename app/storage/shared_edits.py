@@ -1,7 +1,7 @@
-"""Edits of what another station may have changed meanwhile: merged, and where both changed the same, informed of both.
+"""Edits of what another station may have changed meanwhile: merged, and where both changed the same, both reported.
 
-Under the write lock the library compares what was shown, what is stated and what it holds. A value that is contested
-stays as the other side has it, and what was stated about it is in the history, made and taken back: whoever is asked
+Under the write lock the library compares what was shown, what is entered and what it holds. A value that is contested
+stays as the other side has it, and what was entered for it is in the history, made and taken back: whoever is asked
 may choose it later, and nothing is lost where nobody answers.
 """
 
@@ -53,7 +53,7 @@ class SharedEdits:
         self._unit = unit
 
     def patient(self, patient_id: UUID, base: Values, stated: Values) -> Edited[StoredPatient]:
-        """Take what is stated about a patient.
+        """Apply what is entered about a patient.
 
         Raises
         ------
@@ -74,7 +74,7 @@ class SharedEdits:
             return Edited(stored_patient(session, row), contests, others)
 
     def session(self, session_id: UUID, base: Values, stated: Values) -> Edited[StoredSession]:
-        """Take what is stated about a session, its comment and limits.
+        """Apply what is entered about a session, its comment and limits.
 
         Raises
         ------
@@ -95,7 +95,7 @@ class SharedEdits:
             return Edited(stored_session(row), contests, others)
 
     def recording(self, recording_id: UUID, base: Values, stated: Values) -> Edited[StoredRecording]:
-        """Take what is stated about a recording.
+        """Apply what is entered about a recording.
 
         Raises
         ------
@@ -131,15 +131,15 @@ class SharedEdits:
     def placement(
         self, session_id: UUID, seen: Mapping[UUID, UUID | None], worn: Sequence[tuple[Sequence[UUID], Worn]]
     ) -> Edited[StoredSession]:
-        """Say which sensor was worn where in recordings that were made already.
+        """State which sensor was worn where in recordings that were made already.
 
         Parameters
         ----------
         seen
             By recording the placement that was shown.
         worn
-            What is stated about which recordings. All of it comes to hold, or, where somebody else has stated otherwise
-            meanwhile of one of them, nothing.
+            What is stated for which recordings. All of it takes effect, or, where somebody else has meanwhile stated
+            otherwise for one of them, nothing.
 
         Raises
         ------
@@ -182,7 +182,7 @@ class SharedEdits:
 
 
 class _Edit:
-    """One edit of one thing. `changes` gives what has to change in its rows so that they hold values."""
+    """One edit of one thing. `changes` returns what has to change in its rows so that they hold values."""
 
     def __init__(
         self, unit: UnitOfWork, session: OrmSession, patient_id: UUID, session_id: UUID | None, changes: Changes
@@ -193,7 +193,7 @@ class _Edit:
     def take(
         self, base: Values, stated: Values, held: Values
     ) -> tuple[tuple[MergeConflict, ...], tuple[OtherChange, ...]]:
-        """Write what nobody contests, keep what is contested in the history, and report of both."""
+        """Write what nobody contests, keep what is contested in the history, and report both."""
         merge = three_way(base, stated, {field: held[field] for field in stated})
         contests = tuple(
             MergeConflict(field, stated[field], held[field], *self._author(field, stated[field]))

@@ -84,7 +84,7 @@ class Action(StrEnum):
 
 @dataclass(frozen=True, slots=True)
 class Operator:
-    """Who works here. `code` is that of the key slot and of the audit; `name` is on reports."""
+    """Who works here. `code` is that of the key slot and of the audit; `name` is printed on reports."""
 
     code: str
     name: str
@@ -168,7 +168,7 @@ class StoredJournal:
 class StoredRecording:
     """`judged_by`: who stated after a crash whether what was recovered is kept; empty until somebody has.
 
-    Not `is_decided`: it is kept until somebody reports it, and that is still to be asked.
+    Not `is_decided`: it is kept until somebody decides, and that is still to be asked.
     """
 
     id: UUID

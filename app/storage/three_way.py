@@ -1,7 +1,7 @@
 """What two people changed in one thing at the same time, brought together field by field.
 
 `base` is what was shown when the editing began, `mine` what was made of it, `theirs` what the library holds by now.
-What only one side changed is; what both changed to the same is no conflict; only what both changed differently has
+What only one side changed is kept; what both changed alike is no conflict; only what both changed differently has
 to be asked about. Strides that were left out are one yes or no each, so there nothing has to be asked.
 """
 
@@ -27,7 +27,7 @@ class Merge:
 
 @dataclass(frozen=True, slots=True)
 class MergeConflict:
-    """One field that both changed, and differently. `by` is the other's name, empty where nothing reports it."""
+    """One field that both changed, and differently. `by` is the other's name, empty where nothing names them."""
 
     field: str
     mine: Value
@@ -74,9 +74,9 @@ def three_way(base: Values, mine: Values, theirs: Values) -> Merge:
 
 
 def rebased(base: Values, stated: Values, held: Values) -> tuple[dict[str, Value], dict[str, Value]]:
-    """Go on from what the library holds now: what was stated since `base` stays stated, all else is as it is held.
+    """Go on from what the library holds now: what was entered since `base` stays, all else is as it is held.
 
-    Gives what it is stated on from now on, and what is stated.
+    Returns what it is based on from now on, and what is entered.
     """
     is_open = {field: value not in (base[field], held[field]) for field, value in stated.items()}
     return (

@@ -1,4 +1,4 @@
-"""The answer to a walk, as a screen reports it before anything else: one sentence, and one beside it.
+"""The answer to a walk, as a screen shows it before anything else: one sentence, and one beside it.
 
 They are the sentences of the report's first page, so that nobody reads on paper what the screen did not say.
 """
@@ -26,7 +26,7 @@ class Outcome(StrEnum):
 
     DIFFERS: something is so much larger than its error, or beyond a band, that it is reported. NOTHING: differences
     were judged, and none exceeds its error. OPEN: nothing is reported, and yet something exceeds its error or nothing
-    could be judged. UNREADABLE: a mean cannot be given of either leg.
+    could be judged. UNREADABLE: a mean cannot be reported for either leg.
     """
 
     DIFFERS = "differs"
@@ -66,11 +66,11 @@ def answer_of(facts: Facts) -> Answer:
 
 
 def _goal(facts: Facts) -> list[str]:
-    """How the walk is to a goal that was agreed before: to the first that is judged."""
+    """How the walk relates to a goal that was agreed before: to the first that is judged."""
     return [stated for one in facts.reported_goals if (stated := goal_sentence(one))][:1]
 
 
 def _brief_caveat(facts: Facts) -> list[str]:
-    """Which joint or leg cannot be read; why, and what to do, is one step behind the answer."""
+    """Which joint or leg cannot be read; why, and what to do, is shown one step behind the answer."""
     not_reported = [cause.where for cause in quality.causes(facts, (Verdict.NOT_REPORTED,)) if not cause.is_aside]
     return [tr("Not reported: {where}.").format(where=within_sentence(not_reported[0]))] if not_reported else []

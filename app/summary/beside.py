@@ -53,7 +53,7 @@ def beside_last_visit(
 
 
 def changes_on_curves(found: Comparison) -> list[Deviation]:
-    """Of each kind of joint the movement that differs most errors from what it is beside, on the walk shown."""
+    """Of each kind of joint the movement that differs by most errors from what is beside it, on the walk shown."""
     rows = sorted((row for row in found.rows if row.exceeds), key=lambda row: -row.difference.ratio)
     marked = []
     for kind in JointKind:

@@ -39,7 +39,7 @@ class Reservation(StrEnum):
 
 @dataclass(frozen=True)
 class Compared:
-    """One figure of one part beside that of the part everything is reported against."""
+    """One figure of one part beside that of the part everything is compared with."""
 
     measure: Measure
     side: Side
@@ -61,7 +61,7 @@ class Compared:
 
 @dataclass(frozen=True)
 class Comparison:
-    """`parts` in the order of time; each is reported against `parts[base]`."""
+    """`parts` in the order of time; each is compared with `parts[base]`."""
 
     kind: Contrast
     parts: tuple[Part, ...]
@@ -77,10 +77,10 @@ class Comparison:
         return tuple(part for k, part in enumerate(self.parts) if k != self.base)
 
     def base_of(self, part: Part) -> Part:
-        """What a part is reported against: the condition that its alignment was changed from, else that of all.
+        """What a part is compared with: the condition that its alignment was changed from, else that of all.
 
         Where sensors were strapped on again a condition may be there twice: the latest before the part counts. What the
-        prosthesis was put back to is reported against the first walks with it.
+        prosthesis was put back to is compared with the first walks with it.
         """
         if self.kind is not Contrast.CONDITIONS:
             return self.against
@@ -109,12 +109,12 @@ class Comparison:
 
     @property
     def latest(self) -> Part | None:
-        """The last part but the one reported against; None where it is alone."""
+        """The last part but the one that all are compared with; None where that is alone."""
         return self.others[-1] if self.others else None
 
     @property
     def changes(self) -> tuple[Compared, ...]:
-        """What the screen reports: between visits the change to the latest, else the changes of all parts.
+        """What the screen shows: between visits the change to the latest, else the changes of all parts.
 
         Its sentences and its table speak of these alone, so that no sentence states what the table does not show.
         """
@@ -122,7 +122,7 @@ class Comparison:
 
     @cached_property
     def rows(self) -> tuple[Compared, ...]:
-        """Every measure of each side of each part but the one reported against."""
+        """Every measure of each side of each part but the one that all are compared with."""
         return tuple(
             self._row(measure, side, part)
             for measure in MEASURES
@@ -131,7 +131,7 @@ class Comparison:
         )
 
     def first_readable(self, measure: Measure, side: Side) -> Part:
-        """The part that a measure is reported against: of visits, if the base cannot be read, the next that can."""
+        """The part that a measure is compared with: of visits, if the base cannot be read, the next that can."""
         if self.kind in (Contrast.VISITS, Contrast.CHOSEN):
             for part in self.parts[self.base :]:
                 found, verdict = part.figure(measure, side)
@@ -150,7 +150,7 @@ class Comparison:
         )
 
     def is_same_attachment(self, part: Part, against: Part | None = None) -> bool:
-        """Whether the sensors stayed on between a part and `against`, None: the one that all are reported against."""
+        """Whether the sensors stayed on between a part and `against`, None: the one that all are compared with."""
         other = against or self.against
         same = (part.visit, part.attachment) == (other.visit, other.attachment)
         return self.kind is not Contrast.VISITS and same
@@ -161,14 +161,14 @@ class Comparison:
         return len(kinds) == 1 and ZeroKind.NONE not in kinds
 
     def error_kind(self, part: Part, against: Part | None = None) -> ComparisonKind:
-        """What lies between a part and `against`, None: the one that all are reported against."""
+        """What lies between a part and `against`, None: the one that all are compared with."""
         other = against or self.against
         if self.kind is Contrast.VISITS or part.visit != other.visit:
             return ComparisonKind.VISITS
         return ComparisonKind.ATTACHED if self.is_same_attachment(part, other) else ComparisonKind.STRAPPINGS
 
     def compare(self, measure: Measure, side: Side, part: Part, against: Part | None = None) -> Compared:
-        """A measure of one leg against that of `against`, None: of the part that all are reported against."""
+        """A measure of one leg against that of `against`, None: of the part that all are compared with."""
         other = against or self.against
         kind, column, pair = self.error_kind(part, other), measure.column, (part, other)
         means = [one.mean(side, column, kind) for one in pair]

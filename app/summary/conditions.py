@@ -128,7 +128,7 @@ class Part:
         return found
 
     def strides_deg(self, joint: Joint) -> FloatArray:
-        """The joint's angle over the strides used of all walks (k, 101), degrees: evidence, whatever may be stated."""
+        """The joint's angle over the strides used of all walks (k, 101), degrees, even where it may not be reported."""
         cycles = [used_cycles(walk, joint) for walk in self.walks if joint.side in walk.gait]
         return np.rad2deg(np.concatenate(cycles)) if cycles else np.empty((0, POINTS))
 
@@ -137,7 +137,7 @@ class Part:
         return mean_cycle(self.strides_deg(joint) if self.is_drawn(joint) else np.empty((0, POINTS)))
 
     def curve(self, joint: Joint, *, is_about_mean: bool) -> StrideCurve:
-        """A joint's mean cycle as charts show it; without its height where that gives nothing beside the others'."""
+        """A joint's mean cycle as charts show it; without its height where that adds nothing to the others'."""
         found, off = self.cycle(joint), self.value(joint.side, "stance_percent")
         return StrideCurve(
             self.letter,
@@ -187,7 +187,7 @@ class Part:
         return tuple(map(both_sides, self.walks))
 
     def of_walk(self, column: str, kind: ComparisonKind) -> MeanOfStrides:
-        """Speed or cadence of both legs, as sure as one leg's strides are: adjacent ones step alike."""
+        """Speed or cadence of both legs, as sure as one leg's strides are: adjacent strides are alike."""
         value, one = self.of_both(column), self.mean(self.sides[0], column, kind)
         if not math.isfinite(value):
             return mean_of_strides(np.empty(0))
@@ -258,12 +258,12 @@ def parts_of(
     recordings
         Those of the session, in order of time, whose conditions and attachments count.
     prefix
-        Is before each letter.
+        Comes before each letter.
     agreed
         The goals by the session's day.
     """
     pools, letters, changed = pools_of(recordings), pool_letters(recordings), alignments_of(recordings)
-    others = iter(letter for letter in LETTERS if letter not in letters.values())  # of walks nobody has informed of
+    others = iter(letter for letter in LETTERS if letter not in letters.values())  # of walks not in `recordings`
     found: dict[Pool, list[RecordingAnalysis]] = {}
     for walk in _walks(analysis):
         found.setdefault(pools.get(walk.name, Pool(walk.name)), []).append(walk)

@@ -1,4 +1,4 @@
-"""What of a visit is in the patient's course: a few figures of each condition, with what judging them needs.
+"""What a visit adds to the patient's course: a few figures of each condition, with what judging them needs.
 
 They are few enough to be kept beside the session, so that home shows the course of many visits without analysing one.
 """
@@ -55,8 +55,7 @@ class CourseFigure:
 
 @dataclass(frozen=True, slots=True)
 class CourseTest:
-    """What a timed test of a visit is made for, over its attempts; `found` is NaN where none has it, or not
-    reported."""
+    """What a visit's timed test is made for, over its attempts; `found` is NaN if none has it, or not reported."""
 
     column: str
     found: MeanOfAttempts
@@ -134,7 +133,7 @@ def course_of(analysis: Analysis, recordings: Sequence[Recording]) -> Course:
 
 
 def timed_tests_of(analysis: Analysis, recordings: Sequence[Recording]) -> tuple[CourseCondition, ...]:
-    """The timed tests of a visit alone, without what its walks report besides."""
+    """The timed tests of a visit alone, without what its walks give besides."""
     tested = _tests(analysis, recordings)
     return tuple(CourseCondition(name, 0, (), tests=tests) for name, tests in tested.items())
 

@@ -47,7 +47,7 @@ USUAL = (SPEED_LANE, KNEE_LANE, STANCE_LANE)
 class CourseVisit:
     """One visit on the axis of dates. `course` None: it is not computed yet, or no longer holds.
 
-    `clock`: at which time of that day, where it is known; it reports visits of one day apart.
+    `clock`: at which time of that day, where it is known; it distinguishes visits of one day.
     """
 
     id: UUID
@@ -96,7 +96,7 @@ class LaneChange:
 
 @dataclass(frozen=True, slots=True)
 class CourseLane:
-    """`changes`: of the lines of the condition that is given of. `band`: its first visit less and plus the error.
+    """`changes`: of the lines of the condition that is reported. `band`: its first visit less and plus the error.
 
     `goals`: those that hold now.
     """
@@ -165,7 +165,7 @@ def lanes(
     Parameters
     ----------
     condition
-        The only one that is shown; None: all of them, and changes are given of the most frequent one.
+        The only one that is shown; None: all of them, and changes are reported for the most frequent one.
     kinds
         What has a lane in place of these.
     """
@@ -242,7 +242,7 @@ def _difference(
 
 
 def _band(lines: Sequence[LaneLine], condition: str) -> tuple[float, float] | None:
-    """Where one line alone is given of and has two values to compare: the first, less and plus the error."""
+    """Where one line alone is reported and has two values to compare: the first, less and plus the error."""
     of_condition = [line for line in lines if line.condition == condition]
     if len(of_condition) != 1 or len(of_condition[0].reported) < 2:
         return None

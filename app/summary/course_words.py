@@ -104,7 +104,7 @@ def key_in_words(lanes: Sequence[CourseLane]) -> str:
 
 
 def lane_in_words(lane: CourseLane, visits: Sequence[CourseVisit]) -> str:
-    """All of a lane, for who receives it: every value with its day, then what has changed."""
+    """All of a lane, for a screen reader: every value with its day, then what has changed."""
     name = spoken_name(lane.kind.column, is_between=lane.kind.is_between)
     agreed = [tr("Goal: {required}.").format(required=goal_in_words(goal)) for goal in lane.goals]
     if not lane.lines:
@@ -121,7 +121,7 @@ def lane_in_words(lane: CourseLane, visits: Sequence[CourseVisit]) -> str:
 
 
 def reported_goals(lane: CourseLane, one: LaneChange, visits: Sequence[CourseVisit]) -> list[GoalFigure]:
-    """How the last value of a line is to its goals, of those alone that were agreed before the visit's day."""
+    """How the last value of a line compares with its goals, of those agreed before the visit's day."""
     walked = walked_at(visits, one.line)
     if walked is None:
         return []
@@ -215,7 +215,7 @@ def undecided_step(session_id: UUID, day: datetime.date | None) -> NextStep:
 
 
 def _head(kind: LaneKind, line: LaneLine, *, has_condition: bool) -> str:
-    """Of what and whom values are reported."""
+    """What the values are of, and whose they are."""
     name = spoken_name(kind.column, is_between=kind.is_between)
     who = [side_name(line.side)] if line.side is not None else []
     who += [condition_in_words(line.condition)] if has_condition else []

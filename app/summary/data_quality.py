@@ -1,4 +1,4 @@
-"""Which parts of a walk can be read, what is against the others, and what to do: as the screen reports it."""
+"""Which parts of a walk can be read, what speaks against the others, and what to do: as shown on the screen."""
 
 from dataclasses import dataclass
 
@@ -45,7 +45,7 @@ ALL_READ = {
 
 @dataclass(frozen=True, slots=True)
 class QualityLine:
-    """One thing that is against a figure: `where` it is, `why`, and what `to_do`, which may be empty.
+    """One thing that speaks against a figure: `where` it is, `why`, and what `to_do`, which may be empty.
 
     `side` is the leg whose free motion mends it, None where that does not. `is_aside`: each leg can be read.
     """
@@ -74,7 +74,7 @@ class DataQuality:
     verdict
         The gravest of all.
     lines
-        What is against it, the gravest first.
+        What speaks against it, the gravest first.
     in_order
         What was looked at and found in order; empty where nothing was.
     """
@@ -125,7 +125,7 @@ def _of_finding(finding: Finding) -> QualityLine:
 def _noticed(visit: AnalysedVisit, names: set[str], gates: set[str]) -> list[Finding]:
     """What was noticed of these recordings or of the session that no verdict states already, the gravest first.
 
-    Where it was found is reported as the reader knows it.
+    Where it was found is named as the reader knows it.
     """
     others = {one.name for one in visit.session.recordings} - names if names else set()
     found = [

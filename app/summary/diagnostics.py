@@ -16,7 +16,7 @@ from core.verdicts.diagnostics import JointDiagnostics
 
 AXIS_COST, PROJECTED_RATES, TWO_WAYS, FIGURES = "axis_cost", "projected_rates", "two_ways", "figures"
 SIMULATED = "simulated_"  # before the name of a file, where it cannot be lost
-MARGIN_BEYOND = 100.0  # how many times better states no more from here on
+MARGIN_BEYOND = 100.0  # a margin larger than this adds nothing
 SENSORS = ("proximal", "distal")
 UNIT_WORDS = {"deg_s": "°/s", "deg": "°", "mm": "mm", "ms": "ms", "s": "s", "percent": "%", "": ""}
 

@@ -46,14 +46,14 @@ OF_WALKS = {measure.column: measure for measure in MEASURES if measure.is_of_wal
 
 # of hips and pelvis no error of a difference is known: none is judged
 COMPARED = columns_of(ParameterFile.STRIDES, ParameterFile.PEAKS, ParameterFile.FITTING, ParameterFile.PELVIS)
-SIGNED = ("foot_pitch_at_contact_deg",)  # whose nought is no less of it: a share of it gives nothing
+SIGNED = ("foot_pitch_at_contact_deg",)  # 0 is not the least of it: a share of it means nothing
 
 NOT_REPORTED = Difference(math.nan, math.nan, Judgement.NOT_REPORTED)
 
 
 @dataclass(frozen=True, slots=True)
 class Row:
-    """One figure of `part` and of the one it is reported against. `side` None: of both. NaN where it is not known.
+    """One figure of `part` and of the one it is compared with. `side` None: of both. NaN where it is not known.
 
     `status` is the worse of what may be stated about the two.
     """
@@ -71,8 +71,8 @@ class Row:
 def comparisons_of(visits: Sequence[tuple[Session, Analysis]]) -> list[Comparison]:
     """Within each visit its conditions, then each later visit against the first.
 
-    Between visits a condition is reported against the same one of the first, and never against another; what is not
-    compared for that reason `without_common_condition` reports. Letters of several visits have the visit's number
+    Between visits a condition is compared with the same one of the first, and never with another; what is not
+    compared for that reason is in `without_common_condition`. Letters of several visits have the visit's number
     before them.
     """
     of_visits = []
@@ -111,7 +111,7 @@ def _by_condition(visits: Sequence[tuple[Session, Analysis]]) -> list[Mapping[st
 
 
 def rows_of(comparison: Comparison) -> Iterator[Row]:
-    """Every figure that a part and the one it is reported against both measured; those not reported without figures."""
+    """Every figure measured both of a part and of the one it is compared with; without figures if not reported."""
     against = comparison.against
     for part in comparison.others:
         for side in Side:
@@ -207,8 +207,7 @@ def write_sides(parts: Sequence[Part], sides: tuple[Side, Side], path: Path) -> 
 
 
 def _curves(comparison: Comparison, part: Part, side: Side) -> Iterator[Row]:
-    """How far apart the mean curves lie on average, where the heights of both are distinguished from the same kind of
-    zero."""
+    """How far apart the mean curves lie on average, where both heights are from the same kind of zero."""
     nothing = MeanAndSd(math.nan, math.nan, 0)
     for joint in comparison.joints:
         if joint.side is not side or not comparison.has_one_zero(joint):

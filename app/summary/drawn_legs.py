@@ -59,7 +59,7 @@ def how_drawn(session: Session, *, has_pelvis: bool = False) -> str:
 
 
 def draw_legs(session: Session, analysis: Analysis, recording: RecordingAnalysis) -> dict[Side, DrawnLeg]:
-    """Each leg of a walk whose knee was found and whose thigh was received."""
+    """Each leg of a walk whose knee was found and whose thigh sensor sent samples."""
     if recording.kind is not RecordingKind.WALKING:
         return {}
     raw = next((r for r in session.recordings if r.name == recording.name), None)
@@ -173,7 +173,7 @@ def _thigh_directions(
 
 
 def _upright(session: Session, raw: Recording, knee: JointCalibration) -> FloatArray:
-    """Up in the thigh sensor's axes (3,) while standing, else on average over the walk; NaN if never received."""
+    """Up in the thigh sensor's axes (3,) while standing, else on average over the walk; NaN if it never sent."""
     site = knee.joint.proximal
     standing = next((r for r in session.recordings if r.name == knee.standing_from and r.holds(site)), raw)
     acc_m_s2 = standing.imu[site].acc_m_s2
@@ -185,7 +185,7 @@ def _upright(session: Session, raw: Recording, knee: JointCalibration) -> FloatA
 def _orientations(
     session: Session, raw: Recording, knee: JointCalibration, time_s: FloatArray
 ) -> Iterator[tuple[IntArray, FloatArray]]:
-    """Frames at which the thigh was received, and its orientation there, block by block."""
+    """Frames at which the thigh sensor sent, and its orientation there, block by block."""
     site = knee.joint.proximal
     block, info = raw.imu[site], session.sensors.get(site)
     kind = (info.rate_kind if info else None) or RateKind.INSTANTANEOUS

@@ -27,7 +27,7 @@ from core.verdicts.model import Assessment, Verdict, Verdicts
 from core.verdicts.norms import Bands, ReferenceCurves, ReferenceValues, height_offset_deg, peak_away_sd
 from core.verdicts.quantities import WINDOWS, assessment_of, peak_percent
 
-KINDS = (JointKind.KNEE, JointKind.ANKLE)  # that every report reports
+KINDS = (JointKind.KNEE, JointKind.ANKLE)  # that every report covers
 
 
 @dataclass(frozen=True, eq=False)
@@ -35,7 +35,7 @@ class Facts:
     """One condition of one visit, by one of its walks: every figure, curve and verdict is of the walks of `part`.
 
     What only one recording has, as when each stride was, is that of `walk`. `chosen` are the walks that are looked at
-    together: where two of them are of one condition, each is alone. `course` are the patient's visits in order of
+    together: where two of them are of one condition, each counts alone. `course` are the patient's visits in order of
     time, this one the last; the changes since then are findings of this one.
     """
 
@@ -75,17 +75,17 @@ class Facts:
 
     @cached_property
     def part(self) -> Part:
-        """The condition as it is in every comparison."""
+        """The condition as it appears in every comparison."""
         return part_of(self.visit, self.walk.name, self.chosen)
 
     @cached_property
     def goals(self) -> tuple[GoalFigure, ...]:
-        """What had been agreed by the walk's day, and how its condition is to it."""
+        """What had been agreed by the walk's day, and how its condition compares with it."""
         return of_part(self.part)
 
     @property
     def reported_goals(self) -> tuple[GoalFigure, ...]:
-        """Those of which may be stated whether they are reached: agreed before the walk's day."""
+        """Those that may be judged as reached or not: agreed before the walk's day."""
         return tuple(one for one in self.goals if one.goal in self.part.agreed.reported)
 
     @property
@@ -140,7 +140,7 @@ class Facts:
 
     @property
     def kinds(self) -> tuple[JointKind, ...]:
-        """The kinds of joints that are given of, from the trunk down: hips where one was measured."""
+        """The kinds of joints that are reported, from the trunk down: hips where one was measured."""
         return (JointKind.HIP, *KINDS) if self.has_joint(JointKind.HIP) else KINDS
 
     def has_joint(self, kind: str) -> bool:
@@ -151,7 +151,7 @@ class Facts:
         return assessment_of(self.verdicts, side, column)
 
     def has_no_zero(self, kind: str) -> bool:
-        """Whether a height of either leg's joint gives nothing: both curves are then drawn about their own mean."""
+        """Whether a height of either leg's joint means nothing: both curves are then drawn about their own mean."""
         joints = [joint_of(kind, side) for side in Side]
         reported = [self.verdicts.joint(joint) for joint in joints if self.is_measured(joint)]
         return any(found.shape.is_reported and not found.height.is_reported for found in reported)

@@ -1,4 +1,4 @@
-"""What was measured beside the goals that were agreed with a patient, and how each value is to its goal."""
+"""What was measured beside the goals agreed with a patient, and how each value compares with its goal."""
 
 import math
 from collections.abc import Sequence
@@ -24,8 +24,7 @@ from core.verdicts.stride_means import MeanOfStrides
 
 @dataclass(frozen=True, slots=True)
 class GoalFigure:
-    """A goal and what was measured of it. `value` and `error` are NaN where they are not reported; then nothing is
-    stated."""
+    """A goal and what was measured of it. Where not reported, `value` and `error` are NaN and nothing is stated."""
 
     goal: Goal
     value: float
@@ -52,7 +51,7 @@ def measured(goal: Goal, part: Part) -> GoalFigure:
         found = part.of_walk(goal.column, ComparisonKind.VISITS)
         return _figure(goal, found, part.assessment_of_walk(goal.column))
     side = goal.of.side
-    assert side is not None  # the other two are reported above
+    assert side is not None  # the other two are handled above
     if not part.is_measured(side, goal.column):
         return _nothing(goal, Verdict.NOT_MEASURED)
     found = part.mean(side, goal.column, ComparisonKind.VISITS)
@@ -60,7 +59,7 @@ def measured(goal: Goal, part: Part) -> GoalFigure:
 
 
 def in_course(goal: Goal, walked: CourseCondition) -> GoalFigure:
-    """What is kept of a visit's condition states of a goal."""
+    """The goal's figure, from what is kept of a visit's condition."""
     if goal.of is GoalOf.BETWEEN:
         between = walked.between_legs(goal.column)
         return _between(goal, between, Verdict.READ)
@@ -127,7 +126,7 @@ def value_in_words(found: GoalFigure) -> str:
 
 
 def standing_in_words(found: GoalFigure) -> str:
-    """How a value is to its goal, after the goal was named."""
+    """How a value compares with its goal, after the goal was named."""
     error = fixed(found.error, _places(found.goal.column)) + short_unit(found.goal.column)
     stated = {
         GoalStanding.SHORT: tr("not reached, beyond measurement error (±{error})"),
@@ -146,7 +145,7 @@ def beyond_in_words(found: GoalStanding) -> str:
 
 
 def brief_standing(found: GoalStanding) -> str:
-    """The same in a few words, where the goal is beside."""
+    """The same in a few words, where the goal is shown beside it."""
     return {
         GoalStanding.SHORT: tr("not reached, beyond error"),
         GoalStanding.SHORT_INSIDE: tr("not reached; the difference is within measurement error"),
@@ -158,7 +157,7 @@ def brief_standing(found: GoalStanding) -> str:
 
 
 def goal_sentence(found: GoalFigure) -> str:
-    """A goal that was agreed before, what was measured, and how that is to it; nothing where no value is judged."""
+    """A goal that was agreed before, what was measured, and how they compare; nothing where no value is judged."""
     if found.standing in (GoalStanding.UNKNOWN, GoalStanding.NOT_JUDGED):
         return ""
     stated = tr("Goal: {goal}; measured {value}, {standing}.")

@@ -43,7 +43,7 @@ class MeanLegs:
     reference
         The leg whose stride is gone through.
     other_contact_percent
-        When in that stride the other foot comes down; half of it where the clocks do not report, see `is_together`.
+        When in that stride the other foot comes down; half of it where the clocks cannot say, see `is_together`.
     is_together
         Whether both legs are known at one instant.
     tilt_rad
@@ -81,7 +81,7 @@ class MeanLegs:
 
 
 def mean_legs(session: Session, analysis: Analysis, walk: RecordingAnalysis) -> MeanLegs | None:
-    """The mean over the strides used; None where no thigh was received or no knee's height may be read."""
+    """The mean over the strides used; None where no thigh sensor sent or no knee's height may be read."""
     drawn = draw_legs(session, analysis, walk)
     legs = {side: leg for side, one in drawn.items() if (leg := _mean_leg(walk, side, one)) is not None}
     if not legs:

@@ -123,7 +123,7 @@ def _decimals(column: str, value: float, other: float, difference: float) -> int
 
 
 def _unit(column: str) -> str:
-    """As it is behind a number; a share is that of the gait cycle, since "2 % more" means another thing."""
+    """As it is written behind a number; a share is that of the gait cycle, since "2 % more" means another thing."""
     is_share = unit_of(column) is Unit.PERCENT
     return f"\N{NO-BREAK SPACE}{tr('% of the gait cycle')}" if is_share else unit_and_decimals(column)[0]
 

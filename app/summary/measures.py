@@ -44,7 +44,7 @@ class Measure:
 
     @property
     def needs_height(self) -> bool:
-        """Whether it states something only with a zero of the same kind."""
+        """Whether it means something only with a zero of the same kind."""
         known = BY_COLUMN.get(self.column)
         return known is not None and known.rests_on is QuantityClass.HEIGHT
 

@@ -170,7 +170,7 @@ def why_not_reported(facts: Facts, joint: Joint) -> str:
 
 
 def why_missing(facts: Facts, joint: Joint) -> str:
-    """What is in a joint's place beside those that were measured."""
+    """What is shown in a joint's place beside those that were measured."""
     if joint.side not in facts.gait:
         return tr("{joint}: not measured.").format(joint=capitalised(name_of(joint)))
     worn = facts.visit.recording(facts.walk.name).imu
@@ -193,7 +193,7 @@ def why_no_joint(facts: Facts, kind: str) -> str:
 
 
 def why_no_band(facts: Facts, why: NoBand | None) -> str:
-    """Why no band is beside this walk; empty where one does."""
+    """Why no band is shown beside this walk; empty where one is."""
     if facts.gait and not facts.sides_with_band:
         return tr("No reference: a prosthetic leg is not compared with other people.")
     return tr(WHY_NO_BAND[why]) if why is not None else ""
@@ -226,8 +226,7 @@ def band_in_words(facts: Facts, *, is_at_height: bool) -> str:
 
 
 def dot(verdict: Verdict) -> Picture:
-    """Full where something can be read, half where with care, empty where it is not reported, a dash where not
-    measured."""
+    """Full where it can be read, half where with care, empty where not reported, a dash where not measured."""
     x = y = DOT / 2
     radius = DOT / 2 - 0.6
     if verdict is Verdict.NOT_MEASURED:

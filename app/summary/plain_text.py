@@ -48,7 +48,7 @@ def plain(text: str) -> str:
             shown[-1] += character
             marks += 1
     if any(unicodedata.bidirectional(letter[0]) in RIGHT_TO_LEFT for letter in shown):
-        # a bracket that is turned round is the other one's glyph, and a PDF gives what a glyph means once for all pages
+        # a bracket that is turned round is the other one's glyph, and a PDF maps a glyph to text once for all pages
         shown = [" " if unicodedata.mirrored(letter[0]) else letter for letter in shown]
     return " ".join("".join(shown).split())
 
@@ -97,7 +97,7 @@ def _has_marks(letter: str) -> bool:
 
     A colon is in every family and set in Inter, whatever the marks behind it.
 
-    A PDF gives what each glyph of a font means once: a mark on an Inter letter that no glyph holds together with it
+    A PDF maps each glyph of a font to text once: a mark on an Inter letter that no glyph holds together with it
     would be copied and read aloud with that letter in every word.
     """
     inter, *others = _coverages()

@@ -30,7 +30,7 @@ Place = Joint | Side | None
 def caveats(
     facts: Facts, of: Iterable[Verdict] = (Verdict.NOT_REPORTED, Verdict.CARE), *, is_of_joints: bool = False
 ) -> list[str]:
-    """Why something is not reported or read with care, the gravest first; what holds alike of several places once.
+    """Why something is not reported, or read with care, the gravest first; what holds alike of several places once.
 
     `is_of_joints`: of the joints alone, not of the legs' timing and distance.
     """
@@ -41,7 +41,7 @@ def caveats(
 
 @dataclass(frozen=True, slots=True)
 class Cause:
-    """Why something is not reported or read with care, stated once for every place of which it holds alike.
+    """Why something is not reported, or is read with care, stated once for every place of which it holds alike.
 
     `where` names the places, `gate` is that of `core.verdicts.gates`.
     """
@@ -131,7 +131,7 @@ def gravest(facts: Facts) -> list[str]:
 
 
 def to_do(facts: Facts, joint: Joint) -> list[str]:
-    """What makes a joint that is not reported readable the next time."""
+    """What to do so that a joint that is not reported can be read the next time."""
     found = [one.words.to_do for one in causes(facts, (Verdict.NOT_REPORTED,)) if {joint, joint.side} & set(one.places)]
     return list(dict.fromkeys(filter(None, found)))[:MAX_TO_DO]
 
@@ -150,7 +150,7 @@ def cells(facts: Facts) -> list[tuple[str, str]]:
 
 
 def _without_lag(facts: Facts) -> list[Joint]:
-    """Joints whose motion does not report a lag from none, so that "none found" would say too much."""
+    """Joints whose motion does not distinguish a lag from none, so that "none found" would say too much."""
 
     def is_unknown(found: JointCalibration) -> bool:
         return found.method is Method.ROBUST and found.lag_sd_s is None and not found.is_clock_shared

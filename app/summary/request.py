@@ -34,7 +34,7 @@ class AnalysedVisit:
         raise KeyError(name)
 
     def recording(self, name: str) -> Recording:
-        """Give the recording as it was reported."""
+        """Give the recording as it was entered."""
         return next(recording for recording in self.session.recordings if recording.name == name)
 
     def condition_of(self, name: str) -> str:
@@ -64,7 +64,7 @@ class ReportRequest:
     earlier
         A visit before this one to compare with, in place of the conditions.
     course
-        The patient's visits in order of time, this one the last; of two and more a page reports the course.
+        The patient's visits in order of time, this one the last; from two on, a page shows the course.
     patient_language
         In which language a page for the patient is added, as "de"; empty: none is.
     """

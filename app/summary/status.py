@@ -1,5 +1,4 @@
-"""What may be stated, as the files have it: a word per joint, a word per sample, and the verdicts with their
-reasons."""
+"""What may be stated, as the files have it: a word per joint and per sample, and the verdicts with reasons."""
 
 from collections.abc import Iterator
 from typing import NamedTuple
@@ -32,9 +31,9 @@ def joint_status(recording: RecordingAnalysis, joint: Joint) -> str:
 
 
 def status_of(found: JointVerdicts) -> str:
-    """What holds of a joint's angle in one word: read, care, not reported, range_only or no_zero; empty: not measured.
+    """One word for a joint's angle: `READ`, `CARE`, `NOT_REPORTED`, `RANGE_ONLY` or `NO_ZERO`; empty: not measured.
 
-    `range_only`: the sign is not known, so the curve may be mirrored. `no_zero`: its height gives nothing.
+    `RANGE_ONLY`: the sign is not known, so the curve may be mirrored. `NO_ZERO`: its height means nothing.
     """
     if found.shape.verdict is Verdict.NOT_MEASURED:
         return ""

@@ -48,7 +48,7 @@ def trend_of(found: Comparison, row: Compared) -> Trend:
 
 
 def _values(found: Comparison, row: Compared) -> tuple[float, ...]:
-    """As the table reports them; heights above zeros of different kinds make no line."""
+    """As the table shows them; heights above zeros of different kinds make no line."""
     measure, joint = row.measure, row.measure.joint(row.side)
     if joint is not None and measure.needs_height and not found.has_one_zero(joint):
         return (math.nan,) * len(found.parts)

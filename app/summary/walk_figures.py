@@ -128,7 +128,7 @@ def side_cycle(part: Part, joint: Joint) -> SideCycle:
 def peak_figures(part: Part, reference: ReferenceCurves | None) -> dict[str, tuple[Figure, ...]]:
     """Rows of each kind of joint, degrees and percent of the stride; the band by the same windows on its mean curve.
 
-    The band is where its source has it; None: none may stand beside this walk.
+    The band lies where its source has it; None: none may be shown beside this walk.
     """
     found: dict[str, tuple[Figure, ...]] = {}
     for kind, rows in ROWS.items():
@@ -167,8 +167,7 @@ def pelvis_figures(part: Part) -> dict[str, tuple[Figure, ...]]:
 
 
 def pelvis_in_words(part: Part) -> list[str]:
-    """Why figures of pelvis and abduction are not reported, what holds alike of both once; how often the body
-    turned."""
+    """Why figures of pelvis and abduction are not reported, shared reasons once; how often the body turned."""
     if not part.has_pelvis:
         return []
     stated = part.verdicts
@@ -191,7 +190,7 @@ def time_distance_figures(
 ) -> tuple[Figure, ...]:
     """Rows of time and distance beside the group of this speed, None without one.
 
-    What both legs make together is beside it only where both may be compared with other people's.
+    What both legs make together is set beside it only where both may be compared with other people's.
     """
     is_any, is_all = bool(sides_with_band), sides_with_band.issuperset(part.sides)
 
@@ -239,8 +238,7 @@ def time_distance_figures(
 
 
 def doubt_in(found: JointVerdicts) -> str | None:
-    """Why a joint's curve does not say all that a curve can: the gravest of what is not reported; None where nothing
-    is."""
+    """Why a joint's curve does not say all that it could: the gravest of what is not reported; None where all is."""
     if found.shape.verdict is Verdict.NOT_REPORTED:
         return NOT_REPORTED
     if found.sign.verdict is Verdict.NOT_REPORTED:
@@ -251,15 +249,14 @@ def doubt_in(found: JointVerdicts) -> str | None:
 
 
 def verdict_of(found: JointVerdicts) -> Verdict:
-    """What may be read of a joint's curve as it is drawn; a height that is not reported is stated beside it."""
+    """What may be read of a joint's curve as it is drawn; that its height is not reported is stated beside it."""
     parts = (part.verdict for part in (found.shape, found.sign, found.height))
     gravest = worst(part for part in parts if part is not Verdict.NOT_MEASURED)
     return Verdict.CARE if gravest is Verdict.NOT_REPORTED and doubt_in(found) != NOT_REPORTED else gravest
 
 
 def reason_in_words(found: JointVerdicts) -> str:
-    """The gravest reason against a joint's curve and what to do: of a not reported shape, else of a height, else
-    care."""
+    """The gravest reason against a joint's curve, what to do: of a shape not reported, else height, else care."""
     return " ".join(filter(None, _words_of(found)))
 
 
@@ -280,7 +277,7 @@ def _words_of(found: JointVerdicts) -> GateWords:
 def band_of_peak(
     reference: ReferenceCurves, kind: str, column: str, window_name: str | None
 ) -> tuple[float, float] | None:
-    """1 SD about the group's mean curve where its peak lies; None for what its mean curve cannot report."""
+    """1 SD about the group's mean curve where its peak lies; None for what its mean curve cannot show."""
     at = peak_place(reference, kind, column, window_name)
     if at is None:
         return None

@@ -45,7 +45,7 @@ class LegsRow:
 
     @property
     def is_judged(self) -> bool:
-        """Whether the difference is against an error."""
+        """Whether the difference is compared with an error."""
         return self.difference.is_reported and self.difference.error > 0
 
 

@@ -51,7 +51,7 @@ MAX_OFFSET_DEG = 10.0  # laboratories differ by 7 deg in the height of their cur
 
 
 class Since(IntEnum):
-    """What a finding is reported against; that which is reported first is least."""
+    """What a finding is compared with; that which is reported first is least."""
 
     CHOSEN = 0
     LAST_VISIT = 1
@@ -141,8 +141,7 @@ def _without_family(candidates: list[Candidate]) -> list[Candidate]:
 
 
 def nothing_found(facts: Facts, comparison: Comparison | None) -> list[str]:
-    """What is stated where no finding is reported: whether anything exceeds its error, and whether the band holds
-    all."""
+    """Stated where no finding is reported: whether anything exceeds its error, and whether the band holds all."""
     judged = judged_differences(facts, comparison)
     away = [abs(sd) for side, column in _peaks(facts) if math.isfinite(sd := facts.away_sd(side, column))]
     stated = []
@@ -219,7 +218,7 @@ def _changes(facts: Facts, comparison: Comparison | None) -> Iterator[Candidate]
 
 
 def _course(facts: Facts) -> list[TrendLine]:
-    """What the page of the course reports the condition that is shown, in the same lines."""
+    """What the page of the course reports about the condition that is shown, in the same lines."""
     walked, agreed = walked_visits(facts.course, facts.condition), facts.part.agreed
     return trend_lines(walked, facts.condition, (*trend_columns(agreed), *COLUMNS.values()), agreed)
 

@@ -17,7 +17,7 @@ def _place() -> Path:
 
 
 def known_columns() -> dict[str, Columns]:
-    """By the port's `key`; what cannot be read is left out, and has to be reported again."""
+    """By the port's `key`; what cannot be read is left out, and has to be entered again."""
     try:
         kept = json.loads(_place().read_text(encoding="utf-8"))
     except (OSError, ValueError):

@@ -46,7 +46,7 @@ def start_logging(folder: Path) -> None:
     handler.setFormatter(NamelessFormatter())
     root = logging.getLogger()
     root.addHandler(handler)
-    root.setLevel(logging.WARNING)  # others are received when something is wrong
+    root.setLevel(logging.WARNING)  # others are logged when something is wrong
     for package in OWN_PACKAGES:
         logging.getLogger(package).setLevel(logging.INFO)
     sys.excepthook = _show_end_of_program
@@ -66,7 +66,7 @@ def error_report(folder: Path) -> str:
 
 
 def log_qt_messages() -> None:
-    """Note that Qt warned, and how gravely; what it states may hold a path, so that goes to the terminal only."""
+    """Note that Qt warned, and how gravely; its words may hold a path, so they go to the terminal only."""
     from PySide6.QtCore import QMessageLogContext, QtMsgType, qInstallMessageHandler
 
     levels = {
@@ -122,7 +122,7 @@ def _kind(error: BaseException) -> str:
 
 
 def _has_known_name(kind: type) -> bool:
-    """Whether the class is in a module under its name: one made at run time may be called anything."""
+    """Whether the class is found in its module by its name: one made at run time may be called anything."""
     return getattr(sys.modules.get(kind.__module__), kind.__name__, None) is kind
 
 

@@ -42,7 +42,7 @@ class Loudspeaker(QObject):
     """Plays one sound after the other. Where nothing can play, it lets the desktop beep.
 
     Of several that are asked for while another sounds only the latest is kept: an old one would report what is over.
-    Only the tick of a metronome takes no other's place: it gives nothing that the next one does not.
+    Only the tick of a metronome takes no other's place: it signals nothing that the next one does not.
     """
 
     _not_received = Signal()
@@ -56,7 +56,7 @@ class Loudspeaker(QObject):
         self._not_received.connect(self._on_not_received, Qt.ConnectionType.QueuedConnection)
 
     def play(self, sound: Sound) -> None:
-        """Let `sound` be received, at once or after the one that sounds; nothing while the bell is off."""
+        """Play `sound`, at once or after the one that sounds; nothing while the bell is off."""
         if not self.is_on:
             return
         if self._thread is None:

@@ -52,9 +52,9 @@ class ThemeNotifier(QObject):
         self.changed.emit()
 
     def _put_on(self, app: QApplication) -> None:
-        """Give the application style, palette and fonts, and report every widget, those within others first.
+        """Give the application style, palette and fonts, and notify every widget, those within others first.
 
-        Qt itself would report them in the order of their addresses, and what is laid out by hand measures its parts.
+        Qt itself would notify them in the order of their addresses, and what is laid out by hand measures its parts.
         """
         style = app.style()
         if isinstance(style, ControlStyle):

@@ -353,7 +353,7 @@ class ControlStyle(QProxyStyle):
         assert isinstance(option, QStyleOptionProgressBar)
         theme, c, box = self.theme, self.theme.colours, QRectF(option.rect)
         span = option.maximum - option.minimum
-        if span <= 0:  # how long it takes is not known: half a bar goes to and fro, or is in the middle
+        if span <= 0:  # how long it takes is not known: half a bar goes to and fro, or rests in the middle
             turn = 0.5
             if duration_ms(round(1000 * BUSY_S), theme):
                 self._ask_for_next_frame(option, widget)

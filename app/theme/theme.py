@@ -34,7 +34,7 @@ class Theme:
         return max(1, round(length * self.scale))
 
     def font(self, size: float, weight: QFont.Weight = QFont.Weight.Normal, is_code: bool = False) -> QFont:
-        """Give the font of `size` px of the type table, with figures of one width; codes report 0 from O."""
+        """Give the font of `size` px of the type table, with figures of one width; codes distinguish 0 from O."""
         return QFont(_font("Inter Display" if size >= DISPLAY_FROM_PX else "Inter", self.px(size), weight, is_code))
 
     def curve(self, side: Side) -> QColor:

@@ -43,7 +43,7 @@ Row = Sequence[QWidget]
 
 @dataclass(frozen=True, slots=True)
 class BarAction:
-    """What a button states, and what is done when it is pressed.
+    """The words on a button, and what is done when it is pressed.
 
     `run` is a bound method, not a new function each time: what is equal is not shown again. `key` is what its cap
     shows. `is_requested`: pressing it is what we want, so it is filled.
@@ -221,7 +221,7 @@ class ActionBar(Themed):
                 QWidget.setTabOrder(before, after)
             words, verbs = [self._title, self._note], [self.sound, *self._others, self.primary]
             for part in (self._clock, self.back, *self._quiet, *words, *verbs):
-                part.raise_()  # as it is read: Qt reports the parts as they are stacked
+                part.raise_()  # in reading order: Qt lists the parts as they are stacked
 
     def _colour(self) -> None:
         c = self._look.theme.colours
@@ -296,7 +296,7 @@ class ActionBar(Themed):
         return box
 
     def _place_words(self, box: QRect) -> None:
-        """Place title and note: by the primary verb whose price they report, or after the time of a recording."""
+        """Place title and note: by the primary verb whose price they state, or after the time of a recording."""
         align = Qt.AlignmentFlag.AlignRight if self._state.recording is None else Qt.AlignmentFlag.AlignLeft
         top = box.top() + (box.height() - self._words_height(box.width())) // 2
         for text in (self._title, self._note):

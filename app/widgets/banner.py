@@ -17,7 +17,7 @@ ABOVE = 12  # clear of the header; gone together with the banner
 
 
 class Banner(Themed):
-    """Hidden until it is reported something."""
+    """Hidden until it is given something to show."""
 
     accessible_role = QAccessible.Role.AlertMessage
 
@@ -52,7 +52,7 @@ class Banner(Themed):
         return " ".join(filter(None, [self._what.text(), self._next.text()]))
 
     def show_message(self, what: str, then: str = "", verb: str = "") -> None:
-        """Show what happened, in bold, and what follows or what to do; `verb` names a way on, which `acted` reports."""
+        """Show what happened, in bold, and what follows or what to do; `verb` names a way on, which `acted` signals."""
         self.act.setText(verb)
         self.act.setVisible(bool(verb))
         self._what.setText(what)

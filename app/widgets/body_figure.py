@@ -33,7 +33,7 @@ class SensorMark(Enum):
     """How a place looks. Without a mark it is left bare, for it is not used."""
 
     WORN = auto()
-    LOOK = auto()  # received, but something about it wants a look: battery, loss
+    LOOK = auto()  # it sends, but something about it needs a look: battery, loss
     SILENT = auto()
     GAP = auto()  # a sensor is still to come here
 
@@ -109,7 +109,7 @@ class BodyFigure(QWidget):
             self.update()
 
     def set_from_behind(self, is_from_behind: bool) -> None:
-        """Turn the figure's back to you: the patient's right then is at the right."""
+        """Turn the figure's back to you: the patient's right is then at the right."""
         self._is_from_behind = is_from_behind
         self._name()
         self._refresh()
@@ -119,7 +119,7 @@ class BodyFigure(QWidget):
         self._refresh()
 
     def keep_beside(self, width: int) -> None:
-        """Leave `width` px on either side of the legs for what is there; the figure is as much smaller."""
+        """Leave `width` px on either side of the legs for what is shown there; the figure is as much smaller."""
         self._beside = width
         self.update()
 

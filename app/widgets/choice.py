@@ -17,7 +17,7 @@ class Choice(QComboBox):
         self._most = 0.0
         self._whole: tuple[str, ...] = ()
         self.setAccessibleName(name)
-        if sys.platform.startswith("linux"):  # there Qt gives the choice in force as the name, and ours is not received
+        if sys.platform.startswith("linux"):  # there Qt gives the choice in force as the name, and ours is not read out
             self.setAccessibleDescription(name)
         self.setSizePolicy(QSizePolicy.Policy.Minimum, QSizePolicy.Policy.Fixed)
         self.setFocusPolicy(Qt.FocusPolicy.StrongFocus)
@@ -86,7 +86,7 @@ class Choice(QComboBox):
         event.ignore()  # who scrolls past must not change what is shown
 
     def _width_for(self, words: str) -> int:
-        """How wide the box is in which these have their room; the widest line of all gives what is around words."""
+        """How wide the box is in which these have their room; the widest line of all gives the space around words."""
         widths = [self.fontMetrics().horizontalAdvance(self.itemText(row)) for row in range(self.count())]
         around = super().sizeHint().width() - max(widths, default=0)
         return around + self.fontMetrics().horizontalAdvance(words)

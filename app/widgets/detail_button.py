@@ -33,7 +33,7 @@ class DetailText:
 
 
 class DetailButton(PaintedButton):
-    """What does not fit is cut short on the screen, and received whole."""
+    """What does not fit is cut short on the screen, and read out whole."""
 
     def __init__(self, look: ThemeNotifier, key: str) -> None:
         super().__init__(look)

@@ -24,7 +24,7 @@ class Digits(Themed):
         return self._text
 
     def show_text(self, text: str, unit: str | None = None, widest: str | None = None) -> None:
-        """Show a figure, with its unit after it. Whoever shows it states it too, and not at every frame."""
+        """Show a figure, with its unit after it. Whoever shows it also has it read out, and not at every frame."""
         shown = (text, self._unit if unit is None else unit, self._widest if widest is None else widest)
         if shown != (self._text, self._unit, self._widest):
             self._text, self._unit, self._widest = shown

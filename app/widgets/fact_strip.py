@@ -21,8 +21,8 @@ NAME, VALUE, NOTE = 12, 20, 12
 
 @dataclass(frozen=True, slots=True)
 class KeyFigure:
-    """`key` reports it from the others in every language. `value` is a dash or a word where it is not known, and then
-    without `unit`; `words` is how it is received.
+    """`key` distinguishes it from the others in every language. `value` is a dash or a word where it is not known,
+    and then without `unit`; `words` is how it is read out.
     """
 
     key: str
@@ -34,7 +34,7 @@ class KeyFigure:
 
 
 class FactStrip(Themed):
-    """As wide as its figures need; a hairline is before each."""
+    """As wide as its figures need; with a hairline before each."""
 
     accessible_role = QAccessible.Role.Grouping
 

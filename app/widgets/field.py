@@ -43,11 +43,11 @@ class Field(Themed):
     Parameters
     ----------
     has_label
-        Without, the label is given to readers of screens only: for fields in a row under one heading.
+        Without, only screen readers have the label: for fields in a row under one heading.
     is_secret
         Shows dots.
     is_code
-        Reports 0 from O.
+        Distinguishes 0 from O.
     most
         Characters, so that what is typed has its room where it is shown.
     states_wrong
@@ -246,7 +246,7 @@ class NumberField(Field):
         self._judge()
 
     def _on_text_edited(self, text: str) -> None:
-        if self.is_wrong:  # stated when the field was left; taken back as soon as it is right
+        if self.is_wrong:  # shown when the field was left; taken back as soon as it is right
             self._judge()
         super()._on_text_edited(text)
 

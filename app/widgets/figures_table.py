@@ -56,7 +56,7 @@ def _figure_cells(row: Figure, heading: str) -> tuple[TextCell, ...]:
 def _cell(
     figure: tuple[str, str], row: Figure, heading: str, who: str, side: Side | None = None, span: int = 1
 ) -> TextCell:
-    """A value and what is smaller behind it; grey where too few strides stand behind it to make a mean."""
+    """A value and smaller words behind it; grey where it has too few strides to make a mean."""
     value, small = figure
     is_grey = side is not None and side in row.sides and not is_mean_enough(row.sides[side].n)
     return TextCell(
@@ -72,7 +72,7 @@ def _cell(
 
 
 def _in_words(words: str, row: Figure, heading: str, who: str) -> str:
-    """Say a cell with its row, its side and its unit, for who receives one cell at a time."""
+    """Say a cell with its row, its side and its unit, for screen readers, which read one cell at a time."""
     name = " ".join(filter(None, [heading, within_sentence(row.name)]))
     has_figure = any(letter.isdigit() for letter in words)  # not reported has no unit
     stated = f"{words} {row.unit}" if has_figure else words or tr("no value")

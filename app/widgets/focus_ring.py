@@ -10,7 +10,7 @@ from app.theme.theme import CONTROL_RADIUS
 
 DISTANCE = 3
 WIDTH = 2
-NO_RING = "has_no_focus_ring"  # property of a region that is read and not worked: its size gives nothing
+NO_RING = "has_no_focus_ring"  # property of a region that is read and not worked: its size means nothing
 
 
 class FocusRing(QWidget):

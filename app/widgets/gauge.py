@@ -37,7 +37,7 @@ PADDING = 20
 ROWS_FROM, ROW = CHIP + 10, 26
 ROWS_TO = ROWS_FROM + 2 * ROW
 STATE_FLAGS = int(Qt.AlignmentFlag.AlignVCenter) | int(Qt.TextFlag.TextWordWrap)
-WIDEST = 240  # of the words: what is reported and what is required are read together
+WIDEST = 240  # of the words: a figure and the one required are read together
 
 
 class GaugeState(Enum):
@@ -50,7 +50,7 @@ class GaugeState(Enum):
     ABSENT = auto()  # nothing to find, or nothing to find it with
 
 
-CLOSED = (GaugeState.ENOUGH, GaugeState.CENTRE)  # what free motion can report of the joint it has reported
+CLOSED = (GaugeState.ENOUGH, GaugeState.CENTRE)  # all that free motion can find of the joint is found
 
 
 @dataclass(frozen=True, slots=True)
@@ -75,7 +75,7 @@ class GaugeFace:
 
 
 def gauge_face(joint: Joint, found: ExcitationState | None, required: Required, is_now: bool) -> GaugeFace:
-    """Read a gauge off the excitation, without the floors that no motion reduces; None: nothing was received yet."""
+    """Read a gauge off the excitation, without the floors that no motion reduces; None: no samples yet."""
     is_closed = found is not None and found.is_closed
     axis_deg = math.degrees(found.axis_sd_rad) if found is not None else math.inf
     centre_mm = 1000 * found.centre_sd_m if found is not None else math.inf
@@ -112,7 +112,7 @@ def _words(face: GaugeFace) -> tuple[object, ...]:
 
 
 def two_digits(value: float, required: float = math.inf) -> str:
-    """Write a certainty as it is reported: 0.8, 2.4, 11. What is not yet as required never reads as if it were."""
+    """Write a certainty as it is shown: 0.8, 2.4, 11. One not yet as required never reads as if it were."""
     decimals = 1 if round(value, 1) < 10 else 0
     if value > required >= round(value, decimals):
         return figure_text(required + 0.1, ".1f") if required < 9.9 else f"{required + 1:.0f}"
@@ -272,7 +272,7 @@ class Gauge(QWidget):
         beside_main = painter.fontMetrics().horizontalAdvance(main) + px(8)
         painter.setPen(QColor(c.ink2))
         painter.setFont(theme.font(20, MEDIUM))
-        is_unit = face.axis is None  # it is by its figure; a second figure is apart
+        is_unit = face.axis is None  # it is beside its figure; a second figure is apart
         line = words.adjusted(beside_main if is_unit else 0, 0, 0, -px(10))
         painter.drawText(
             line, bottom | (Qt.AlignmentFlag.AlignLeft if is_unit else Qt.AlignmentFlag.AlignRight), second

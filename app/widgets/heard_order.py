@@ -11,8 +11,7 @@ from PySide6.QtWidgets import QGridLayout, QLayout, QWidget
 
 
 def hear_as_laid_out(widget: QWidget) -> None:
-    """Let the parts of `widget` be received from the first of its layout to the last; none of them may cover
-    another."""
+    """Let screen readers read the parts of `widget` in the order of its layout; none may cover another."""
     layout = widget.layout()
     if layout is not None:
         for part in _parts(layout, [one for one in widget.children() if isinstance(one, QWidget)]):

@@ -44,7 +44,7 @@ class HintBand(QWidget):
         return self._hint
 
     def show_hint(self, hint: Hint) -> None:
-        """Show what to do; whoever cannot see it is given when the sentence is another one."""
+        """Show what to do; whoever cannot see it is notified when the sentence changes."""
         if hint == self._hint:
             return
         is_news = hint.sentence != self._hint.sentence

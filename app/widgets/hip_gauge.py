@@ -47,7 +47,7 @@ class HipFace:
 
 
 def hip_face(found: HipHeadingState | None, is_now: bool = False) -> HipFace:
-    """Read a gauge off what is known of the heading; None: nothing was received yet."""
+    """Read a gauge off what is known of the heading; None: no samples yet."""
     sd_deg = math.degrees(found.sd_rad) if found is not None and found.is_trusted else math.inf
     is_sure = found is not None and found.is_sure
     required_deg = round(math.degrees(MAX_3D_SD_RAD))

@@ -1,4 +1,4 @@
-"""An icon that is in a page beside its words."""
+"""An icon in a page, beside its words."""
 
 from PySide6.QtCore import QRectF, QSize
 from PySide6.QtGui import QPainter, QPaintEvent
@@ -9,7 +9,7 @@ from app.theme.notifier import ThemeNotifier
 
 
 class IconMark(QWidget):
-    """An icon beside words. The words say what it states, so a reader of screens passes over it."""
+    """An icon beside words. The words say what it shows, so a screen reader passes over it."""
 
     def __init__(self, look: ThemeNotifier, icon: Icon, size: float = 20, tone: str = "ink") -> None:
         super().__init__()

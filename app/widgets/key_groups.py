@@ -1,4 +1,4 @@
-"""A recovery key as it is copied by hand: its groups in even columns, and selected, copied and reported as one text."""
+"""A recovery key as it is copied by hand: its groups in even columns, and selected, copied and read out as one text."""
 
 from collections.abc import Sequence
 

@@ -49,7 +49,7 @@ class PatientLine:
 
 @dataclass(frozen=True, slots=True)
 class SessionLine:
-    """`state` is empty where there is nothing to say; `needs_look` puts a triangle before it, else is `mark`."""
+    """`state` is empty where there is nothing to say; `needs_look` puts a triangle before it, else: `mark`."""
 
     id: UUID
     when: str
@@ -220,7 +220,7 @@ def _pieces(line: SessionLine) -> tuple[Word, Word, Word, Word]:
 class LineList(CellTable):
     """A list of lines, one of which may be chosen. Enter and a click on a session open it.
 
-    `chosen` and `opened` report the id of a line; `fitted`: lines may have other heights.
+    `chosen` and `opened` carry the id of a line; `fitted`: lines may have other heights.
     """
 
     fitted = Signal()
@@ -256,7 +256,7 @@ class LineList(CellTable):
             PatientCell(line) if isinstance(line, PatientLine) else SessionCell(line, columns) for line in lines
         ]
         self._longest = nlargest(MEASURED, cells, key=lambda cell: len(cell.words))
-        self.selectionModel().reset()  # the line that is chosen now is reported, even if it is the same
+        self.selectionModel().reset()  # the line that is chosen now is signalled, even if it is the same
         self.show_rows(
             [TableColumn(share=1, widest=EMPTY)],
             [TableRow((cell,), key=cell.line.id) for cell in cells],
@@ -279,7 +279,7 @@ class LineList(CellTable):
         self.fitted.emit()
 
     def paint_ground(self, painter: QPainter, option: QStyleOptionViewItem, index: Index) -> None:
-        """A line under each row; the row that is chosen or under the mouse is on a round ground."""
+        """A line under each row; the row that is chosen or under the mouse has a round ground."""
         theme = self._look.theme
         c, px, rect = theme.colours, theme.px, option.rect
         is_chosen = bool(option.state & QStyle.StateFlag.State_Selected)
@@ -332,7 +332,7 @@ def _wrapped(word: Word, room: int, theme: Theme) -> list[list[Word]]:
 
 
 def _placed(rows: list[list[Word]], room: int, theme: Theme) -> list[list[Word]]:
-    """Give what is at the right its place, and leave out what gives nothing."""
+    """Put what belongs at the right there, and leave out words that are empty."""
     placed = [
         [replace(word, left=room - word.width(theme)) if word.is_right else word for word in row if word.text]
         for row in rows

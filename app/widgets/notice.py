@@ -38,7 +38,7 @@ class Notice(Themed):
         return " ".join(filter(None, [self._what.text(), self._then.text()]))
 
     def show_message(self, icon: Icon | None, what: str, then: str = "", is_caution: bool = False) -> None:
-        """Show it; who cannot see it is reported whenever the first line changes."""
+        """Show it; whoever cannot see it is notified whenever the first line changes."""
         if (icon, what, then, is_caution) == (self._icon, self._what.text(), self._then.text(), self._is_caution):
             return
         is_news = what != self._what.text()

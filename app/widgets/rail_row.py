@@ -55,7 +55,7 @@ class RailRow:
 
 @dataclass(frozen=True, slots=True)
 class BelowRow:
-    """One of the rows at the bottom; `name` is what `below_pressed` reports."""
+    """One of the rows at the bottom; `name` is what `below_pressed` carries."""
 
     name: str
     title: str

@@ -27,7 +27,7 @@ class TileState(Enum):
 class SensorTile:
     """What is known of the sensor at one site. `name` is the sensor's own; `battery` and `lost_share` 0 to 1.
 
-    `is_awaited`: none is known to be worn here, and the free motion is still to report. `quiet`: why it is to send
+    `is_awaited`: none is known to be worn here, the free motion is still to show it. `quiet`: why it is to send
     nothing; not `is_loss_seen`: nobody can see what is lost of it.
     """
 
@@ -64,7 +64,7 @@ class SensorTile:
 
     @property
     def words(self) -> str:
-        """What its tile states under the name."""
+        """What its tile shows under the name."""
         match self.state:
             case TileState.NOT_WORN:
                 return tr("found later") if self.is_awaited else tr("not used")
@@ -83,7 +83,7 @@ class SensorTile:
 
 
 def sentence(tiles: Mapping[Site, SensorTile]) -> str:
-    """Say in one sentence how the sensors are: what is wrong with the first bad one, or that all are received."""
+    """Say in one sentence how the sensors are: what is wrong with the first bad one, or that all of them send."""
     worn = [tile for tile in tiles.values() if tile.is_worn]
     bad = [tile for tile in worn if tile.is_bad]
     if len(bad) == 1:

@@ -140,7 +140,7 @@ class SensorsProgress(Themed):
 
 
 class _SensorLines(Themed):
-    """The sensors one below the other; readers of screens are reported all of them."""
+    """The sensors one below the other; screen readers are given all of them."""
 
     def __init__(self, look: ThemeNotifier) -> None:
         super().__init__()

@@ -1,4 +1,4 @@
-"""What is in the place of a result before there is one: an empty page, and a page that works."""
+"""What is shown in place of a result before there is one: an empty page, and a page that works."""
 
 from PySide6.QtCore import Qt, Signal
 from PySide6.QtWidgets import QHBoxLayout, QProgressBar, QVBoxLayout

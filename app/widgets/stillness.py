@@ -162,7 +162,7 @@ class MovementBars(QWidget):
         moved: Sequence[str],
         silent: Sequence[str],
     ) -> None:
-        """Show each worn sensor's movement; infinite where too little was received to report."""
+        """Show each worn sensor's movement; infinite where too few samples came to know it."""
         sites = [site for site in Site if site in movement_deg_s]
         unplaced = sorted(set(movement_deg_s) - set(sites))
         rows = {

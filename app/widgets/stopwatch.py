@@ -16,7 +16,7 @@ THICK = 5
 
 
 class Stopwatch(QWidget):
-    """Passive: it shows what it is reported."""
+    """Passive: it shows what it is given."""
 
     def __init__(self, look: ThemeNotifier) -> None:
         super().__init__()

@@ -36,7 +36,7 @@ HEADS = (
 )
 RANGES = {HIP: JointKind.HIP, KNEE: JointKind.KNEE, ANKLE: JointKind.ANKLE}
 SHAPES = {HIP_SHAPE: JointKind.HIP, KNEE_SHAPE: JointKind.KNEE, ANKLE_SHAPE: JointKind.ANKLE}
-LEAST_SHAPE = 64  # narrower, a curve gives nothing
+LEAST_SHAPE = 64  # narrower, a curve shows nothing
 SHAPE_MARGIN = 5  # between a curve and the lines of its row
 WIDEST = {BEGINS: "000.0", TAKES: "0.00", HIP: "000.0", KNEE: "000.0", ANKLE: "000.0"}
 STATE_WIDTH = 112  # words wrap in it
@@ -44,9 +44,7 @@ STATE_WIDTH = 112  # words wrap in it
 
 @dataclass(frozen=True, slots=True)
 class StrideLine:
-    """One stride of one side, the same one whatever became of it. `reason` states in words why it is left out; empty:
-    it
-    is used.
+    """One stride of one side, the same one whatever became of it. `reason`: why it is left out; empty: it is used.
 
     Only what is used, or was left out by hand, can be turned. `ranges_deg`: of each kind of joint, NaN where not known;
     `shapes_deg`: the joints over the stride (101,), as far as they are known.

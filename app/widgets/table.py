@@ -30,14 +30,14 @@ from app.theme.notifier import ThemeNotifier
 from app.widgets.table_cells import EMPTY, TableCell
 
 ROW, HEAD, PADDING = 28, 32, 6
-LEAST_ROWS = 2.5  # of a list in sight: half a row states that there are more
+LEAST_ROWS = 2.5  # of a list in sight: half a row shows that there are more
 Index = QModelIndex | QPersistentModelIndex
 ROOT = QModelIndex()
 
 
 @dataclass(frozen=True, slots=True)
 class TableColumn:
-    """`head` is above. `share`: its part of what the columns do not need; where none has one, the last takes all.
+    """`head`: shown above. `share`: its part of what the columns do not need; where none has one, the last takes all.
 
     `widest` is measured in place of all cells, which is for tables of hundreds of rows; `least`: px of the design.
     """
@@ -340,7 +340,7 @@ class CellTable(QTableView):
 
 
 class _Delegate(QStyledItemDelegate):
-    """Draws the ground of a row, then the cell as its kind states."""
+    """Draws the ground of a row, then the cell as its kind requires."""
 
     def __init__(self, table: CellTable) -> None:
         super().__init__(table)

@@ -25,7 +25,7 @@ DOT = 11
 
 
 class TableCell(ABC):
-    """What one cell shows and states. Cells are values: whoever shows others makes others."""
+    """What one cell shows and what is read out of it. Cells are values: whoever shows others makes others."""
 
     __slots__ = ()
 
@@ -36,12 +36,12 @@ class TableCell(ABC):
 
     @property
     def words(self) -> str:
-        """What is copied, and stated where nothing else is."""
+        """What is copied, and read out where nothing else is."""
         return ""
 
     @property
     def stated(self) -> str:
-        """What a screen reader states of the cell alone, so with its row and its column."""
+        """What a screen reader reads out for the cell alone, so with its row and its column."""
         return self.words
 
     @property

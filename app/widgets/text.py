@@ -41,7 +41,7 @@ class Text(QLabel):
         super().setText(UNIT.sub(JOINER, text) if self.wordWrap() else text)
 
     def text(self) -> str:
-        """Give the words as they were reported, without what keeps a unit in one line."""
+        """Give the words as they were given, without what keeps a unit in one line."""
         return super().text().replace(JOINER, "")
 
     def changeEvent(self, event: QEvent) -> None:

@@ -1,4 +1,4 @@
-"""A widget that spaces its parts by the theme: Qt reports it when the style has changed."""
+"""A widget that spaces its parts by the theme: Qt notifies it when the style has changed."""
 
 from PySide6.QtCore import QEvent
 from PySide6.QtWidgets import QWidget

@@ -22,7 +22,7 @@ MARKS = BATTERY_WIDTH + 4 + 18  # battery and movement
 
 
 class TileWidget(QWidget):
-    """One tile. It paints itself again only when what it states is another."""
+    """One tile. It paints itself again only when what it shows has changed."""
 
     accessible_role = QAccessible.Role.ListItem
 
@@ -45,7 +45,7 @@ class TileWidget(QWidget):
         self.update()
 
     def set_tight(self, is_tight: bool) -> None:
-        """Let the name have its line for itself: its marks move to the second, where no loss is not reported then."""
+        """Let the name have its line for itself: its marks move to the second, where a loss of 0 is left out."""
         if is_tight != self._is_tight:
             self._is_tight = is_tight
             self.update()
@@ -209,6 +209,6 @@ class TileWidget(QWidget):
 
 
 def _seen(tile: SensorTile) -> tuple[object, ...]:
-    """Give all of a tile that can be seen or received: what does not show in it needs no painting."""
+    """Give all of a tile that can be seen or read out: what does not show in it needs no painting."""
     battery = None if tile.battery is None else round(tile.battery * 100)
     return tile.site, tile.name, battery, tile.words, tile.state, tile.is_moving

@@ -52,7 +52,7 @@ class Toast(Themed):
         return self._text.text()
 
     def offer(self, what: str) -> None:
-        """Say what was done; what was stated before can no longer be undone from here."""
+        """Show what was done; what was shown before can no longer be undone from here."""
         self._text.setText(what)
         self.button.show_verb(BarAction(tr("Undo"), self.undo, tr("Ctrl Z")), ButtonKind.QUIET, is_inverse=True)
         self.setAccessibleName(what)
@@ -91,7 +91,7 @@ class Toast(Themed):
 
     def paintEvent(self, _event: QPaintEvent) -> None:
         c, box = self._look.theme.colours, QRectF(self.rect()).adjusted(0.5, 0.5, -0.5, -0.5)
-        line = c.surface  # so that it is out on the inverse bar too
+        line = c.surface  # so that it shows on the inverse bar too
         self._look.theme.paint_box(QPainter(self), box, c.inv, line, 1)
 
     def _on_timeout(self) -> None:

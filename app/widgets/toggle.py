@@ -1,4 +1,4 @@
-"""Something that is on or off: a check mark is before its word while it is on."""
+"""Something that is on or off: with a check mark before its word while it is on."""
 
 from PySide6.QtCore import QSignalBlocker
 

@@ -21,7 +21,7 @@ LINE = 1.75
 class TrendCell(TableCell):
     """Values at `places` between 0 and 1, over `band` in grey; `edges` are the values below and above.
 
-    NaN is a gap: adjacent ones are joined, what lies on either side of a gap is not. The last value is the larger
+    NaN is a gap: adjacent values are joined, those on either side of one are not. The last value is the larger
     point, so that its absence is seen. `side` gives the colour and the dashes of a leg. `goals` are dotted lines.
     """
 

@@ -1,4 +1,4 @@
-"""One of two versions of a value: what it states and whose it is, to be chosen. Arrows are reported, not followed."""
+"""One of two versions of a value: what it shows and whose it is, to be chosen. Arrows are signalled, not followed."""
 
 from PySide6.QtCore import QPointF, QRectF, QSize, Qt, Signal
 from PySide6.QtGui import QColor, QFont, QKeyEvent, QPainter, QPaintEvent, QStaticText, QTextOption, QTransform

@@ -40,7 +40,7 @@ class NotReportedPanel(Themed):
         return f"{self._word.text()}. {self._why.text()}" if self._why.text() else ""
 
     def show_message(self, why: str) -> None:
-        """Say why; empty: nothing is not reported."""
+        """Say why; empty: nothing is left out."""
         self._why.setText(why)
         self.setAccessibleName(self.text)
         self.setVisible(bool(why))

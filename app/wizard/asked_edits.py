@@ -13,7 +13,7 @@ from app.wizard.visit import Visit
 
 
 class AskedEdits(QObject):
-    """`may_ask` states whether a dialog may open now; `go_on` is to be called when that may have changed."""
+    """`may_ask` returns whether a dialog may open now; `go_on` is to be called when that may have changed."""
 
     def __init__(self, look: ThemeNotifier, window: QWidget, may_ask: Callable[[], bool]) -> None:
         super().__init__(window)

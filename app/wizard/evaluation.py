@@ -84,7 +84,7 @@ class Evaluation(QObject):
         return {side: len(found.strides) for of_both in gait for side, found in of_both.items()}
 
     def ask(self, session: "Session") -> None:
-        """Find out what `session` reports; `done` follows, at once where only words or chosen strides have changed."""
+        """Find out what `session` shows; `done` follows, at once where only words or chosen strides have changed."""
         if self._found is not None and self.session is not None and is_same_question(self.session, session):
             self.take_over(session, self._found)
             return
@@ -92,7 +92,7 @@ class Evaluation(QObject):
         self._background.start(_analysing(session))
 
     def take_over(self, session: "Session", found: "Analysis") -> None:
-        """Go on with what `computed` informed of `session` before; `done` follows."""
+        """Go on with what `computed` emitted for `session` before; `done` follows."""
         self._background.stop()
         self._asked, self.has_failed = session, False
         self._settle(found)

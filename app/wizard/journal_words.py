@@ -1,4 +1,4 @@
-"""What is stated about a recording's journal and of what befell it, every fact of it from the counters of both."""
+"""What is stated of a recording's journal and of what befell it, every fact from the counters of both."""
 
 from collections.abc import Mapping
 

@@ -41,7 +41,7 @@ class KeptResults(QObject):
         self._controller.run(keep, None, self._on_not_kept, self)
 
     def _keep_course(self) -> None:
-        """Keep what of this visit is in the patient's course, so that home need not evaluate it."""
+        """Keep what belongs in the patient's course of this visit, so that home need not evaluate it."""
         session, analysis, stored = self._evaluation.session, self._evaluation.analysis, self._recordings.session
         if stored is None or session is None or analysis is None or self.is_partial:
             return

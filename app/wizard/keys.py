@@ -181,7 +181,7 @@ class Keys(QObject):
             if not event.isAutoRepeat():
                 self.bar_pressed.emit(key)
             return True
-        if event.key() in _ENTER:  # what nobody on its way up from the focus required is for the primary verb
+        if event.key() in _ENTER:  # what nobody on its way up from the focus took is for the primary verb
             return watched is self._root.window() and self._emit(Intent(KeyAction.PRIMARY), event)
         if watched is not focused:
             return False

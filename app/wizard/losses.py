@@ -18,7 +18,7 @@ NOTHING: Message = "", ""
 
 
 class Losses:
-    """Reported how long each sensor has been silent, it remembers for how long one was that is back."""
+    """Given how long each sensor has been silent, it remembers for how long one was that is back."""
 
     def __init__(self) -> None:
         self._silent_s: dict[Site, float] = {}
@@ -32,7 +32,7 @@ class Losses:
         return tuple(site for site in Site if site in self._silent_s)
 
     def update(self, silent_s: Mapping[Site, float], now_s: float) -> tuple[Site, ...]:
-        """Take how long each worn sensor has been silent; returns those that are distinguished from now on."""
+        """Take how long each worn sensor has been silent; returns those that are reported from now on."""
         news = []
         for site, seconds in silent_s.items():
             if seconds >= REPORTED_AFTER_S:

@@ -19,7 +19,7 @@ from devices.live import SourceRefusedError
 if TYPE_CHECKING:
     from devices.live import SourceLostError
 
-SURE_S = 2.0  # of fetching, before it is given how long the rest will take
+SURE_S = 2.0  # of fetching, before it is shown how long the rest will take
 
 
 @dataclass(frozen=True, slots=True)

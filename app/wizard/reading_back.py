@@ -87,7 +87,7 @@ class ReadingBack(QObject):
         return unread_message((self._next or self._waiting[0]).recorder.status, is_tried_again=True)
 
     def add(self, stopped: StoppedRecording) -> None:
-        """Read it back once `begin` is stated, or it has been fetched."""
+        """Read it back once `begin` is called, or it has been fetched."""
         self._waiting.append(stopped)
 
     def begin(self) -> None:

@@ -140,7 +140,7 @@ class SessionRecordings(QObject):
 
     @property
     def reported(self) -> tuple[Recording, ...]:
-        """What is given of all of them, in order of time, the one that goes on included."""
+        """What was stated about all of them, in order of time, the one that goes on included."""
         ongoing = (self.ongoing.details,) if self.ongoing is not None else ()
         return (*(recording.details for recording in self.every), *ongoing)
 
@@ -380,16 +380,15 @@ class SessionRecordings(QObject):
             self.change(recording, lambda reported: replace(reported, is_kept=is_kept))
 
     def ask_again(self, recording: SessionRecording) -> None:
-        """Ask once more on this screen whether a recording is kept; until that is answered it stays as it was
-        stated."""
+        """Ask once more on this screen whether a recording is kept; until answered, it stays as it was stated."""
         self._put(replace(recording, is_decided=False))
 
     def stated(self, recording: SessionRecording) -> Recording:
-        """What is given of a recording, the last word of it on the screen."""
+        """What was stated about a recording, the last word of it on the screen."""
         return self._edits.stated(self.find(recording.id) or recording)
 
     def change(self, recording: SessionRecording, corrected: Callable[[Recording], Recording]) -> None:
-        """Correct what was given of a recording; `changed` follows.
+        """Correct what was stated about a recording; `changed` follows.
 
         `corrected` is given the last word of it on the screen. What another station changed of the same meanwhile is
         merged and reported, or `asked` about.
@@ -491,7 +490,7 @@ class SessionRecordings(QObject):
         self.refused.emit(tr("The recording is not loaded yet."), self._reading_back.where)
 
     def _on_not_halted(self, _what: str, _remedy: str) -> None:
-        """Whoever reads it back meets the same, and reports."""
+        """Whoever reads it back meets the same, and reports it."""
 
     @Slot(object)
     def _on_saved(self, stored: StoredRecording) -> None:

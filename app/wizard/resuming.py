@@ -90,7 +90,7 @@ def without_imu(reported: Session) -> Session:
 def _keep_course(
     opened: "OpenedLibrary", stored: StoredSession, reported: Session, known: "Analysis"
 ) -> "tuple[Session, Analysis]":
-    """Keep what is of a session in the course; the session without its samples, and what may be shown of it."""
+    """Keep the course of a session; return the session without its samples, and what may be shown of it."""
     without_samples = without_imu(reported)
     analysis = leave_out(known, reported.recordings)
     key = course_key(without_samples, stored.recordings)
@@ -99,7 +99,7 @@ def _keep_course(
 
 
 def current_course_key(session: StoredSession) -> str:
-    """The key that what is kept of a session's course has to have, to hold as the session is reported now."""
+    """The key that what is kept of a session's course has to have, to hold for the session as stated now."""
     read_back = tuple(SessionRecording(one, one.details) for one in session.recordings if one.state in USABLE)
     return course_key(evaluated(session, read_back), session.recordings)
 
@@ -158,7 +158,7 @@ def read_recordings(opened: "OpenedLibrary", session: StoredSession) -> tuple[Se
 
 
 def rests_of(recordings: Sequence[SessionRecording]) -> "dict[str, Rest]":
-    """What each sensor reads at rest, by its name, as the latest standing reports."""
+    """What each sensor reads at rest, by its name, as the latest standing shows."""
     rests: dict[str, Rest] = {}
     for recording in recordings:
         if (

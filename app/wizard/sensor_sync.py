@@ -19,7 +19,7 @@ from devices.live import SourceLostError, SourceRefusedError
 if TYPE_CHECKING:
     from devices.dot.source import DotGroup
 
-SOON_S = 5.0  # so finely, and no later, it is given how long it takes still
+SOON_S = 5.0  # step of the time left that is shown, and the least of it
 REASONS = {
     SyncFailure.LOST: later("out of range"),
     SyncFailure.STAYS: later("not synchronised, keeps its old clock"),
@@ -157,7 +157,7 @@ class SensorSync(QObject):
         self.changed.emit()
 
     def forget(self) -> None:
-        """Nobody is given of the last failure any more."""
+        """The last failure is shown no more."""
         if self._error is not None:
             self._error = None
             self.changed.emit()

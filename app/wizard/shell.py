@@ -29,7 +29,7 @@ LOW_BELOW = 480  # of the window, px of the design: tiles would leave the page n
 class StripMode(Enum):
     """FOLDED: a button in the header, which unfolds by itself when a sensor turns bad.
 
-    Where the window is too low for tiles, SHOWN is folded too, and nothing unfolds by itself: the button states it.
+    Where the window is too low for tiles, SHOWN is folded too, and nothing unfolds by itself: the button shows it.
     """
 
     SHOWN = auto()
@@ -43,7 +43,7 @@ class WizardShell(Themed):
     Signals
     -------
     room_changed
-        Whether the window is compact, and the width and height that a page has, in px of the design. Reported when the
+        Whether the window is compact, and the width and height that a page has, in px of the design. Emitted when the
         room or the page is another one.
     """
 
@@ -300,7 +300,7 @@ class WizardShell(Themed):
     def _on_recording_changed(self, is_recording: bool) -> None:
         """Keep the banner's place free while recording: what is read then must not jump.
 
-        A page that has a place of its own for what is stated while recording needs no second one.
+        A page that has a place of its own for messages while recording needs no second one.
         """
         policy = self.banner.sizePolicy()
         policy.setRetainSizeWhenHidden(is_recording and not getattr(self.page, "keeps_place_for_messages", False))

@@ -121,7 +121,7 @@ class Step(QObject):
         """Called 30 times a second while it is in sight: show what is live."""
 
     def bar(self) -> BarState:
-        """What can be done now: each action states what it does, and does it."""
+        """What can be done now: each action names what it does, and does it."""
         raise NotImplementedError
 
     def on_intent(self, intent: Intent) -> bool:

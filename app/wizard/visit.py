@@ -1,4 +1,4 @@
-"""One session in progress: whose it is, what is worn, what was recorded, and what that reports.
+"""One session in progress: whose it is, what is worn, what was recorded, and what that shows.
 
 It lives on the screen's thread. Steps read it and ask it; it knows no page. What takes long is done by the library's
 controller or beside the screen, and comes back as a signal.
@@ -76,7 +76,7 @@ class Visit(QObject):
     """
 
     changed = Signal()
-    changed_elsewhere = Signal()  # by another station of the clinic: what is here is as it was before
+    changed_elsewhere = Signal()  # by another station of the clinic: what is held here is as it was before
     deleted_elsewhere = Signal(str, str)
     resumed = Signal()
     earlier_read = Signal(object)
@@ -109,7 +109,7 @@ class Visit(QObject):
         self.comparing = Background(self)
         """Compares the session with an optical system."""
         self.rests: dict[str, Rest] = {}
-        """What each sensor, by name, reads while the patient is; empty until then."""
+        """What each sensor, by name, reads while the patient is standing; empty until then."""
         self.placement_before: dict[str, Site] = {}
         """Site by the sensor's name as at the last visit, where the same set-up was asked for."""
         self._began_s: float | None = None
@@ -144,7 +144,7 @@ class Visit(QObject):
 
     @property
     def elapsed_s(self) -> float | None:
-        """Since the session began; it is still once the results are looked at. None: looked at only."""
+        """Since the session began; no longer counted once the results are looked at. None: looked at only."""
         if self._began_s is None:
             return None
         return (self._now_s() if self._ended_s is None else self._ended_s) - self._began_s
@@ -164,7 +164,7 @@ class Visit(QObject):
 
     @property
     def details(self) -> Session:
-        """What was stated about the session, the last word of it on the screen; without recordings."""
+        """What was entered about the session, in its newest version as on the screen; without recordings."""
         return self.record.reported
 
     @property
@@ -216,12 +216,12 @@ class Visit(QObject):
 
     @property
     def choices(self) -> tuple[SourceChoice, ...]:
-        """What this patient's sensors can be received through."""
+        """The sources through which this patient's sensors can be received."""
         offered = [choice for choice in self.known_choices if self.may_simulate or not choice.is_simulated]
         return tuple(choice.for_sides(self.prosthetic_sides) for choice in offered)
 
     def place_sensors(self, only: Side | None = None) -> None:
-        """Report the library who wears what: what is recorded next takes it, all of it or that of one leg."""
+        """Report to the library who wears what: what is recorded next takes it, all of it or that of one leg."""
         if self.session is None:
             return
         session_id = self.session.id
@@ -234,7 +234,7 @@ class Visit(QObject):
         self._controller.run(place, self.record.take, self._on_refused, self)
 
     def _note_lost_clocks(self) -> None:
-        """Where sensors were given to be on one clock and some are not any more, report the library so."""
+        """Where sensors were stated to be on one clock and some no longer are, report that to the library."""
         reported = self.session.details.sensors if self.session is not None else {}
         worn = self.sensors.placed()
         if any(one.info.clock == "" and site in reported and reported[site].clock for site, one in worn.items()):
@@ -296,7 +296,7 @@ class Visit(QObject):
         return False
 
     def evaluate(self, with_walk: Recording | None = None) -> None:
-        """Find out what the recordings report, with a walk that still goes on; `evaluation.done` follows."""
+        """Find out what the recordings show, with a walk that still goes on; `evaluation.done` follows."""
         recordings = self.recordings.counted() + ((with_walk,) if with_walk is not None else ())
         if any(recording.kind is not RecordingKind.STANDING for recording in recordings):
             sensors = self.session.details.sensors if self.session is not None else {}
@@ -351,8 +351,7 @@ class Visit(QObject):
 
     @property
     def is_saving(self) -> bool:
-        """Whether the library is still to be reported, or to answer, what was stated about the session and its
-        patient."""
+        """Whether the library has yet to receive, or to answer, what was entered of the session and its patient."""
         return self.record.is_busy or self.worn.is_busy or self.patient.is_saving
 
     def finish(self) -> None:
@@ -380,7 +379,7 @@ class Visit(QObject):
         self.asked.emit(question)
 
     def _on_held(self) -> None:
-        """Find out again what the recordings report, where it was found out with other limits, zeros or signs."""
+        """Find out again what the recordings show, where it was found out with other limits, zeros or signs."""
         evaluated, session = self.evaluation.session, self.session
         if evaluated is None or session is None:
             return
@@ -397,7 +396,7 @@ class Visit(QObject):
         self._put_recordings(session, recordings)
 
     def _on_read(self, read: tuple[StoredSession, tuple[SessionRecording, ...]]) -> None:
-        """Go on from what the library holds now; nothing that is stated here still waits to be saved."""
+        """Go on from what the library holds now; nothing that was entered here still waits to be saved."""
         session, recordings = read
         self.record.take_instead(session)
         self._put_recordings(session, recordings)
@@ -486,7 +485,7 @@ class Visit(QObject):
 
 
 def _by_hand(reported: Session) -> tuple[dict[Joint, float], dict[Joint, int]]:
-    """What was stated about the joints, zeros and signs."""
+    """What was entered about the joints: zeros and signs."""
     return dict(reported.zero_rad), dict(reported.turned_sign)
 
 

@@ -1,4 +1,4 @@
-"""What is to be stated about a walk, while it goes on and once it has stopped, apart from sensors that fall silent."""
+"""What is to be shown about a walk, while it goes on and once it has stopped, apart from sensors that fall silent."""
 
 from collections.abc import Collection, Mapping, Sequence
 from typing import TYPE_CHECKING
@@ -17,7 +17,7 @@ STRIDES_FOR_SPREAD = 10
 
 
 def slip_message(slips: Sequence[Slip], began_s: float) -> Message:
-    """Report of the latest strap that slipped since the walk began."""
+    """Report the latest strap that slipped since the walk began."""
     since = [slip for slip in slips if slip.from_s > began_s]
     if not since:
         return NOTHING
@@ -29,14 +29,14 @@ def slip_message(slips: Sequence[Slip], began_s: float) -> Message:
 
 
 def implausible_message(joints: Sequence[Joint]) -> Message:
-    """Report of angles that no joint has, and are not shown."""
+    """Report angles that no joint has, and are not shown."""
     names = ", ".join(name_of(joint) for joint in joints)
     what = tr("{joints}: angle beyond \N{MINUS SIGN}40\N{DEGREE SIGN} to 160\N{DEGREE SIGN}, not shown.")
     return what.format(joints=capitalised(names)), tr("Check the sensor positions, then record the free motion again.")
 
 
 def bias_message(corrections: Sequence[BiasCorrection]) -> Message:
-    """Report of the latest gyroscope whose bias from standing was wrong."""
+    """Report the latest gyroscope whose bias from standing was wrong."""
     if not corrections:
         return NOTHING
     what = tr("The gyroscope offset of the {site} sensor was wrong and is now corrected.")

@@ -128,7 +128,7 @@ class Wizard(QWidget):
         self._on_resume_due()
 
     def _on_resume_due(self) -> None:
-        """Take up the session once what was stated in visits before is saved, else that would seem to be another's."""
+        """Take up the session once what was entered in visits before is saved, else that would seem to be another's."""
         if self._to_resume is not None and self._visit is not None and not any(one.is_saving for one in self._closing):
             session_id, self._to_resume = self._to_resume, None
             self._visit.resume(session_id)
@@ -227,7 +227,7 @@ class Wizard(QWidget):
         return visit
 
     def _listen_no_more(self, visit: Visit) -> None:
-        """What comes of a visit that was left is not the next one's; what is refused is given where one is then."""
+        """What comes of a visit that was left is not the next one's; a refusal is shown where one is then."""
         for signal in (visit.changed, visit.sensors.changed, visit.patient.changed, visit.evaluation.done):
             signal.disconnect(self._on_visit_changed)
         visit.resumed.disconnect(self._on_resumed)
@@ -260,7 +260,7 @@ class Wizard(QWidget):
         self._show()
 
     def _show(self) -> None:
-        """Show what is round the step: rail, header, bar."""
+        """Show what surrounds the step: rail, header, bar."""
         if self._visit is None or not self._steps:
             return
         rows = []
@@ -307,7 +307,7 @@ class Wizard(QWidget):
             self._watch_recording()
 
     def _watch_recording(self) -> None:
-        """Say what befalls a recording, as the counters have it by now; on its page a walk states it itself."""
+        """Say what befalls a recording, as the counters have it by now; on its page a walk shows it itself."""
         if self._visit is None or not self.is_recording or self._current is StepId.WALKING:
             self._reported_of_recording = NOTHING
             return
@@ -373,7 +373,7 @@ class Wizard(QWidget):
             action.run()
 
     def press_primary(self) -> None:
-        """Do what the bar's main button states, where it can be pressed."""
+        """Do what the bar's main button names, where it can be pressed."""
         if self._steps and (action := self._bar().primary) is not None and action.is_enabled:
             action.run()
 
@@ -493,7 +493,7 @@ class Wizard(QWidget):
         gone_words = self._controller.gone_words
         is_gone_at_rest = not self.is_recording and gone_words == (what, then)
         is_reported_otherwise = gone_words is None and not self.shell.banner.isHidden()
-        is_elsewhere = self._current is not StepId.WALKING  # there a walk's page states it itself
+        is_elsewhere = self._current is not StepId.WALKING  # there a walk's page shows it itself
         if is_elsewhere or is_gone_at_rest or is_reported_otherwise:
             self._show_message(what, then)
 

@@ -1,4 +1,4 @@
-"""Who wore what in recordings that are kept, stated again: left and right swapped, or all since strapped on."""
+"""Corrections of who wore what in kept recordings: left and right swapped, or all since strapped on."""
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
@@ -86,7 +86,7 @@ class WornCorrections(EditedRecord[Corrected]):
         self._correct(worn, self._seen(), self._sensors.placed() or None)
 
     def place_as_stated_now(self) -> None:
-        """Report the library that all since the sensors were strapped on was worn as it is stated now; it is read
+        """Report to the library that all since the sensors were strapped on was worn as stated now; it is read
         again."""
         self._place(self._sensors.placed())
 

@@ -39,12 +39,12 @@ class SetUpFirstError(SourceRefusedError):
 
 @dataclass(frozen=True, slots=True)
 class SourceChoice:
-    """Something that sensors can be received through. `make` may take seconds: it is called beside the screen.
+    """A source through which sensors can be received. `make` may take seconds: it is called beside the screen.
 
     What `is_simulated` or replayed was not measured on this patient: the library keeps it apart from real recordings.
-    `worn` gives the site by the sensor's name where the source reports it, as a stored session does. Of `lines` it has
-    to be given what they mean; they are received through another choice then. `asks` states whom on the network `make`
-    will ask what, where it asks anybody, and what to do to have it ask: that is stated before. `make_prosthetic` is
+    `worn` gives the site by the sensor's name where the source gives it, as a stored session does. What `lines` mean
+    has to be entered first; they are received through another choice then. `asks` names whom on the network `make`
+    will ask what, where it asks anybody, and what to do to have it ask: that is shown before. `make_prosthetic` is
     called instead for a patient with a prosthesis on one side. What `make_fleet` gives has to be set up first: `make`
     is another one's then.
     """
@@ -69,7 +69,7 @@ class SourceChoice:
 class WornSensors(QObject):
     """`acquisition` is None until a source is open; `site_of` gives the site by the sensor's name.
 
-    Left to the motion (`is_left_to_motion`), sensors have no site until the free motion has reported it. `detected`:
+    Left to the motion (`is_left_to_motion`), sensors have no site until the free motion has shown it. `detected`:
     by the site that a sensor is stated to be at, the one where the motion puts it, until that is used or the labels
     are kept.
     """
@@ -233,8 +233,7 @@ class WornSensors(QObject):
         self.changed.emit()
 
     def doubt(self, detected: Mapping[Site, Site]) -> None:
-        """Say where the motion puts sensors otherwise than they are stated to be; what was kept is not doubted
-        again."""
+        """Note where the motion puts sensors elsewhere than stated; what was kept is not doubted again."""
         groups = [group for group in groups_of(detected) if group not in self._kept_labels]
         doubted = {site: detected[site] for group in groups for site in group}
         if doubted != self.detected:
@@ -256,7 +255,7 @@ class WornSensors(QObject):
         self.assign_all({name: self.detected.get(site, site) for name, site in self.site_of.items()})
 
     def keep_labels(self) -> None:
-        """Wear them as stated, whatever the motion states; for the rest of the visit."""
+        """Wear them as stated, whatever the motion shows; for the rest of the visit."""
         self._kept_labels |= set(groups_of(self.detected))
         self.doubt({})
 
@@ -267,7 +266,7 @@ class WornSensors(QObject):
         self.changed.emit()
 
     def placed(self) -> dict[Site, PlacedSensor]:
-        """What the library is given of the sensors that are worn."""
+        """What the library is given about the sensors that are worn."""
         status = self.status
         placed = {}
         for sensor, site in self.site_of.items():

@@ -1,4 +1,4 @@
-"""The tiles of the sensors that are worn, as they stand above every step: received, silent, moving, their batteries."""
+"""The tiles of the sensors that are worn, as they stand above every step: sending, silent, moving, their batteries."""
 
 from collections.abc import Mapping
 from dataclasses import replace

@@ -1,4 +1,4 @@
-"""What was changed at a prosthesis, in words: signs are stated, "½ out, +2° plantar", "4 mm back", "+3 mm"."""
+"""What was changed at a prosthesis, signs as words too: "½ out, +2° plantar", "4 mm back", "+3 mm"."""
 
 from collections.abc import Iterable, Mapping, Sequence
 

@@ -76,7 +76,7 @@ def measure_name(column: str, *, is_between: bool = False) -> str:
 
 
 def name_in_sentence(column: str) -> str:
-    """As it is inside a sentence."""
+    """As it is written inside a sentence."""
     return within_sentence(_name(column)) if column in NAMES else _name(column)
 
 

@@ -29,7 +29,7 @@ _OWN_NAME = re.compile(rf"({'|'.join(OWN_NAMES.values())})(?: (\d+))?")
 class ShownName:
     """`letter`: of the condition, with the walk's number from the second on; empty of all that is no kept walk.
 
-    A walk without a condition is called by its own name, which reports it from all others: "A walk 3" would be no name.
+    A walk without a condition is called by its own name, which distinguishes it: "A walk 3" would be no name.
     """
 
     letter: str
@@ -85,7 +85,7 @@ def with_shown_names(finding: Finding, names: Mapping[str, ShownName]) -> Findin
 
 
 def where_shown(where: str, names: Mapping[str, ShownName]) -> str:
-    """Call the recordings as they are shown in what reports parts of the body and recordings in a row."""
+    """Call the recordings as they are shown, in a text that lists parts of the body and recordings."""
     return ", ".join(str(names.get(part, part)) for part in where.split(", "))
 
 

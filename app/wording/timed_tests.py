@@ -75,7 +75,7 @@ def reason_words(reason: NotMeasured) -> str:
 
 
 def seconds(value: float) -> str:
-    """A time as it is reported: "8.9 s", "2:00"."""
+    """A time as it is written: "8.9 s", "2:00"."""
     return clock(value) if value >= 100.0 else f"{figure_text(value, '.1f')} s"
 
 
@@ -115,7 +115,7 @@ def why_sentence(test: TimedTest) -> str:
 
 
 def tape_sentence(test: TimedTest) -> str:
-    """How the sensors' distance compares with the tape's; empty where no key reported where the tape is."""
+    """How the sensors' distance compares with the tape's; empty where no key marked where the tape is."""
     apart_m = test.tape_difference_m
     if not math.isfinite(apart_m):
         return ""
@@ -180,7 +180,7 @@ def error_words(error: KnownError) -> str:
 
 
 def _source_words(error: KnownError) -> str:
-    """Who reports it: of a paper what was measured, and the paper as it is cited."""
+    """The source of an error: of a paper what was measured, and the paper as it is cited."""
     if error.courses:
         return tr("worst of {count} simulated runs").format(count=error.courses)
     return ", ".join(filter(None, [tr(MEASURED[error.how]) if error.how else "", error.paper]))

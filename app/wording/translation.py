@@ -357,7 +357,7 @@ NAMES = {
     },
 }
 
-WHOLE_SESSION = "session"  # what a finding about no part in particular states as its place
+WHOLE_SESSION = "session"  # what a finding about no part in particular gives as its place
 
 
 class _CommaFormatter(Formatter):
@@ -408,7 +408,7 @@ def languages() -> tuple[str, ...]:
 
 
 def spoken_in(language: str) -> Callable[[str], str]:
-    """Give what states a message in another language than the user's, as a page for somebody else; else English."""
+    """Return what gives messages in another language than the user's, as a page for somebody else; else English."""
     catalogue = gettext.translation(DOMAIN, LOCALE, languages=[language], fallback=True)
     return lambda message: _spoken(catalogue.gettext(message), language)
 
@@ -443,7 +443,7 @@ def short_figure(value: float, decimals: int) -> str:
 
 
 def later(message: str) -> str:
-    """Report the catalogue of a message that is written here but shown, through `tr`, later: as a constant is."""
+    """Mark for the catalogue a message that is written here but shown, through `tr`, later: as a constant is."""
     return message
 
 
@@ -459,7 +459,7 @@ def filled(message: str, values: Mapping[str, object]) -> str:
 def sentence(finding: Finding) -> str:
     """Give a finding in words: where, what happened, what to do or what follows.
 
-    A finding whose sentence is missing, or lacks a figure, is still reported, by its key and its figures.
+    A finding whose sentence is missing, or lacks a figure, is still shown, by its key and its figures.
     """
     known = {name: _stated(name, value) for name, value in finding.numbers.items() if _is_known(value)}
     if reasons := _reasons(finding):
@@ -518,7 +518,7 @@ def capitalised(text: str) -> str:
 
 
 def within_sentence(name: str) -> str:
-    """Give a name that begins with a capital as it is inside a sentence; German nouns keep theirs."""
+    """Give a name that begins with a capital as it is written inside a sentence; German nouns keep theirs."""
     return name if _language == "de" else name[:1].lower() + name[1:]
 
 

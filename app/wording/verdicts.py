@@ -183,12 +183,12 @@ def gate_sentence(reason: GateReason) -> str:
 
 
 def verdict_word(verdict: Verdict) -> str:
-    """A verdict as it is beside a quantity's name."""
+    """A verdict as it is written beside a quantity's name."""
     return tr(VERDICTS[verdict])
 
 
 def verdict_alone(verdict: Verdict) -> str:
-    """The same where it is alone, as in a cell, a chip or a title."""
+    """The same where it is shown alone, as in a cell, a chip or a title."""
     return capitalised(verdict_word(verdict))
 
 

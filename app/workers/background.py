@@ -17,14 +17,14 @@ Work = Callable[[Report], object]
 
 
 class Stopped(Exception):  # noqa: N818  being stopped is no error
-    """Raised inside the work by its report when it was given to stop."""
+    """Raised inside the work by its report when it was asked to stop."""
 
 
 class Background(QObject):
     """Runs one piece of work at a time; a newer one takes the older one's place.
 
     Signals of a piece that was stopped or replaced never arrive, but for `stopped`, once it has ended: whether it came
-    to its end all the same, before its next report could stop it. `idle` gives when the last thread has ended.
+    to its end all the same, before its next report could stop it. `idle` is emitted when the last thread has ended.
     """
 
     progressed = Signal(float, str)
@@ -64,7 +64,7 @@ class Background(QObject):
         thread.start()
 
     def stop(self) -> None:
-        """Let the running work end at its next report. Nothing more is known of it."""
+        """Let the running work end at its next report. Nothing more is received from it."""
         if self._current is not None:
             self._current.requestInterruption()
             self._current.is_stopped = True

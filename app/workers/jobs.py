@@ -1,4 +1,4 @@
-"""Threads that do one job after the other and report whoever asked, as long as they are still there.
+"""Threads that do one job after the other and report to whoever asked, as long as they are still there.
 
 What a job holds of Qt, as a page that is closed meanwhile, must end on the screen's thread (`garbage.py`). So that
 thread keeps every job until the one that did it has let it go.

@@ -104,7 +104,7 @@ class LibraryController(QObject):
     ) -> None:
         """Let the thread make `call`, then call `done(result)` or `failed(what, remedy)` as long as `owner` is there.
 
-        Both are bound methods. Without `failed` a refusal is given by the signal `refused`.
+        Both are bound methods. Without `failed` a refusal is reported by the signal `refused`.
         """
         self._ask(self._calls, Job(lambda: call(self._holder.library), weak(done), weak(failed), ref(owner)))
 
@@ -136,7 +136,7 @@ class LibraryController(QObject):
     ) -> None:
         """Do what takes long, an import or a backup, beside the calls; one at a time, and `stop_long` ends it.
 
-        Nothing more is known of what was stopped.
+        Nothing more is received from what was stopped.
         """
         job = Job(nothing, weak(done), weak(failed), ref(owner))
         begin = partial(self._begin_long, work, job, weak(progressed))
@@ -146,8 +146,7 @@ class LibraryController(QObject):
             begin()
 
     def stop_long(self, ended: Callable[[bool], object] | None = None) -> None:
-        """End what takes long; `ended` is reported, once it has ended, whether it was done before it could be
-        stopped."""
+        """End what takes long; `ended` is called, once it has ended, with whether it was done before it was stopped."""
         if self._long.is_busy:
             self._long_ended = weak(ended)
         self._long.stop()

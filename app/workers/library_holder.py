@@ -145,7 +145,7 @@ class LibraryHolder:
                 return _end_access(library, _operator_of(library), leaving)
 
         def change() -> ChangedKey:
-            refuse_change(library)  # before anybody is stated to work here no longer
+            refuse_change(library)  # before anybody is entered as no longer working here
             return change_data_key(library, _staying(library, leaving), report)
 
         return self._reopened_after(change)
@@ -249,7 +249,7 @@ class LibraryHolder:
 
     @staticmethod
     def gone_words(library: OpenedLibrary) -> Refusal:
-        """What is stated about a library whose folder is gone, whether something is being recorded or not."""
+        """The message about a library whose folder is gone, whether something is being recorded or not."""
         if library.shared is not None and library.is_there:
             return Refusal(
                 tr("The clinic's server does not respond."),

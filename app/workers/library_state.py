@@ -1,4 +1,4 @@
-"""What the library's thread reports the screen: a library that is open, or a folder's; what became of what was
+"""What the library's thread gives the screen: a library that is open, or a folder's; what became of what was
 asked."""
 
 from dataclasses import dataclass, field
@@ -64,7 +64,7 @@ class OpenedState:
 
 @dataclass(frozen=True, slots=True)
 class LibraryPlace:
-    """What a folder states before its library is opened. `remembered`: operators whom the keyring may let in.
+    """What a folder contains before its library is opened. `remembered`: operators whom the keyring may let in.
 
     `server`: the name of the clinic's server that it is a station of; empty where the server is this computer, None
     where the library is in the folder itself.

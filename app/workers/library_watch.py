@@ -81,7 +81,7 @@ class LibraryWatch(QThread):
                     self.came_back.emit(brought)
 
     def _listen(self) -> bool:
-        """Whether the clinic's server answers, as it was received a moment ago; true where there is none."""
+        """Whether the clinic's server answers, as it was found a moment ago; true where there is none."""
         if self._library.shared is None or time.monotonic() < self._listen_from_s:
             return self._does_answer
         try:
@@ -114,7 +114,7 @@ class LibraryWatch(QThread):
             self._is_left_here = False
 
     def _look_for_server(self) -> None:
-        """Report, once, a station that works without its server that it answers again."""
+        """Notify, once, a station that works without its server when that answers again."""
         station = self._library.away_from
         if station is None or self._has_server_answered or time.monotonic() < self._listen_from_s:
             return

@@ -25,7 +25,7 @@ MIN_LIKENESS = 0.7  # of the joint that fits best; the same joint in two marker 
 NOISE_SHARE = 0.02  # of the rates' power that is never explained, so that no likeness is infinitely good
 APART_S = 0.3  # offsets nearer than this are one and the same
 MIN_MARGIN = 1.05  # strides resemble each other: of a regular walk the next stride's fit is 0.8 of the best
-MIN_LEAD = 10.0  # of the score, the logarithm of a likelihood times seconds: a long walk reports by little differences
+MIN_LEAD = 10.0  # of the score, the logarithm of a likelihood times seconds: a long walk decides by little differences
 ROUNDS = 12
 CORRELATED_S = 0.1  # errors nearer than this are not independent
 RATE_PRIOR = 300e-6  # clocks of sensors and cameras: 80 to 170 parts in a million are usual
@@ -120,7 +120,7 @@ def find_offset(trial: ComparedTrial) -> FoundOffset | Misfit:
         likeness[joint] = np.where(both > 1e-6, _over_lags(one, other) / both, 0.0)
         score += np.maximum(count, 0.0) / GRID_HZ * -np.log1p(NOISE_SHARE - np.minimum(likeness[joint] ** 2, 1.0))
         seconds = np.maximum(seconds, count / GRID_HZ)
-        power = np.maximum(power, np.minimum(*powers) / np.maximum(count, 1.0))  # a leg that is is no walk
+        power = np.maximum(power, np.minimum(*powers) / np.maximum(count, 1.0))  # a leg at rest is no walk
     is_long, is_moving = seconds >= MIN_OVERLAP_S, power >= MIN_RATE_RAD_S**2
     if not is_long.any():
         return Misfit.TOO_SHORT
@@ -165,7 +165,7 @@ def _solved(information: FloatArray, rate: float) -> tuple[float, FloatArray]:
 
 
 def _rate_information(information: FloatArray) -> float:
-    """What all walks report of the shared rate once each has its own offset, with what is known of clocks."""
+    """What all walks show of the shared rate once each has its own offset, with what is known of clocks."""
     aa, ab, bb = information.T[:3]
     return float(np.sum(bb - ab**2 / np.maximum(aa, 1e-12))) + RATE_PRIOR**-2
 

@@ -29,7 +29,7 @@ class PhaseError:
 
 @dataclass(frozen=True, slots=True)
 class Agreement:
-    """Measured less reference over one walk or recording, radians; NaN: cannot be reported.
+    """Measured less reference over one walk or recording, radians; NaN: not known.
 
     Attributes
     ----------
@@ -102,7 +102,7 @@ def agreement_of(
     strides : (k, 2)
         First and last row of each stride.
     has_zero
-        The measured angle has a zero; without one its height gives nothing, so neither does the bias.
+        The measured angle has a zero; without one its height means nothing, so neither does the bias.
     """
     is_known = np.isfinite(measured_rad) & np.isfinite(reference_rad)
     n = int(np.count_nonzero(is_known))

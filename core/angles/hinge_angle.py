@@ -24,7 +24,7 @@ MAX_ELEVATION_RAD = np.deg2rad(45.0)  # an axis that is steeper does not show th
 SD_FACTOR = 2.0  # the covariance of the fit alone holds too little
 SD_STEP_S = 0.5  # it changes slowly
 CLIPPED_BEYOND_RAD_S, SAME_RAD_S = 1.5, 1e-9  # the narrowest range of a gyroscope is 125 deg/s
-CORRELATION_S = 0.1  # accelerations nearer in time report the same
+CORRELATION_S = 0.1  # accelerations nearer in time show the same
 SAMPLES_PER_S = 20.0
 MIN_SCALE_M_S2 = 0.02
 STEPS = 6
@@ -72,7 +72,7 @@ def hinge_angle_and_sd(
     force_1 = pair.a1[chosen] - unknowns[6:9] - lever_acceleration(pair.g1[chosen], pair.dg1[chosen], unknowns[0:3])
     force_2 = pair.a2[chosen] - unknowns[9:12] - lever_acceleration(pair.g2[chosen], pair.dg2[chosen], unknowns[3:6])
     z1, z2 = in_plane(force_1, j1), in_plane(force_2, j2)
-    # the true drift turns z2 exp(i from_rates) into z1; a long z reports its direction better than a short one
+    # the true drift turns z2 exp(i from_rates) into z1; a long z gives its direction better than a short one
     ahead = z1 * np.conj(z2 * np.exp(1j * from_rates[chosen]))
     length = np.sqrt(np.abs(ahead))
     causes = _causes(pair, j1, from_rates)

@@ -185,7 +185,7 @@ def measure(
 
 
 def is_anchored(pair: Pair) -> bool:
-    """Whether enough of a stretch is known to say where its angle is."""
+    """Whether enough of a stretch is known to say what its angle is."""
     return int(np.count_nonzero(pair.is_known)) * pair.step_s >= MIN_KNOWN_S
 
 

@@ -1,6 +1,6 @@
 """Axes of a joint that no tissue hides, straight from the relative rate of a walk.
 
-Under tissue the axis is where the joint's own rate is out of what rings, and where both sensors agree on it. On a
+Under tissue the axis is where the joint's own rate rises out of what rings, and where both sensors agree on it. On a
 prosthetic foot, or a shoe, nothing rings: the relative rate is the joint's own, and its principal direction, slow and
 fast parts alike, is the axis about which its angle is least off.
 """

@@ -22,7 +22,7 @@ Bases = dict[tuple[str, Joint], Basis]
 
 
 FoundKnee = tuple[ClinicalSign, FloatArray]
-"""A knee's sign as the motion reports it, since the user's word on a knee is none on its ankle; its distal axis
+"""A knee's sign as the motion gives it, since the user's word on a knee is none on its ankle; its distal axis
 (3,)."""
 
 
@@ -65,7 +65,7 @@ def _calibration(
     knee: FoundKnee | None,
     method: Method,
 ) -> tuple[JointCalibration, ClinicalSign]:
-    """One joint's calibration, and its sign as the motion reports it, whatever the user states."""
+    """One joint's calibration, and its sign as the motion gives it, whatever the user states."""
     session, basis = tracks.session, found.basis
     joint = basis.joint
     standing = _standing_twist(tracks, found)
@@ -160,7 +160,7 @@ def _clinical_sign(
 
 
 def _sign_of_foot(tracks: SensorTracks, found: Identified) -> ClinicalSign | None:
-    """What the foot's own travel states of its ankle's sign; None where it does not say it for sure."""
+    """The ankle's sign as the foot's own travel shows it; None where it does not show it for sure."""
     joint = found.basis.joint
     for recording in tracks.span:
         if recording.name not in found.basis.walks or not tracks.is_usable(recording, joint.distal):

@@ -10,12 +10,12 @@ import numpy as np
 
 from core.samples import FloatArray
 
-MIN_RANGE_RAD = np.deg2rad(10.0)  # a stiff knee: its few degrees do not report which way it bends
+MIN_RANGE_RAD = np.deg2rad(10.0)  # a stiff knee: its few degrees do not show which way it bends
 MIN_SWING_RAD_S = 0.7  # a shank slower than this is not walking
 MIN_MARGIN = 0.5  # a shank that swings forward twice as fast as back has 0.33, three times 0.5
-CONTRADICTION = 0.25  # so much against what another witness states is no chance
+CONTRADICTION = 0.25  # so much against what another witness shows is no chance
 MIN_AXES_ALIGNMENT = 0.5
-MIN_SWINGS = 3  # of a foot, for it to report where its toes are
+MIN_SWINGS = 3  # of a foot, for it to show where its toes are
 
 
 @dataclass(frozen=True, slots=True)
@@ -154,7 +154,7 @@ def ankle_sign_from_foot(pitch_alignment: float, swings: int) -> ClinicalSign:
     pitch_alignment
         j2,ankle . the foot's pitch axis, toes up positive, both in the foot's sensor.
     swings
-        How many reported where the toes are.
+        How many showed where the toes are.
 
     Returns
     -------

@@ -1,8 +1,8 @@
-"""Sensors whose accelerometer and gyroscope belong to no common right-handed axes, reported by their adjacent ones.
+"""Sensors whose accelerometer and gyroscope belong to no common right-handed axes, found by the adjacent segments.
 
 A body that turns turns as a whole: over a second and more, thigh, shank and foot turn alike about the vertical. A
 sensor whose accelerations have the wrong sign takes up for down and turns the other way round. One sensor alone cannot
-report: a reversed accelerometer is a person seen in a mirror, who walks as anyone does. For the same reason nothing
+show it: a reversed accelerometer is a person seen in a mirror, who walks as anyone does. For the same reason nothing
 that we compute changes where all accelerometers are reversed alike.
 
 A joint of two axes may turn its segments against each other, so this is a suspicion only: reversed is an accelerometer
@@ -29,7 +29,7 @@ LOOKED_AT_S = 60.0
 TURN_HZ, GRID_HZ, MEANS_HZ = 1.0, 10.0, 25.0
 MIN_OVERLAP_S = 5.0
 MIN_TURN_RAD_S = 0.1  # rms; on people a straight walk has 0.1-0.3
-# Correlation: of adjacent ones on people 0.1-0.9, in free motion and turns 0.6-1.0; below zero where one is reversed
+# Correlation: of adjacent segments on people 0.1-0.9, in free motion and turns 0.6-1.0; below 0 if one is reversed
 OPPOSITE = -0.55
 # What a joint's sensors disagree on: people 0.025-0.089, and 0.08-0.27 with one accelerometer negated; hinges
 # 0.003-0.007 and 0.40
@@ -50,7 +50,7 @@ Turn = Turning | None
 
 
 def reversed_sites(turns: Mapping[Site, Turn]) -> list[tuple[Site, ...]]:
-    """The sites whose sensors turn against their adjacent ones', each alone or, where it is one of two, with the other.
+    """The sites whose sensors turn against adjacent segments, each alone or, where it is one of two, with the other.
 
     `turns` are those about the vertical in one recording.
     """
@@ -68,7 +68,7 @@ def reversed_sites(turns: Mapping[Site, Turn]) -> list[tuple[Site, ...]]:
 
 
 def _agreement(turns: Mapping[Site, Turn], joint: Joint) -> bool | None:
-    """Whether both sensors at a joint turn the same way; None where they turn too little or it cannot be reported."""
+    """Whether both sensors at a joint turn the same way; None where they turn too little or it is not clear."""
     proximal, distal = turns.get(joint.proximal), turns.get(joint.distal)
     if proximal is None or distal is None:
         return None

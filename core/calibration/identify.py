@@ -69,7 +69,7 @@ class Identification:
 
     @property
     def is_same_joint(self) -> bool:
-        """Whether the two sensors may be adjacent ones."""
+        """Whether the two sensors may be on adjacent segments."""
         most = most_disagreement(self.sign_margin)
         return not (self.lag.is_at_border or (most is not None and self.disagreement > most))
 
@@ -80,7 +80,7 @@ PairsAtLag = Callable[[float], tuple[Pair, ...]]
 
 
 def moving_data(pairs: tuple[Pair, ...]) -> Datasets | None:
-    """All samples that report about the joint; None when there is too little movement."""
+    """All samples with information on the joint; None when there is too little movement."""
     every = [moving_indices(pair) for pair in pairs]
     slow = [slow_ones(pair, index, FAST_RAD_S) for pair, index in zip(pairs, every, strict=True)]
     # jumps and turns are left out where enough remains without them
@@ -190,8 +190,7 @@ def _with_others(data: Datasets, others: Datasets, best: Candidates) -> tuple[Da
 
 
 def _rest_of_lag(data: Datasets, others: Datasets | None, decision: Decision) -> float:
-    """What a first correction has left. On a hinge nothing rings, and walks, full of sharp changes, report it as
-    well."""
+    """What a first correction has left. On a hinge nothing rings; walks, full of sharp changes, show it too."""
     some, best = data.thinned(DECISION_SAMPLES), decision.best
     if hinge_residual(turning(data, DECISION_SAMPLES), best.axis_1[0], best.axis_2[0]) > MAX_HINGE_RESIDUAL_RAD_S:
         return smoothest_lag(some, best.knots_rad[0]).best_s

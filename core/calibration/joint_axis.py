@@ -4,7 +4,7 @@ The relative rate of the two segments points along the joint axis in both sensor
 line seen from both: j1 = R12 j2. The unknowns are the two axes and the relative heading; the heading enters the
 relative rate so simply that all headings can be tried at once. Seel et al. 2014 identify the axes from the rates'
 lengths alone (eq 6), which needs no heading; on human joints, where the rest of the motion is as large as the
-sensors' noise is small, the direction reports more.
+sensors' noise is small, the direction contains more.
 """
 
 from dataclasses import dataclass
@@ -22,9 +22,9 @@ MAX_SCAN_SAMPLES = 800
 KEPT_MINIMA = 3
 RATE_SCALE_RAD_S = 0.3  # off-axis rate of a human joint
 NEUTRAL_SCALE_RAD = np.deg2rad(5.0)  # how far the two axes part in a human joint
-CORRELATION_S = 0.5  # residuals nearer in time report nothing new
+CORRELATION_S = 0.5  # residuals nearer in time show nothing new
 MAX_AXIS_STEP_RAD = 0.4
-MIN_STEP_RAD = 1e-5  # nothing is reported so finely
+MIN_STEP_RAD = 1e-5  # nothing is known so finely
 
 
 @dataclass(frozen=True, slots=True)
@@ -58,7 +58,7 @@ def candidates(data: Datasets, few: Datasets, stretch: int) -> Candidates:
     Parameters
     ----------
     few
-        Some of the same samples, enough to report the headings of all stretches from the axes.
+        Some of the same samples, enough to give the headings of all stretches from the axes.
     """
     axes_1, axes_2 = _scan(data, stretch)
     pairs_1, pairs_2 = np.concatenate([axes_1, axes_1]), np.concatenate([axes_2, -axes_2])
@@ -387,7 +387,7 @@ def _step(
 
 
 def sample_information(data: Datasets) -> float:
-    """What one sample reports, where adjacent ones within the correlation time report the same.
+    """What one sample adds, where the samples beside it within the correlation time show the same.
 
     Returns
     -------

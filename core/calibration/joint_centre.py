@@ -22,7 +22,7 @@ from core.signal.rotations import cross, cross_matrix, joint_frame
 MIN_SCALE_M_S2 = 0.02
 NORM_STEPS = 10
 # A sensor's shift in step with the limb looks the same in every sample: its energy, counted in residuals, divides the
-# information, however long the motion lasts. With the factor below nine of ten centres lie within twice
+# information, however long the motion lasts. With the factor below 9 of 10 reported centres lie within twice
 # the standard deviation (240 simulated joints, stopped at random times as in tests/benchmarks/excitation.py).
 IN_STEP_M = 0.0004
 SD_FACTOR_HUMAN = 2.5

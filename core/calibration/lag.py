@@ -105,7 +105,7 @@ def smoothest_lag(data: Datasets, knots_rad: FloatArray) -> Lag:
 def sharpest_lag(data: Datasets, knots_rad: FloatArray) -> Lag:
     """Where the accelerations of a hinge coincide best, in whole samples.
 
-    Nothing rings there, and the sharpest changes report most: the accelerations are taken as they are.
+    Nothing rings there, and the sharpest changes show most: the accelerations are taken as they are.
 
     Parameters
     ----------
@@ -177,13 +177,12 @@ def _lowest(costs_of: Callable[[FloatArray], FloatArray], step_s: float, indepen
 
 
 def _share_of_sample(time_s: FloatArray) -> float:
-    """What each of the samples at instants (n,) reports, where adjacent ones within a tenth of a second report the
-    same."""
+    """What each of the samples at instants (n,) adds, where the samples beside it within 0.1 s show the same."""
     return min(1.0, float(np.median(np.diff(time_s))) / CORRELATION_S)
 
 
 def _with_room(data: Datasets, reach: int) -> Datasets:
-    """The samples whose adjacent ones within `reach` are all known."""
+    """The samples for which all samples within `reach` are known."""
     keep = np.ones(len(data), dtype=bool)
     for s, pair in enumerate(data.pairs):
         mine = data.stretch == s

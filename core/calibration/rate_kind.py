@@ -1,7 +1,7 @@
-"""Whether rates stand for instants or for intervals; where no sensor reports it, the joints decide together.
+"""Whether rates stand for instants or for intervals; where no sensor names it, the joints decide together.
 
 Half an interval between rates and orientations is enough to make the accelerations of a joint disagree. One joint
-alone is no evidence where tissue is loose, so what all joints report is added up.
+alone is no evidence where tissue is loose, so what all joints show is added up.
 """
 
 import numpy as np
@@ -28,7 +28,7 @@ MAX_RECORDINGS = 2  # of each joint
 def tracks_of_kind(
     session: Session, span: tuple[Recording, ...], unusable: frozenset[tuple[str, Site]]
 ) -> tuple[SensorTracks, list[Finding]]:
-    """The tracks of a span, of the kind that the data show where sensors do not report it; a finding reports it."""
+    """The tracks of a span, of the kind that the data show where sensors do not name it; a finding reports that."""
     instants = SensorTracks(session, span, unusable, RateKind.INSTANTANEOUS)
     evidence = 0.0
     for recording, joint in _undeclared(instants):
@@ -42,7 +42,7 @@ def tracks_of_kind(
 
 
 def _undeclared(tracks: SensorTracks) -> list[tuple[Recording, Joint]]:
-    """The first recordings of each joint of which no sensor reports its kind."""
+    """The first recordings of each joint of which no sensor names the kind of its rates."""
     declared = {site for site, info in tracks.session.sensors.items() if info.rate_kind is not None}
     moving = [recording for recording in tracks.span if recording.kind is not RecordingKind.STANDING]
     found = []

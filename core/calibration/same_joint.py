@@ -3,7 +3,7 @@
 # Two sensors with no joint between them: what they disagree on, and the margin, are both poor. Neighbours on people
 # (stroke_treadmill, full_body_free_motion, a walk overground: 20 joints) disagree on 0.13 at most with margins of 5.7
 # and more; strangers made of them (32) on 0.18 and more, with margins of 3.3 at most. Simulated sensors two segments
-# apart look like adjacent ones where the joint between hardly moves: 0.2 and margins up to 14.
+# apart look like adjacent segments where the joint between hardly moves: 0.2 and margins up to 14.
 DOUBTFUL_DISAGREEMENT, DOUBTFUL_MARGIN = 0.2, 3.1
 MAX_DISAGREEMENT, STRANGERS_MARGIN = 0.33, 8.0
 

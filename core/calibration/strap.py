@@ -134,7 +134,7 @@ def _about_vertical(
 
 
 def slips(turns: Mapping[Joint, Turns], since_calibration_rad: float = MIN_SLIP_SINCE_CALIBRATION_RAD) -> list[Slip]:
-    """Which straps slipped in the walking that `turns` report of, and when; the first slip of each side.
+    """Which straps slipped in the walking that `turns` describe, and when; the first slip of each side.
 
     A shank's sensor that turns shows in its knee and, the other way round, in its ankle; a thigh's in the knee alone, a
     foot's in the ankle alone.
@@ -215,9 +215,9 @@ def _is_in_place(walk: Recording) -> bool:
 
 
 def is_refuted(tracks: SensorTracks, walk: Recording, slip: Slip) -> bool:
-    """Whether a foot's sensor that is stated to have turned a little feels gravity at rest where it did before.
+    """Whether a foot's sensor that seems to have turned a little feels gravity at rest where it did before.
 
-    Thigh and shank hang along the vertical, about which their straps slip, so gravity gives nothing of them. The
+    Thigh and shank hang along the vertical, about which their straps slip, so gravity shows nothing of them. The
     instep slopes: a strap that slips there takes the vertical with it, by a third of the turn and more.
     """
     if slip.site.segment is not Segment.FOOT or abs(slip.turn_rad) > MAX_REFUTED_RAD:

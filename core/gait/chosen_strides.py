@@ -1,4 +1,4 @@
-"""Strides that a person left out: they leave every mean and every count, and it is stated how many they are.
+"""Strides that a person left out: they leave every mean and every count, and their number is stated.
 
 This comes after all else: nothing is identified or measured from chosen strides, so a choice costs no new analysis.
 """
@@ -18,7 +18,7 @@ from core.verdicts.walk_findings import about_walk
 
 
 def leave_out(analysis: Analysis, recordings: Sequence[Recording]) -> Analysis:
-    """The analysis without the strides that `recordings` name; the findings about their walks are reported again.
+    """The analysis without the strides that `recordings` name; the findings about their walks are made again.
 
     Parameters
     ----------
@@ -63,7 +63,7 @@ def _without(gait: SideGait, times_s: Sequence[float]) -> SideGait:
 
 
 def _sites(walk: RecordingAnalysis) -> dict[Side, Site | None]:
-    """Which sensor reported each side's events, as those say themselves."""
+    """Which sensor gave each side's events, as the events themselves name it."""
     return {
         side: Site(f"{side}_{Segment.SHANK if any(e.is_from_shank for e in gait.events) else Segment.FOOT}")
         for side, gait in walk.gait.items()

@@ -19,7 +19,7 @@ READ_S, CARE_S = 0.005, 0.020  # of what the clocks may still be apart
 MAX_LAG_S = 0.005  # found inside of a leg: the sensors' clocks are not what they seem
 MAX_SHARE_OFF_PERCENT, ALIKE_STANCE_PERCENT = 5.0, 3.0  # steps so uneven with stances so alike are two clocks
 TOGETHER_S = 0.25  # one command starts all sensors within this, and stops them
-MADE_UP_S = 0.0002  # stamps so near to a round rate all along report nothing but the sample's number
+MADE_UP_S = 0.0002  # stamps so near to a round rate all along contain nothing but the sample's number
 SAME_STAMP_S = 0.0005
 MIN_SAMPLES = 100
 
@@ -53,7 +53,7 @@ class LegSteps:
 
 @dataclass(frozen=True, slots=True)
 class LegClocks:
-    """Evidence that both legs' sensors report one time in one walk, and what follows.
+    """Evidence that both legs' sensors share one time in one walk, and what follows.
 
     Attributes
     ----------
@@ -182,7 +182,7 @@ def _line(stamps_s: FloatArray) -> StampLine:
 
 
 def _share_and_difference(steps: Mapping[Side, LegSteps]) -> tuple[float, float]:
-    """The left step's share of both, and the stances' difference, percent; NaN where a side reports none."""
+    """The left step's share of both, and the stances' difference, percent; NaN where a side has none."""
     if len(steps) < len(Side):
         return float("nan"), float("nan")
     left, right = (steps[side] for side in Side)

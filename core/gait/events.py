@@ -11,10 +11,10 @@ One definition of each event, for any speed and sampling rate; levels follow eac
 A foot that lands with its forefoot is turned the other way by the floor: toes up, by a heel that comes down. Its full
 contact is where it ceases to sink, be the heel on the floor or not.
 
-Where a foot hardly rolls, or comes down flat while it goes on (shuffling, dragging), the pitch gives nothing of contact
-and toe-off; how the sole travels over the floor does (`core.gait.sole`). What neither reports stays unknown, that event
+Where a foot hardly rolls, or comes down flat while it goes on (shuffling, dragging), the pitch shows nothing of contact
+and toe-off; how the sole travels over the floor does (`core.gait.sole`). What neither shows stays unknown, that event
 alone. Each event carries its source and a standard deviation.
-Where the sensor shakes on its foot, the rate of one swing states little; the foot's mean swing does.
+Where the sensor shakes on its foot, the rate of one swing shows little; the foot's mean swing does.
 """
 
 from dataclasses import dataclass, replace
@@ -47,7 +47,7 @@ FLAT_SHARE = 0.15  # of the greatest speed: below, a foot that does not roll is 
 
 
 class EventSource(StrEnum):
-    """What reported when an event was."""
+    """What gave the time of an event."""
 
     UNKNOWN = ""
     PITCH = "pitch"
@@ -116,7 +116,7 @@ class FootEvents:
     is_measured
         False where samples were missing between heel rise and full contact.
     source, sd_s : (k, 4)
-        What reported each event, an index into SOURCES, and its standard deviation; columns as EVENTS, NaN where
+        What gave each event, an index into SOURCES, and its standard deviation; columns as EVENTS, NaN where
         unknown.
     """
 
@@ -217,7 +217,7 @@ def detect_events(motion: FootMotion, is_measured: BoolArray, is_rigid: bool = F
 
 
 def _time_by_sole(timing: Timing, sole: SoleTravel, is_lifted: bool, is_landed: BoolArray) -> None:
-    """Time toe-offs of a foot that is lifted, and contacts that the pitch does not report, by the sole; in place.
+    """Time toe-offs of a foot that is lifted, and contacts that the pitch does not show, by the sole; in place.
 
     A heel rise that comes later than its toe-off is not known.
     """

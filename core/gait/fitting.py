@@ -1,7 +1,7 @@
 """What a prosthetist reads of each stride beside peaks and ranges: knee in late swing, foot, and how the segments lean.
 
-Values per stride, whatever may be stated about them; which verdict each rests on, and what it cannot say, is reported
-in `core.verdicts.fitting`.
+Values per stride, whatever may be stated about them; which verdict each rests on, and what it cannot say, is in
+`core.verdicts.fitting`.
 """
 
 from collections.abc import Mapping
@@ -47,12 +47,12 @@ def late_swing_of_knee(cycles: FloatArray) -> dict[str, FloatArray]:
 
 
 def foot_measures(strides: Strides, time_s: FloatArray, pitch_rad: FloatArray) -> dict[str, FloatArray]:
-    """How long a foot is flat, how it lands and how far its heel comes up, of each stride.
+    """How long a foot rests flat, how it lands and how far its heel comes up, of each stride.
 
     Parameters
     ----------
     time_s, pitch_rad : (n,)
-        Pitch of the foot, toes up, zero where it is; NaN where not known.
+        Pitch of the foot, toes up, zero where it rests flat; NaN where not known.
 
     Returns
     -------

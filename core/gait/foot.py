@@ -36,7 +36,7 @@ BEND_SHARE = 0.2  # of a second difference is what the trapezoid may miss,
 SMOOTH_M_S2 = 10.0  # where it exceeds what a swinging foot does at 50 Hz
 MIN_SWING_M = 0.08  # shorter is fidgeting, not a step
 MIN_SWING_M_S = 0.25
-MAX_TILT_RAD = np.deg2rad(30.0)  # a foot that is is as it mostly does; ramps and kerbs included
+MAX_TILT_RAD = np.deg2rad(30.0)  # a resting foot is as it mostly is at rest; ramps and kerbs included
 MOVING_RAD_S = 1.0
 MIN_HEEL_UP_RAD = np.deg2rad(1.0)  # mean pitch of swings that gives where the toes are; shuffling feet have 1.2 deg
 
@@ -246,7 +246,7 @@ def _instants(anchors: IntArray, n: int, step_s: float) -> list[FootRest]:
 def _stances(
     anchors: IntArray, up: FloatArray, speed_m_s: FloatArray, step_s: float, tilt_rad: float
 ) -> list[FootRest]:
-    """The longest rests: all samples around each anchor in which the foot is as it does there.
+    """The longest rests: all samples around each anchor in which the foot rests as it does there.
 
     Parameters
     ----------
@@ -326,7 +326,7 @@ def _pitch_axis(
     """The axis the foot mostly turns about, signed so that toes up is positive, and whether both signs agree.
 
     A foot leaves with its heel first: in the swings its pitch is mostly toes down. And a foot travels toes first, which
-    alone gives where the foot hardly rolls.
+    alone decides where the foot hardly rolls.
     """
     if not len(swings):
         return np.array([1.0, 0.0, 0.0]), False

@@ -1,8 +1,9 @@
 """How far thigh and shank lean forward of the vertical, relative to how they stood.
 
-A sensor knows the vertical, not the bone it is strapped to. The knee's axis, found in both sensors, reports in which
-plane a segment leans, and standing gives where it leans by nothing. So every inclination is relative to standing: of a
-patient who is with the shank 5 degrees forward these figures put it 5 degrees further back than it is.
+A sensor knows the vertical, not the bone it is strapped to. The knee's axis, found in both sensors, gives the
+plane in which a segment leans; standing gives where it leans by nothing. So every inclination is relative to
+standing: for a patient standing with the shank 5 degrees forward these figures put it 5 degrees further back than it
+is.
 """
 
 import numpy as np

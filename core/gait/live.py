@@ -4,15 +4,15 @@ The definitions and their constants are those of the offline events. What offlin
 on the way: the usual peaks from the last steps, the pitch axis from all turning so far. As long as the delay allows,
 an event waits until its peak has passed, so that it is the same peak as offline.
 
-A rate alone does not report a push-off from a heel lifted on the spot: from stance to stance the specific force is
-integrated, and a foot that gains no speed has not left the floor. What cannot be known in time is reported late
+A rate alone does not distinguish a push-off from a heel lifted on the spot: from stance to stance the specific force
+is integrated, and a foot that gains no speed has not left the floor. What cannot be known in time is reported late
 (`LiveEvent.is_late`): the heel rise of a step from standing, with its toe-off, since one who shifts weight lifts the
 heel as well; flat landings, and steps of a foot that hardly rolls, once the foot is calm again; and the heel rises of
 a sensor that shakes on its foot, whose stances have shown that it does. The full contact of a flat landing is not
 reported.
 
-A foot that lands with its forefoot is given its contact when its toes come down in the air, 0.1 to 0.2 s too early.
-All this is about walking: a foot that is moved about in the air is reported steps too, until it has not stood
+A foot that lands with its forefoot gets its contact when its toes come down in the air, 0.1 to 0.2 s too early.
+All this is about walking: a foot that is moved about in the air gets steps too, until it has not stood
 for long.
 """
 
@@ -69,7 +69,7 @@ class LiveEventSettings:
     min_flat_s
         A foot stays flat longer than this; a loading shock does not.
     standing_s
-        A foot that is flat for longer is. Source: at 0.3 m/s, the slowest, a foot is flat for 0.7 s of each stride.
+        A foot flat for longer is standing. Source: at 0.3 m/s, the slowest, a foot is flat for 0.7 s of each stride.
     max_push_s
         From the end of push-off until the foot has speed; after longer the heel was lifted on the spot.
     first_load_share
@@ -125,7 +125,7 @@ PHASE_AFTER = {
 
 @dataclass(frozen=True, slots=True)
 class LiveEvent:
-    """`time_s` is when it happened, `reported_s` the sample that reported."""
+    """`time_s` is when it happened, `reported_s` the sample that showed it."""
 
     event: FootEvent
     time_s: float
@@ -138,7 +138,7 @@ class LiveEvent:
 
 @dataclass(frozen=True, slots=True)
 class PhaseChange:
-    """The sample at `reported_s` put the foot into a phase, or reported an event: it has been in this phase since
+    """The sample at `reported_s` put the foot into a phase, or showed an event: it has been in this phase since
     `since_s`."""
 
     phase: Phase
@@ -152,7 +152,7 @@ class LiveEvents:
     Parameters
     ----------
     pitch_axis : (3,) or None
-        About which the foot mostly turns, in sensor axes, either sign, if a calibration reports; it is followed on.
+        About which the foot mostly turns, in sensor axes, either sign, if calibration gives it; it is followed on.
     """
 
     def __init__(self, pitch_axis: FloatArray | None = None) -> None:
@@ -161,7 +161,7 @@ class LiveEvents:
         self._events: list[LiveEvent] = []
         self._changes: list[PhaseChange] = []
         self._phase = Phase.UNKNOWN
-        self._path: list[Sample] = []  # since the phase began, or since the rate last stated that it cannot end yet
+        self._path: list[Sample] = []  # since the phase began, or since the rate last showed that it cannot end yet
         self._pushes: deque[float] = deque(maxlen=SETTINGS.memory)
         self._loads: deque[float] = deque(maxlen=SETTINGS.memory)
         self._contacts_s: deque[float] = deque(maxlen=SETTINGS.memory + 1)
@@ -192,7 +192,7 @@ class LiveEvents:
     def changes(self) -> list[PhaseChange]:
         """What the samples of the last update made of the phase.
 
-        Between two phases reported by one sample it may have passed others: its events name them.
+        Between two phases found at one sample it may have passed others: its events name them.
         """
         return self._changes
 
@@ -204,7 +204,7 @@ class LiveEvents:
         return 120.0 / median(end - start for start, end in pairwise(self._contacts_s))
 
     def update(self, time_s: FloatArray, gyr_rad_s: FloatArray, acc_m_s2: FloatArray) -> list[LiveEvent]:
-        """Take the next samples; returns what they report, in the order of telling.
+        """Take the next samples; returns what they show, in the order in which it is found.
 
         Parameters
         ----------
@@ -267,7 +267,7 @@ class LiveEvents:
                 self._advance((then_s, dot(rate, axis)), speed_m_s)
 
     def _arrive(self, travelled: Travelled) -> None:
-        """The foot is calm again. Had it hardly rolled, its speed gives when it left and landed."""
+        """The foot is calm again. Had it hardly rolled, its speed shows when it left and landed."""
         speeds = speeds_of(travelled)
         fastest = max(range(len(speeds)), key=lambda k: speeds[k][1])
         level = FLAT_SHARE * speeds[fastest][1]
@@ -284,7 +284,7 @@ class LiveEvents:
         self._stand(self._time_s)
 
     def _rest(self) -> None:
-        """The foot lies flat: whatever was missed, it is."""
+        """The foot lies flat: whatever was missed, it is standing."""
         if not self._pushes:
             self._motion.forget_axis()
         else:
@@ -293,7 +293,7 @@ class LiveEvents:
             self._end_landing()
 
     def _end_landing(self) -> None:
-        """Report what is still to be given of a foot that has come down."""
+        """Report what is still to be reported of a foot that has come down."""
         if self._phase is Phase.SWING and self._dip:
             self._touch_down(self._contact(self._dip, -self._peak), self._dip)
         elif self._phase is Phase.SWING and not math.isnan(self._slow_s):
@@ -317,7 +317,7 @@ class LiveEvents:
             self._loads.append(-self._peak)
 
     def _is_due(self, time_s: float) -> bool:
-        """Would the next sample be too late to report?"""
+        """Would the next sample be too late to report it?"""
         return self._time_s + self._step_s - time_s > SETTINGS.max_delay_s
 
     def _advance(self, now: Sample, speed_m_s: float) -> None:
@@ -391,7 +391,7 @@ class LiveEvents:
     def _rise(self, still: float) -> float:
         """Where a rate that falls to the peak of push-off began to, extrapolated from two low levels.
 
-        While it has not reached the second, its growth with the power 1.75 of time reports as well.
+        While it has not reached the second, its growth with the power 1.75 of time shows it as well.
         """
         low, high = self._path[0][0], None
         for last, now in pairwise(self._path):

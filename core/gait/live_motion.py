@@ -67,7 +67,7 @@ class LiveMotion:
     travelled
         Time and velocity from the moment the foot was no longer calm, on the sample when it is calm again; else empty.
     has_turned_round
-        On the sample that states that the toes are on the other side than was thought.
+        On the sample that shows that the toes are on the other side than was thought.
     """
 
     def __init__(self, pitch_axis: FloatArray | None) -> None:
@@ -229,7 +229,7 @@ class LiveMotion:
         self._fastest_m_s = 0.0
 
     def _vote(self, step: Turning) -> None:
-        """The last step states where the toes are: its swing was mostly toes down or, if it hardly rolled, toes
+        """The last step shows where the toes are: its swing was mostly toes down or, if it hardly rolled, toes
         first."""
         turned, tilted, lasted_s = step
         if self._fastest_m_s < VOTING_M_S or lasted_s < MIN_STEP_S or self.pitch_axis is None:

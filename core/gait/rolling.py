@@ -13,7 +13,7 @@ from core.signal.robust import robust_sd
 
 LEAVING_SHARE = 0.2  # of the lowest pitch on leaving: where its passing is sharp
 LANDING_SHARES = (0.25, 0.5)  # and of the extreme on landing; the first serves heels that land first
-LEAST_SWINGS = 4  # from which a mean states something
+LEAST_SWINGS = 4  # from which a mean is meaningful
 
 Spans = Sequence[tuple[int, int, int]]  # of each swing: the rest before, where it is fastest, the rest after
 

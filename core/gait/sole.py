@@ -1,6 +1,6 @@
 """When a foot's sole begins and ceases to travel over the floor, for contacts that pitch does not show.
 
-A foot that is may roll, and the point that it rolls on keeps still: what its sensor does is the rolling. Taking
+A standing foot may roll, and the point that it rolls on keeps still: what its sensor does is the rolling. Taking
 the rolling off the sensor's velocity leaves that of the sole, in any way of landing and leaving: heels first, toes
 first, flat or dragging.
 """
@@ -17,10 +17,10 @@ EARLY_SHARE = 0.1  # of the greatest speed: slower than this on its way to leave
 MAX_SENSOR_HEIGHT_M = 0.15
 TRAVEL_SHARE = 0.05  # of the sole's greatest speed: more, and it travels
 LANDED_SHARE = 0.25  # more, and it has not landed: real feet that land heels first go on at 0.1 to 0.2
-STANDING_SHARE = 0.04  # less, and it is, however it came down
-MAX_EARLY_S, MAX_LATE_S = 0.04, 0.01  # the pitch of a flat foot that lands further from its sole reports something else
+STANDING_SHARE = 0.04  # less, and the foot is at rest, however it came down
+MAX_EARLY_S, MAX_LATE_S = 0.04, 0.01  # the pitch of a flat foot that lands further from its sole shows something else
 NEAR_SHARE, SHOCK_S = 0.5, 0.05  # a shock counts from so long before the sole becomes slower than this share;
-# a sole that lands softly is twice that after it was slower than LANDED_SHARE, and what moves it later is the shoe
+# a sole that lands softly is at rest twice that after it is below LANDED_SHARE; what moves it later is the shoe
 MIN_SHOCK_M_S2 = 5.0  # from sample to sample; feet put down softly after a stroke begin here
 SHOCK_RATIO = 3.0  # a landing so much harder than the rest of the swing is felt as a shock
 SHOCK_ONSET_SHARE = 0.5  # of the greatest shock
@@ -30,7 +30,7 @@ SHOCK_ONSET_SHARE = 0.5  # of the greatest shock
 class SoleTravel:
     """Where the sole of each swing (k,) begins to travel and ceases to, as indices of samples.
 
-    A sole that lands hard is stopped by the floor: the shock gives when. One that lands softly has slowed down before.
+    A sole that lands hard is stopped by the floor: the shock shows when. One that lands softly has slowed down before.
 
     `leaves_reach`, `lands_reach` are how far, in samples, the sole's speed was extrapolated to find them;
     `speed_share` (n,) is how fast the sole travels, as a share of its greatest speed in the swing.
@@ -46,7 +46,7 @@ class SoleTravel:
         """Whether the soles may land at these indices (k,), as they have all but ceased to travel; False where NaN.
 
         A foot that comes down flat has no heel to land on: its sole has to stand, and to land then.
-        In a turn the way of a swing is no straight one, and its sole reports less.
+        In a turn the way of a swing is no straight one, and its sole shows less.
         """
         at = np.where(np.isfinite(index), index, 0.0).astype(int)
         most = np.where(is_flat, STANDING_SHARE, np.where(is_straight, LANDED_SHARE, np.inf))

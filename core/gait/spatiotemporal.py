@@ -21,7 +21,7 @@ class MeanAndSd:
 
 @dataclass(frozen=True, slots=True)
 class BothFeet:
-    """What needs both feet; NaN where it cannot be reported."""
+    """What needs both feet; NaN where it cannot be determined."""
 
     cadence_steps_min: float
     double_support_percent: float
@@ -76,7 +76,7 @@ def both_feet(left: Strides, right: Strides) -> BothFeet:
     """
     used = [(strides, strides.is_used) for strides in (left, right)]
     times = [float(np.mean(s.time_s[is_used])) for s, is_used in used if is_used.any()]
-    speeds = np.array([mean_and_sd(s.speed_m_s[is_used]).mean for s, is_used in used])  # a shank reports none
+    speeds = np.array([mean_and_sd(s.speed_m_s[is_used]).mean for s, is_used in used])  # a shank gives none
     stances = [mean_and_sd(s.stance_percent[is_used]).mean for s, is_used in used]
     return BothFeet(
         cadence_steps_min=120.0 / float(np.mean(times)) if times else float("nan"),

@@ -26,7 +26,7 @@ SAME_S = 0.2  # two landings of one foot lie further apart
 
 
 def site_of_events(tracks: SensorTracks, recording: Recording, side: Side) -> Site | None:
-    """The sensor that gives when a side's foot lands and leaves."""
+    """The sensor that shows when a side's foot lands and leaves."""
     for segment in (Segment.FOOT, Segment.SHANK):
         site = Site(f"{side}_{segment}")
         if tracks.is_usable(recording, site):
@@ -178,7 +178,7 @@ def _place_pitch(
 
 
 def _continued(before: FootEvents, after: FootEvents, seam_s: float) -> FootEvents:
-    """One stretch of two blocks, which may report the same landing on either side of their seam."""
+    """One stretch of two blocks, which may contain the same landing on either side of their seam."""
     last_s = before.initial_contact_s[-1] if len(before) else -np.inf
     new = _rows(after, after.initial_contact_s > max(seam_s - SAME_S, last_s + SAME_S))
     both: dict[str, Any] = {n: np.concatenate([getattr(before, n), getattr(new, n)]) for n in _rows_of(before)}

@@ -72,7 +72,7 @@ def _is_lag(clock: ThighClock, is_offset: bool) -> bool:
 
 
 def _is_common(tracks: SensorTracks, recording: Recording, sites: tuple[Site, ...]) -> bool:
-    """Whether all of these sensors are given to share one clock, or their stamps prove it."""
+    """Whether all of these sensors are declared to share one clock, or their stamps prove it."""
     ids = [info.clock if (info := tracks.session.sensors.get(site)) else "" for site in sites]
     if all(ids):
         return len(set(ids)) == 1

@@ -87,7 +87,7 @@ def forces_of(pair: Pair, room_s: float = ROOM_S) -> Forces | None:
     Parameters
     ----------
     room_s
-        How much earlier and later the thigh has to be received as well.
+        How much earlier and later the thigh has to have samples as well.
     """
     index = moving_indices(pair)
     step = max(1, round(1 / (SAMPLES_PER_S * pair.step_s)), -(-len(index) // MOST_SAMPLES))

@@ -55,7 +55,7 @@ def is_trusted(found: HipFit | HipIdentification) -> bool:
 
 
 def is_by_cardan_angles(fit: HipFit) -> bool:
-    """Whether its heading is sure enough for Cardan angles, and is one of adjacent ones at all."""
+    """Whether its heading is sure enough for Cardan angles, and is one of adjacent segments at all."""
     return fit.sd_rad <= MAX_3D_SD_RAD and is_trusted(fit)
 
 
@@ -241,7 +241,7 @@ def _angles(pair: Pair, fit: HipFit, frames: HipFrames, side: Side) -> tuple[Flo
 
 
 def _with_places(hips: dict[Joint, HipAngle], frames: HipFrames) -> dict[Joint, HipAngle]:
-    """The same, reported how far the left hip's centre lies to the left of the right one."""
+    """The same, given how far the left hip's centre lies to the left of the right one."""
     if len(hips) < len(Side):
         return hips
     left, right = (-frames.pelvis @ hips[hip_of(side)].identification.centre_proximal_m for side in Side)

@@ -1,4 +1,4 @@
-"""What is given of the hips and the pelvis in one recording."""
+"""What is reported of the hips and the pelvis in one recording."""
 
 from dataclasses import dataclass
 from enum import StrEnum
@@ -39,7 +39,7 @@ class HipIdentification:
     """How pelvis and thigh sit on one hip, and how sure that is; figures of the recording's longest stretch.
 
     Centres (3,) point from the joint to the sensors, m, in sensor axes. `is_3d`: the heading is sure enough for Cardan
-    angles, and that of adjacent ones; else flexion is that against the vertical, and there is no abduction.
+    angles, and that of adjacent segments; else flexion is that against the vertical, and there is no abduction.
     `centres_apart_m`: how far to the left of the right hip's centre the left one's lies; None where there is one hip
     only. `frame_proximal` and `frame_distal` (3, 3) are what the angles were measured with: rows x forward, y left,
     z up of pelvis and thigh, in sensor axes.

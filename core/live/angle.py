@@ -26,7 +26,7 @@ from core.signal.rotations import wrap
 
 BEAT_S = 0.1  # what moves slowly is looked at once in this time, on the proximal grid
 WITNESS_STEP_S = 0.05
-WITNESS_S = 5.0  # of movement, whose off-axis rate states how sure the angle is
+WITNESS_S = 5.0  # of movement, whose off-axis rate shows how sure the angle is
 CERTAINTY_BEATS = 5  # from one word on that to the next
 BLEND_S = 1.0  # from one calibration to the next
 
@@ -49,7 +49,7 @@ MAX_STEEPNESS = 0.99  # sine; an axis that is upright shows no heading at all
 class AngleSamples:
     """Flexion or dorsiflexion on the proximal sensor's grid, radians, and its standard deviation; NaN in gaps.
 
-    All (n,). `tick` is the proximal stream's: where it jumps, that sensor was not received for long.
+    All (n,). `tick` is the proximal stream's: where it jumps, that sensor gave no samples for long.
     """
 
     tick: IntArray
@@ -113,7 +113,7 @@ class LiveAngle:
     def recalibrate(self, calibration: JointCalibration) -> None:
         """Go over to another calibration of the same joint, from the next sample on.
 
-        The angle goes on from where it is and reaches what the new calibration states after BLEND_S, on half a cosine.
+        The angle goes on from where it is and reaches what the new calibration gives after BLEND_S, on half a cosine.
         """
         old, new = self._geometry, JointGeometry(calibration)
         if (new.j1 @ old.j1) * (new.j2 @ old.j2) < 0:  # paired the other way round: so are the headings
@@ -232,7 +232,7 @@ class LiveAngle:
         self._seen.append((complex(seen.sum()), float(time_s.sum()), len(seen)))
 
     def _look(self, start_sd_rad: float) -> None:
-        """What the beat that has ended reports the slow things."""
+        """What the beat that has ended shows of the slow things."""
         seen, time_s, count = (sum(part) for part in zip(*self._seen, strict=True)) if self._seen else (0j, 0.0, 0)
         self._seen = []
         if count:

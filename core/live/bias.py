@@ -62,7 +62,7 @@ class BiasWatch:
         return rest if float(np.linalg.norm(off)) > MAX_ERROR_RAD_S else None
 
     def _is_turning(self, rate: FloatArray, acc: FloatArray) -> bool:
-        """Whether gravity in the sensor turns as a rate (3,) states."""
+        """Whether gravity in the sensor turns as a rate (3,) implies."""
         middle = len(acc) // 2
         before, after = acc[:middle].mean(axis=0), acc[middle:].mean(axis=0)
         by_rate = np.cross(0.5 * (before + after), rate) * (middle * self._step_s)

@@ -9,7 +9,7 @@ from core.samples import FloatArray
 from core.signal.robust import robust_sd
 from core.signal.rotations import wrap
 
-MEMORY = 100  # looks whose scatter states what a look is worth
+MEMORY = 100  # looks whose scatter shows what a look is worth
 MIN_LOOKS = 20
 UNKNOWN_RAD = np.pi
 LOST_RAD, LOST_S = np.deg2rad(8.0), 1.2  # what is seen so far off on the same side for longer than a stride is true
@@ -30,10 +30,10 @@ class Wandering:
 
 @dataclass(frozen=True, slots=True)
 class ObservationModel:
-    """What is seen of an angle: complex numbers along it, of which longer ones report their direction better.
+    """What is seen of an angle: complex numbers along it, of which longer ones show their direction better.
 
     `first_scale` and `min_scale` are standard deviations of what lies across the direction that was expected, over the
-    square root of the length: before enough was seen, and at least. Looks nearer in time than `correlation_s` report
+    square root of the length: before enough was seen, and at least. Looks nearer in time than `correlation_s` show
     the same. Where nothing was known before, so many as `begins_with` are waited for, and their middle one begins: a
     shock may have shown any direction.
     """
@@ -92,7 +92,7 @@ class SlowDrift:
         Parameters
         ----------
         unsure_rad
-            Standard deviation of what turns this look and its adjacent ones alike.
+            Standard deviation of what turns this look and those beside it alike.
         """
         self._advance(time_s)
         if self._is_unknown:

@@ -26,7 +26,7 @@ from core.signal.pair import MOVING_RAD_S
 from core.signal.robust import robust_sd
 
 MIN_SETS = 10  # a second of movement; before, nothing is known
-REFIT_SETS, SELDOM_SETS = 10, 20  # the best hypothesis is found again each second, later each other second
+REFIT_SETS, SELDOM_SETS = 10, 20  # the best hypothesis is determined again each second, later each other second
 LAG_PRIOR_S = 0.03
 MAX_LAG_S = 1.5 * NODE_S  # farther the parabola through three instants does not reach
 FIRST_STEPS = 10
@@ -96,7 +96,7 @@ class Movement(StrEnum):
 
 @dataclass(frozen=True, slots=True)
 class Missing:
-    """The motion that would report most: of the segment that carries `site`."""
+    """The motion that would be most informative: of the segment that carries `site`."""
 
     site: Site
     movement: Movement
@@ -151,9 +151,7 @@ class Excitation:
         self._centre = _CentreInformation(closes_at.shift_m)
         self._used = 0
         self._next_refit = MIN_SETS + LEG_JOINTS.index(joint)  # not all joints at the same moment
-        self._heading_in_force = (
-            0  # of the sets that report the axis: where an orientation began again, the longer part
-        )
+        self._heading_in_force = 0  # of the sets that show the axis: where an orientation restarted, the longer part
         self._wanting: deque[float] = deque(maxlen=PROGRESS_OVER + 1)
         self._is_closed = False
         shank = joint.distal if joint.is_knee else joint.proximal
@@ -184,7 +182,7 @@ class Excitation:
             yield self._state
 
     def _add(self) -> bool:
-        """Take the newest set; whether the best hypothesis was found again."""
+        """Take the newest set; whether the best hypothesis was determined again."""
         self._used += 1
         if self._used < self._next_refit:
             newest = self._collector.newest
@@ -239,9 +237,9 @@ class Excitation:
         )
 
     def _hint(self, axis_wanting: float, wanting: float, margin: float, covariance: FloatArray) -> Missing:
-        """The motion that would report most now."""
+        """The motion that would be most informative now."""
         proximal, distal = self._joint.proximal, self._joint.distal
-        # a foot bends too little about one line to report where its joint lies
+        # a foot bends too little about one line to show where its joint lies
         is_bending_enough = self._joint.is_knee or self._required.is_hinge
         bending = Missing(distal, Movement.BEND if is_bending_enough else Movement.CIRCLE)
         profile = self._axis.profile
@@ -291,7 +289,7 @@ class _AxisInformation:
         """Standard deviation of an axis at the best heading.
 
         The principal direction of rates that scatter by s across it and amount to A along it is uncertain by s /
-        sqrt(A) where A is out; a tilt in step with the motion adds to every sample alike.
+        sqrt(A) where A dominates; a tilt in step with the motion adds to every sample alike.
         """
         if self.profile is None or not self.count:
             return AXIS_PRIOR_RAD

@@ -22,7 +22,7 @@ MAX_REST_RAD_S = 1.0  # a foot that never turns more slowly in a stance was not 
 
 @dataclass(frozen=True, slots=True)
 class FootStrike:
-    """`pitch_rad` at the initial contact at `time_s`, toes up positive; `reported_s`: the sample that reported it."""
+    """`pitch_rad` at the initial contact at `time_s`, toes up positive; `reported_s`: the sample that showed it."""
 
     time_s: float
     reported_s: float
@@ -39,7 +39,7 @@ class FootPitch:
     def update(
         self, time_s: FloatArray, samples: OrientedSamples, events: Iterable[LiveEvent], axis: FloatArray | None
     ) -> tuple[FootStrike, ...]:
-        """Take what is new of the foot, and what its samples reported.
+        """Take what is new of the foot, and what its samples showed.
 
         Parameters
         ----------

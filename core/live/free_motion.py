@@ -98,7 +98,7 @@ class LiveFreeMotion:
 class _JointMotion:
     """One joint's excitation, and its lag, looked for whenever both sensors have passed a multiple of LOOK_S.
 
-    What one of them reports beyond it waits for the other, so that a look sees the same whatever came first.
+    What one of them gives beyond it waits for the other, so that a look sees the same whatever came first.
 
     Parameters
     ----------

@@ -74,7 +74,7 @@ class LiveHip:
         self._pairing.lag_s = found.lag_s
 
     def expect(self, states: Iterable[HipHeadingState]) -> None:
-        """Take what is given of the heading, in order; each counts from BEHIND_S after its last sample on."""
+        """Take what is found of the heading, in order; each counts from BEHIND_S after its last sample on."""
         self._coming.extend(states)
 
     def update(self, pelvis: OrientedSamples, thigh: OrientedSamples) -> AngleSamples:
@@ -132,7 +132,7 @@ class LiveHip:
         self._blend, self._sum, self._count = None, 0.0, 0
 
     def _look(self, rows: PairedSamples) -> None:
-        """What the beat that has ended reports the slow things."""
+        """What the beat that has ended shows of the slow things."""
         if self._count:
             mean, share = self._sum / self._count, 1 - np.exp(-self._count * self._step_s / POSTURE_S)
             self._usual = mean if self._usual is None else self._usual + share * (mean - self._usual)

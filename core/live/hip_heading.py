@@ -31,7 +31,7 @@ GRAVITY_M_S2_UP = np.array([[0.0], [0.0], [GRAVITY_M_S2]])
 
 @dataclass(frozen=True, slots=True)
 class HipHeadingState:
-    """What the movement so far reports the heading of the thigh's earth in the pelvis's.
+    """What the movement so far shows of the heading of the thigh's earth in the pelvis's.
 
     Attributes
     ----------
@@ -108,7 +108,7 @@ class HipHeading:
         return reported
 
     def _add(self, one: FeltForces, two: FeltForces) -> list[HipHeadingState]:
-        """Instants between which no orientation began again."""
+        """Instants between which no orientation restarted."""
         reported = []
         if (stretch := (int(one.stretch[0]), int(two.stretch[0]))) != self._stretch:
             if self._moved_s:
@@ -191,7 +191,7 @@ class _Moments:
             self._margin = rival / max(float(_loss(self._square)), 1e-9)
 
     def state(self, until_s: float, moved_s: float) -> HipHeadingState:
-        """What the solution reports."""
+        """What the solution gives."""
         assert self._heading is not None
         return HipHeadingState(
             until_s=until_s,

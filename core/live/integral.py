@@ -13,7 +13,7 @@ from core.samples import FloatArray
 
 BIAS_RAD_S, BIAS_WALK_RAD_S = np.deg2rad(1.5), np.deg2rad(0.02)  # what was not removed, and its change
 GAP_RAD = np.deg2rad(5.0)  # how far interpolated rates may be off after a gap
-ENDS = 2  # samples whose angular acceleration the next ones report
+ENDS = 2  # samples whose angular acceleration the next ones give
 
 HINGE = Wandering(np.deg2rad(0.1), BIAS_RAD_S, BIAS_WALK_RAD_S)
 HINGE_LOOKS = ObservationModel(first_scale=0.15, min_scale=0.02, correlation_s=0.1)  # m/s2
@@ -61,7 +61,7 @@ class Integral:
         return integral + self._drift.at(rows.time_s)
 
     def look(self) -> None:
-        """What the accelerations since the last look report of the drift."""
+        """What the accelerations since the last look show of the drift."""
         rows, integral = joined_pairs(self._rows), np.concatenate(self._integral)
         self._rows, self._integral = [rows.part(slice(-2 * ENDS, None))], [integral[-2 * ENDS :]]
         if not rows.is_measured.all():

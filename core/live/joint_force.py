@@ -40,7 +40,7 @@ class FeltForces:
     is_clear : (k,)
         Whether nothing was missing shortly before.
     stretch : (k,)
-        Counts up where the orientation begins again.
+        Counts up where the orientation restarts.
     """
 
     instant: IntArray
@@ -96,7 +96,7 @@ class LiveJointForce:
         self._next: int | None = None  # instant
 
     def update(self, samples: OrientedSamples) -> FeltForces:
-        """Take what is new; most calls only keep it, and report nothing."""
+        """Take what is new; most calls only keep it, and return nothing."""
         if len(samples):
             self._waiting.append(samples)
             self._count += len(samples)

@@ -66,7 +66,7 @@ class KneeCheck:
             return
         self._lowest = min(self._lowest, angle_rad)
         if time_s - self._last_s > MAX_STRIDE_S:
-            self._odd_s.clear()  # it is
+            self._odd_s.clear()  # the patient is standing
             self._bend_rad = MIN_BEND_RAD
         if angle_rad > self._lowest + self._bend_rad:
             self._is_bending, self._highest = True, (angle_rad, time_s)

@@ -18,7 +18,7 @@ MIN_MOVING_S = 4.0
 
 
 class LagVerdict(StrEnum):
-    """NONE: no lag. LAG: one that the analysis takes out. NOT_ONE_JOINT: too far apart, or not adjacent ones."""
+    """NONE: no lag. LAG: one that the analysis takes out. NOT_ONE_JOINT: too far apart, or not adjacent."""
 
     NONE = "none"
     LAG = "lag"
@@ -49,7 +49,7 @@ class LiveLag:
         self._new[1].append(distal)
 
     def look(self, heading_rad: float) -> LagState | None:
-        """What the samples report; None where there was too little movement.
+        """What the samples show; None where there was too little movement.
 
         Parameters
         ----------
@@ -75,7 +75,7 @@ class LiveLag:
         return LagState(verdict, found.lag_s, found.sd_s)
 
     def _of_one_stretch(self) -> PairedSamples | None:
-        """The samples since the orientations last began again, and their heading with them."""
+        """The samples since the orientations last restarted, and their heading with them."""
         if not self._kept:
             return None
         rows = joined_rows(self._kept)

@@ -21,7 +21,7 @@ class PairedSamples:
     """Samples on the proximal sensor's grid and clock.
 
     `proximal` and `distal` (n, 10) as `OrientedSamples.signals`; distal ones mean nothing where not `is_paired` (n,).
-    `is_measured` (n,): both sensors were received.
+    `is_measured` (n,): both sensors gave a sample.
     """
 
     tick: IntArray

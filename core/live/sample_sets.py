@@ -18,7 +18,7 @@ NODE_S = 0.03
 NODES = NODE_S * np.arange(-3, 4)
 MAX_SETS = 400  # forty seconds of movement
 DROPPED_AT_ONCE = 100
-MAX_GAP_S = 0.05  # between two samples that are read between; after more, the orientation may have begun again
+MAX_GAP_S = 0.05  # between two samples that are read between; after more, the orientation may have restarted
 KEPT_S = 10.0  # so long samples of one sensor wait for the other's
 
 
@@ -119,7 +119,7 @@ class SetCollector:
         self._count = 0
         self._same_heading = 0  # the first set since both orientations began
         self._stretches = 0, 0
-        self.headings = 0  # counts up where an orientation begins again
+        self.headings = 0  # counts up where an orientation restarts
 
     @property
     def sets(self) -> Sets:
@@ -127,7 +127,7 @@ class SetCollector:
 
     @property
     def of_one_heading(self) -> Sets:
-        """The last sets between which neither orientation began again."""
+        """The last sets between which neither orientation restarted."""
         return self._kept.part(slice(self._same_heading, self._count))
 
     @property
@@ -160,7 +160,7 @@ class SetCollector:
     def _take(self, at_s: float) -> bool:
         one, two = (end.read(at_s) for end in self._ends)
         stretches = self._ends[0].stretch, self._ends[1].stretch
-        if stretches != self._stretches:  # an orientation has begun again
+        if stretches != self._stretches:  # an orientation has restarted
             self._stretches, self._same_heading = stretches, self._count
             self.headings += 1
         g1, g2 = one.gyr_rad_s, two.gyr_rad_s

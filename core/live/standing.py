@@ -1,4 +1,4 @@
-"""Whether the patient is still, which sensor moved, and what the sensors read meanwhile.
+"""Whether the patient is standing still, which sensor moved, and what the sensors read meanwhile.
 
 The limits of stillness are those of `core.calibration.rest`; what is found is what that module finds in the samples
 since the last movement.
@@ -17,7 +17,7 @@ from core.signal.tracks import is_possible
 
 REQUIRED_S = 3.0
 WINDOW_S = 0.25  # how soon a movement is reported
-KEPT_S = 10.0  # who is longer is measured over the last nine or ten seconds,
+KEPT_S = 10.0  # who goes on standing is measured over the last nine or ten seconds,
 REST_EVERY_S = 1.0  # once a second
 SILENT_S = 0.5
 SAME_BOUT_S = 1.0  # movements less far apart are one
@@ -33,13 +33,13 @@ class StandingState(Generic[Sensor]):
     Attributes
     ----------
     still_s
-        How long all sensors have been received and still.
+        How long all sensors have given samples and been still.
     moved
-        Sensors that moved in the last window of any; the count has begun again after them.
+        Sensors that moved in the last window of any; the count has restarted after them.
     silent
-        Sensors not received for half a second, or that repeat one value; without them nothing counts.
+        Sensors without samples for half a second, or that repeat one value; without them nothing counts.
     rest
-        Bias and specific force of each sensor, once the required time was still.
+        Bias and specific force of each sensor, once all were still for the required time.
     movement
         Of each sensor in its last window, as a share of the limit: from 1 on it moves. Infinite where too little was
         received.
@@ -186,7 +186,7 @@ class _StillnessWatch:
 
 
 class _Bouts:
-    """Stretches in which any sensor moved, in whatever order they are reported."""
+    """Stretches in which any sensor moved, in whatever order they are given."""
 
     def __init__(self) -> None:
         self._bouts: list[tuple[float, float]] = []

@@ -21,7 +21,7 @@ ON_GRID = 2e-3  # of a step: closer to a tick than this, a sample is used as it 
 CLOCK_MEMORY_S = 2.0  # stamps of this long say where the sensor's own clock is
 NOMINAL_STAMPS = 10  # how many stamps its nominal rate is worth
 LIMITS = np.array([MAX_RATE_RAD_S] * 3 + [MAX_FORCE_M_S2] * 3)
-MAX_ERROR = 0.25  # of a step; a stamp that is off by more states no more
+MAX_ERROR = 0.25  # of a step; a stamp that is off by more carries no more information
 LATE_STEPS = 0.15  # so much later than by half a step a sample has to be before one is taken for lost
 MAX_STEP_ERROR = 0.05  # of the nominal step: how far the sensor's own may be off
 MIN_APART = 0.1  # of a step, between samples whose stamps scatter by more than a step
@@ -147,12 +147,12 @@ class EvenStream:
             first -= 1
         is_there[first + 1 :] = False
         self._run_s, self._run = time_s[first:], values[first:]
-        if self._run_s[-1] - self._run_s[0] > MAX_HELD_S:  # it hangs; its ends report for how long
+        if self._run_s[-1] - self._run_s[0] > MAX_HELD_S:  # it hangs; its ends show for how long
             self._run_s, self._run = self._run_s[[0, -1]], self._run[[0, -1]]
         return time_s[is_there], values[is_there]
 
     def _add(self, at: FloatArray, values: FloatArray) -> None:
-        """Place what the samples report, stretch by stretch, and keep those that ticks to come need."""
+        """Place what the samples contain, stretch by stretch, and keep those that ticks to come need."""
         at, values = np.concatenate([self._at, at]), np.concatenate([self._values, values])
         gap_s = self.step_s * (at[1:] - at[:-1])
         is_cut = gap_s > max(MAX_BRIDGED_GAP_S, 1.5 * self.step_s)

@@ -50,7 +50,7 @@ class StrideValues:
         self._stances_s: dict[Side, tuple[float, float]] = {}  # of the latest: its end, and how long it lasted
 
     def update(self, state: WalkingState) -> tuple[StrideValue, ...]:
-        """Give the values that a state reports, in the order of telling."""
+        """Give the values that a state contains, in the order in which they became known."""
         reported: list[StrideValue] = []
         feet = {side: foot for side, foot in state.feet.items() if not foot.is_doubtful}
         for side, foot in feet.items():
@@ -100,7 +100,7 @@ class _KneeSwing:
         self._from_s: float | None = None  # of the swing whose peak is still to be reported
 
     def update(self, samples: AngleSamples, events: Iterable[LiveEvent]) -> Iterator[tuple[float, float, float]]:
-        """Give the peak, its instant and the instant at which it was known, of each swing that reports it now."""
+        """Give the peak, its instant and the instant at which it was known, of each swing that shows it now."""
         self._time_s = np.concatenate([self._time_s, samples.time_s])
         self._angle_rad = np.concatenate([self._angle_rad, samples.angle_rad])
         for event in events:

@@ -62,7 +62,7 @@ class LiveFoot:
 
 @dataclass(frozen=True, slots=True)
 class WalkingState:
-    """What the samples since the last state have reported; a side is in `feet` if a foot sensor is worn there.
+    """What the samples since the last state have shown; a side is in `feet` if a foot sensor is worn there.
 
     `turned` are the new samples themselves, on an even clock, with their orientations. `slips` and `corrections` are
     all so far.
@@ -78,7 +78,7 @@ class WalkingState:
 class LiveWalk:
     """Both legs of a walking patient, block by block, with the calibration in force.
 
-    Fed a whole recording at once it states the same as fed in blocks of any size, and so in any order of sites.
+    Fed a whole recording at once it gives the same as fed in blocks of any size, and so in any order of sites.
 
     Parameters
     ----------
@@ -242,7 +242,7 @@ class _StrapWatch:
         return is_judged
 
     def _judge(self) -> bool:
-        """Whether the window just ended reports a turn; one with a gap between two filters' starts does not."""
+        """Whether the window just ended shows a turn; one with a gap between two filters' starts does not."""
         window = joined_rows(self._rows)
         if len(window) < MIN_SHARE_OF_WINDOW * self._per_window or not window.is_paired.all():
             return False

@@ -1,4 +1,4 @@
-"""All ways to put the sensors on the sites, ranked by how well adjacent ones share their joints."""
+"""All ways to put the sensors on the sites, ranked by how well adjacent sensors share their joints."""
 
 from collections.abc import Generator, Mapping
 from dataclasses import dataclass
@@ -19,7 +19,7 @@ Arrangement = Mapping[Site, int]
 
 @dataclass(frozen=True, slots=True)
 class Adjacent:
-    """What every two of s sensors report of a joint between them.
+    """What every two of s sensors show of a joint between them.
 
     Attributes
     ----------
@@ -41,7 +41,7 @@ class Adjacent:
 def adjacent_in_steps(
     smoothed: SmoothedTracks, standing: Mapping[str, FloatArray]
 ) -> Generator[None, None, Adjacent | None]:
-    """Try a joint between every two sensors, a step each; None where two of them were never received together.
+    """Try a joint between every two sensors, a step each; None where two of them never gave samples together.
 
     Parameters
     ----------

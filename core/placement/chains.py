@@ -13,7 +13,7 @@ from core.samples import FloatArray
 from core.signal.pair import MOVING_WINDOW_S, OrientedTrack, moving_mean
 
 MIN_MARGIN = 1.7  # wrong sensors at a joint had 1.5 at most, in motions of two seconds; right ones seldom under 2
-MIN_UPRIGHTNESS = 0.5  # flatter, the patient lay, and the vertical does not report which end is up
+MIN_UPRIGHTNESS = 0.5  # flatter, the patient lay, and the vertical does not show which end is up
 LIFTED_RAD_S = 0.7  # the leg that bears the weight sways less
 MIN_LEAD_S = 0.5
 
@@ -37,7 +37,7 @@ class Chain:
     knee_margin, ankle_margin
         Cost of the best arrangement without this joint over the cost of the best; infinite where there is no other.
     stature
-        How much higher the thigh's sensor sits than the last one in standing, as the joints' places report.
+        How much higher the thigh's sensor sits than the last one in standing, as the joints' places show.
     moved_at_s
         When the leg was lifted first, None where it never was.
     """
@@ -99,7 +99,7 @@ class Chains:
 
 
 def find_chains(tracks: Tracks, standing: Mapping[str, FloatArray] | None = None) -> Chains | None:
-    """Arrange two to seven sensors to legs; None where they were not received together.
+    """Arrange two to seven sensors to legs; None where they gave no samples together.
 
     Two sensors are taken for a knee, three for a leg, four for two knees, five for a leg and a knee, seven for two legs
     and a pelvis.
@@ -110,7 +110,7 @@ def find_chains(tracks: Tracks, standing: Mapping[str, FloatArray] | None = None
         Of a free motion, by the sensor's name.
     standing
         Mean specific force (3,) of each sensor in standing. Without it the mean vertical of the motion serves, which
-        reports less of a patient who lies.
+        shows less of a patient who lies.
 
     Returns
     -------

@@ -24,7 +24,7 @@ SHARED_COST = 0.2  # two sensors that disagree on less may share a joint, though
 
 @dataclass(frozen=True, slots=True)
 class DoubtedLabels:
-    """Groups of sites whose sensors seem exchanged, and the name of the recording that reports; often none."""
+    """Groups of sites whose sensors seem exchanged, and the name of the recording that shows it; often none."""
 
     recording: str
     groups: tuple[tuple[Site, ...], ...]
@@ -86,7 +86,7 @@ def exchanged_sites(tracks: Tracks, standing: Mapping[str, FloatArray]) -> list[
     Parameters
     ----------
     tracks
-        Of a free motion or a walk, by site; every site with a adjacent one among them.
+        Of a free motion or a walk, by site; every site with an adjacent one among them.
     standing
         Mean specific force (3,) in standing, by site.
 
@@ -109,7 +109,7 @@ def detected_in_steps(tracks: Tracks, standing: Mapping[str, FloatArray]) -> Gen
     Returns
     -------
     dict of Site to Site
-        When the steps are over: by the site that a sensor is stated to be at, the one that it is detected at.
+        When the steps are over: by the site that a sensor is declared to be at, the one that it is detected at.
     """
     smoothed = (yield from smoothed_in_steps(tracks)) if tracks else None
     adjacent = (yield from adjacent_in_steps(smoothed, standing)) if smoothed else None

@@ -31,7 +31,7 @@ class Link:
 
 
 def link(one: SmoothedTrack, two: SmoothedTrack, index: IntArray, window: IntArray) -> Link | None:
-    """Fit a common joint to two sensors; None where no window has instants enough at which both were received.
+    """Fit a common joint to two sensors; None where no window has instants enough at which both gave samples.
 
     Unknown are the joint's place and the bias seen from either sensor, one heading per window, and the lag of the
     second clock.

@@ -1,8 +1,8 @@
-"""Smoothed terms of every sensor at the same instants, which show adjacent ones from strangers.
+"""Smoothed terms of every sensor at the same instants, which distinguish adjacent segments from others.
 
 Everything here is linear in the unknowns of a joint, so it may be averaged over time first. That takes away what
-tissue, impacts and small lags do between two adjacent ones, and leaves the slow swing of the limbs, which strangers do
-not share.
+tissue, impacts and small lags do between two adjacent segments, and leaves the slow swing of the limbs, which others
+do not share.
 """
 
 from collections.abc import Generator, Mapping, Sequence
@@ -17,7 +17,7 @@ from core.signal.tracks import at_positions
 
 STEP_S = 0.05
 MEAN_S = 0.15  # twice over: longer than tissue rings, shorter than a leg swings
-LONGEST_S = 60.0  # the liveliest minute reports as much as an hour
+LONGEST_S = 60.0  # the liveliest minute shows as much as an hour
 WINDOW_S = 15.0  # over which two headings hardly drift apart
 MAX_INSTANTS = 400
 BORDER_S = 0.05  # at the ends of a stretch what is felt leans on one side
@@ -26,7 +26,7 @@ MIN_SHARE = 0.5  # of what a mean is taken over was received
 
 @dataclass(frozen=True, slots=True)
 class SmoothedTrack:
-    """One sensor at even instants (n,); NaN where it was not received.
+    """One sensor at even instants (n,); NaN where it gave no sample.
 
     With o the vector from a joint to the sensor and b the accelerometer's bias, both in sensor axes, the joint's
     specific force in the sensor's own earth is terms @ (-o, -b, 1).
@@ -133,6 +133,6 @@ def _half_width(step_s: float) -> int:
 
 
 def _running_mean(values: FloatArray, half: int) -> FloatArray:
-    """Means (n - 2 half, k) of rows (n, k) and their `half` adjacent ones on each side."""
+    """Means (n - 2 half, k) of rows (n, k) and the `half` rows on each side of each."""
     total = np.concatenate([np.zeros((1, values.shape[1])), np.cumsum(values, axis=0)])
     return (total[2 * half + 1 :] - total[: -2 * half - 1]) / (2 * half + 1)

@@ -86,7 +86,7 @@ def fused_angle(from_rates: FloatArray, from_accelerations: FloatArray, step_s: 
 
     A constant bias b of the relative rate leaves a steady offset b dt (1 - lambda)/lambda, close to b tau. The filter
     runs on the unwrapped difference of the two angles, so that a turn through 180 degrees cannot pull it over; where
-    the accelerations report nothing it holds.
+    the accelerations show nothing it holds.
 
     Parameters
     ----------
@@ -115,7 +115,7 @@ def fused_angle(from_rates: FloatArray, from_accelerations: FloatArray, step_s: 
 
 
 def unwrapped_about_trend(angle_rad: FloatArray, step_s: float) -> FloatArray:
-    """Whole turns taken out of a noisy angle (n,) by following its smoothed direction, not its adjacent ones.
+    """Whole turns taken out of a noisy angle (n,) by following its smoothed direction, not the samples beside it.
 
     From one sample to the next an impact may turn an acceleration by more than half a turn, which plain unwrapping
     would keep for good.

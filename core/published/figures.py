@@ -154,7 +154,7 @@ def costs_of_both(sets: Datasets, j1: FloatArray, j2: FloatArray) -> tuple[CostO
 
 
 def projected_rates(pairs: tuple[Pair, ...], j1: FloatArray, j2: FloatArray) -> ProjectedRates | None:
-    """The second that reports the pairing of the axes best among those in which the joint bends least; None without
+    """The second that shows the pairing of the axes best among those in which the joint bends least; None without
     one.
 
     "Best" is the largest difference between how well both pairings fit, whichever of them fits better.

@@ -18,7 +18,7 @@ USED_SHARE = 0.25  # of the windows, those with the least flexion
 
 
 def signs_match(g1: FloatArray, g2: FloatArray, j1: FloatArray, j2: FloatArray, step_s: float) -> tuple[bool, float]:
-    """Whether j1 and j2 pair up, and how clearly: 0 cannot report, 1 beyond doubt.
+    """Whether j1 and j2 pair up, and how clearly: 0 undecided, 1 beyond doubt.
 
     Parameters
     ----------

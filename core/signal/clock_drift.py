@@ -1,4 +1,4 @@
-"""Sensors whose clock runs faster or slower than those of their adjacent ones.
+"""Sensors whose clock runs faster or slower than those of adjacent sensors.
 
 A walking leg repeats itself, so each of its sensors sees by itself how like every instant is to one in the middle of
 the walk. Those likenesses rise and fall together in all sensors, whatever their axes. Where one sensor's are later
@@ -92,7 +92,7 @@ def _track(tracks: SensorTracks, recording: Recording, site: Site) -> Track | No
 
 
 def drift_between(one: Track, two: Track) -> float | None:
-    """How much faster the second clock runs, as a share of time; 0 where it does not, None where nothing reports.
+    """How much faster the second clock runs, as a share of time; 0 where it does not, None where nothing shows it.
 
     Returns
     -------
@@ -125,7 +125,7 @@ def _likeness(track: Track, time_s: FloatArray) -> FloatArray:
 
 
 def moving_sum(values: FloatArray, width: int) -> FloatArray:
-    """Sums (n - width + 1,) over `width` adjacent ones.
+    """Sums (n - width + 1,) over `width` adjacent values.
 
     Parameters
     ----------

@@ -1,6 +1,6 @@
 """Clocks that jump forward: a gap in one sensor's stamps in which no time passed.
 
-A loss looks the same in the one sensor. The others report them apart: during a loss they measure, or pause alike.
+A loss looks the same in the one sensor. The others distinguish them: during a loss they measure, or pause alike.
 """
 
 from collections.abc import Sequence

@@ -2,8 +2,7 @@
 
 The specific force of the joint is R (a - b - K o), linear in what is unknown of it (Seel et al. 2014, doi
 10.3390/s140406891, eq 7). So each of its terms may be low-passed by itself, in the sensor's own earth, and two
-adjacent ones still agree on the sum. In walking people what two adjacent ones disagree on falls from 1.7 to 0.35 m/s2
-at
+adjacent segments still agree on the sum. In walking people what they disagree on falls from 1.7 to 0.35 m/s2 at
 4 Hz, of a signal of 1.2.
 """
 

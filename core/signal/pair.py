@@ -47,7 +47,7 @@ class Pair:
     """Samples of the proximal (1) and the distal (2) sensor of a joint over one stretch, on the proximal one's clock.
 
     Rates `g`, specific forces `a` and angular accelerations `dg` are (n, 3) in sensor axes, rotations `earth_from` are
-    (n, 3, 3); the two earths differ by a heading. `is_measured` and `is_known` (n,): both sensors were received; and
+    (n, 3, 3); the two earths differ by a heading. `is_measured` and `is_known` (n,): both sensors gave samples; and
     their angular accelerations exist too. `tracks` are what was paired, the distal one's stamps `lag_s` earlier.
     """
 
@@ -284,7 +284,7 @@ def _pair(
 
 
 def _known(is_measured: BoolArray) -> BoolArray:
-    """Where the sample and its two adjacent ones on each side were measured."""
+    """Where the sample and the two on each side of it were measured."""
     is_known = is_measured.copy()
     is_known[:2] = is_known[-2:] = False
     for shift in (1, 2):

@@ -26,7 +26,7 @@ class GyroBias:
 class SensorTracks:
     """Oriented tracks of one span of validity, remembered while they are small.
 
-    `rate_kind` holds for sensors that do not report theirs. `pairs` of first blocks, the last few, by recording, joint
+    `rate_kind` holds for sensors that do not name theirs. `pairs` of first blocks, the last few, by recording, joint
     and lag, are kept by `measure.pairs_of`.
     """
 

@@ -9,7 +9,7 @@ import numpy as np
 from core.samples import BoolArray, FloatArray, ImuBlock
 
 MAX_REPORTED_GAP_S = 0.05  # longer gaps stay empty in every output (FORMATS, section 3)
-MAX_BRIDGED_GAP_S = 0.12  # a swinging leg's rates can be interpolated this long; after more, orientation starts again
+MAX_BRIDGED_GAP_S = 0.12  # a swinging leg's rates can be interpolated this long; after more, orientation restarts
 MAX_STILL_GAP_S = 0.25  # and this long where the sensor hardly turns
 STILL_RAD_S = 0.5
 MAX_RATE_RAD_S, MAX_FORCE_M_S2 = 100.0, 1000.0  # no sensor worn by a patient measures more
@@ -307,8 +307,8 @@ def _even(time_s: FloatArray, signals: dict[str, FloatArray], step_s: float) -> 
 def _without_stamp_noise(time_s: FloatArray, step_s: float, gyr: FloatArray) -> tuple[FloatArray, float]:
     """Stamps (n,) on the even clock that made them, and its step, where the noise is the stamps' own.
 
-    Sensors sample evenly; their stamps often say when a sample arrived. Where each sample follows better from its
-    adjacent ones by number than by stamp, the numbers are believed.
+    Sensors sample evenly; their stamps often say when a sample arrived. Where each sample follows better from the
+    samples beside it by number than by stamp, the numbers are believed.
     """
     number = np.concatenate([[0.0], np.cumsum(np.maximum(np.round(np.diff(time_s) / step_s), 1.0))])
     slope, start = np.polyfit(number, time_s, 1)
@@ -321,7 +321,7 @@ def _without_stamp_noise(time_s: FloatArray, step_s: float, gyr: FloatArray) -> 
 
 
 def _misfit(at: FloatArray, values: FloatArray) -> float:
-    """How far samples (n, k) lie from the cubic through their four adjacent ones, placed at `at` (n,): a median."""
+    """How far samples (n, k) lie from the cubic through the four beside them, placed at `at` (n,): a median."""
     centre = at[2:-2]
     nodes = np.stack([at[:-4], at[1:-3], at[3:-1], at[4:]])
     adjacent = np.stack([values[:-4], values[1:-3], values[3:-1], values[4:]])

@@ -42,7 +42,7 @@ class Turn:
 
 @dataclass(frozen=True, slots=True)
 class Silence:
-    """A sensor that was not received, and when."""
+    """A sensor that gave no samples, and when."""
 
     site: Site
     start_s: float
@@ -84,7 +84,7 @@ class TimedPart:
 
 @dataclass(frozen=True, slots=True)
 class TimedTest:
-    """What one test gives; NaN where not measured, and `missing` states why.
+    """What one test gives; NaN where not measured, and `missing` names the reason.
 
     Attributes
     ----------
@@ -127,7 +127,7 @@ class TimedTest:
 
     @property
     def tape_difference_m(self) -> float:
-        """The sensors' distance less the tapes'; NaN unless a key reported where the tape is."""
+        """The sensors' distance less the tapes'; NaN unless a key marked where the tape is."""
         is_taped = self.definition.length_m is not None and self.is_end_by_key
         return self.sensor_distance_m - self.distance_m if is_taped else math.nan
 

@@ -44,7 +44,7 @@ class LiveReadout:
     Attributes
     ----------
     distance_m
-        Since the start, as far as the steps report; NaN while `reasons` say why it cannot be reported.
+        Since the start, as far as the steps show; NaN while `reasons` say why it cannot be determined.
     steps
         Side and way in metres of each contact since the start, in order of time.
     """
@@ -84,7 +84,7 @@ class LiveTest:
     Parameters
     ----------
     upright
-        The vertical (3,) in the axes of each thigh's sensor while the patient is.
+        The vertical (3,) in the axes of each thigh's sensor while the patient is standing.
     rigid_sides
         Those with a prosthetic foot.
     from_s

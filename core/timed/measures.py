@@ -1,4 +1,4 @@
-"""The one figure of each timed test that is in a patient's course: what it is made for.
+"""The one figure of each timed test that is shown in a patient's course: what it is made for.
 
 Strides on stairs are distinguished and have none: how long they take depends on the stairs.
 """
@@ -36,7 +36,7 @@ def figure_of(test: TimedTest) -> float:
     Returns
     -------
     float
-        m/s, m or s, as the test's column states.
+        m/s, m or s, as the test's column names it.
     """
     if test.protocol is TimedProtocol.TEN_METRES:
         return test.speed_m_s
@@ -44,7 +44,7 @@ def figure_of(test: TimedTest) -> float:
 
 
 def rests_on_feet(test: TimedTest) -> bool:
-    """Whether the figure is as sure as the way that the feet report: no tape, no chair states where it ends."""
+    """Whether the figure is as sure as the way that the feet show: no tape, no chair marks where it ends."""
     if test.definition.duration_s is not None:
         return True
     return test.definition.length_m is not None and not test.is_end_by_key

@@ -23,7 +23,7 @@ class TimedProtocol(StrEnum):
 
 
 class KeyMeaning(StrEnum):
-    """What a key that was pressed stated; the values stand in a recording's journal."""
+    """What a key that was pressed marked; the values are those in a recording's journal."""
 
     START = "start"
     END = "end"
@@ -64,7 +64,7 @@ def planned_table(planned: PlannedTest | None) -> dict[str, object]:
 
 
 def planned_of_table(table: Mapping[str, object]) -> PlannedTest | None:
-    """What `planned_table` wrote; None where it gives nothing, or something that no test of ours is."""
+    """What `planned_table` wrote; None where it contains nothing, or something that no test of ours is."""
     protocol, *keys_s = (table.get(key) for key in TABLE_KEYS)
     if not isinstance(protocol, str) or protocol not in set(TimedProtocol):
         return None
@@ -88,7 +88,7 @@ def planned_text(planned: PlannedTest | None) -> str:
 
 
 def planned_of_text(text: str) -> PlannedTest | None:
-    """What `planned_text` wrote; None of an empty text, and of one that states something else."""
+    """What `planned_text` wrote; None of an empty text, and of one that contains something else."""
     try:
         table = json.loads(text) if text else None
     except ValueError:
@@ -130,7 +130,7 @@ class Definition:
     duration_s
         Of a test of a set time.
     tape_m
-        Where a set distance begins and ends, from where the patient is first.
+        Where a set distance begins and ends, from where the patient is standing at first.
     rises
         How often the patient rises.
     is_walked

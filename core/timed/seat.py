@@ -1,6 +1,6 @@
 """When the patient rises and sits, from the thighs' tilt against gravity: no pelvis sensor is needed.
 
-Nor is one used: on the walker the pelvis's pitch (over 10 deg/s until the thighs are under 15 deg) reported the
+Nor is one used: on the walker the pelvis's pitch (over 10 deg/s until the thighs are under 15 deg) showed the
 beginning of a rise a median 0.63 s early, as people lean before they rise, and of one in six not at all, where the
 thighs are 0.006 s off; the end 0.08 s off against 0.012 s (`tests.validation.pelvis_courses`, 240 rises, rigid and
 soft tissue).
@@ -22,12 +22,12 @@ STEP_S = 0.01
 SEATED_RAD, STANDING_RAD = np.deg2rad(50.0), np.deg2rad(30.0)  # a step lifts the mean of both thighs by less
 EDGE_SHARE = 0.1  # of the way between seat and standing: from there on the thighs have left or reached it
 QUIET_RAD_S = np.deg2rad(15.0)
-REST_S = 1.0  # beside a rise or a sitting down, the patient is; and what a sensor may miss at either end
+REST_S = 1.0  # beside a rise or a sitting down, the patient is standing; and what a sensor may miss at either end
 
 
 @dataclass(frozen=True, slots=True)
 class SeatMotions:
-    """Every rise and every sitting down, ascending; `has_thighs` False: nothing reports."""
+    """Every rise and every sitting down, ascending; `has_thighs` False: nothing shows them."""
 
     rises: tuple[Rise, ...]
     seated_s: tuple[float, ...]
@@ -38,7 +38,7 @@ NO_SEAT = SeatMotions((), ())
 
 
 def seat_motions(tracks: SensorTracks, recording: Recording) -> SeatMotions:
-    """Rises and sittings of one recording, by the thighs that were received throughout and stood in the session."""
+    """Rises and sittings of one recording, by the thighs that gave samples throughout and stood in the session."""
     tilts = []
     start_s, end_s = tracks.span_of(recording)
     time_s = np.arange(start_s, end_s, STEP_S)
@@ -65,7 +65,7 @@ def _tilt(tracks: SensorTracks, recording: Recording, site: Site, time_s: FloatA
 
 
 def _upright(tracks: SensorTracks, site: Site) -> FloatArray | None:
-    """The vertical (3,) in a sensor's axes while the patient is."""
+    """The vertical (3,) in a sensor's axes while the patient is standing."""
     for recording in tracks.span:
         if recording.kind is RecordingKind.STANDING and (rest := tracks.rest(recording, site)) is not None:
             return np.asarray(rest.acc_m_s2 / np.linalg.norm(rest.acc_m_s2))

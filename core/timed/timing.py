@@ -1,7 +1,7 @@
 """Time, distance, speed, cadence, turns and pauses of one timed test, and how they change over it.
 
 A key wins over the motion: between two keys a walk of 10 m counts as 10.00 m, and the sensors' own distance is
-beside it. A foot sensor that falls silent takes the distance, never the time.
+given beside it. A foot sensor that falls silent takes the distance, never the time.
 """
 
 import math
@@ -130,7 +130,7 @@ def _on_foot(
     begin_m, end_m = definition.tape_m
     start_s = way.passes_s(way.way_at(left_s) + begin_m) if key_s is None else key_s
     end_s = way.passes_s(way.way_at(start_s) + end_m - begin_m) if math.isfinite(start_s) else math.nan
-    # a way that was not received reports no mark on it
+    # a way that was not received shows no mark on it
     first_of_way_s = way.time_s[0] if len(way.time_s) else 0.0
     if key_s is None and way.silences_in(first_of_way_s, start_s if math.isfinite(start_s) else math.inf):
         return math.nan, math.nan

@@ -1,8 +1,8 @@
 """How the body comes along and turns, from both feet: each carries half of the way.
 
 While one foot swings, the body goes half as far; the mean of both feet's ways keeps within a few centimetres of it. The
-heading is the integral of each foot's rate about the vertical, read where the foot is, so that the sway of a swing
-does not count.
+heading is the integral of each foot's rate about the vertical, read where the foot is standing, so that the sway of
+a swing does not count.
 """
 
 from collections.abc import Mapping
@@ -24,7 +24,7 @@ from core.timed.found import Silence, Turn
 STEP_S = 0.02
 SILENCE_S = 0.3  # shorter gaps are bridged or cost no step
 STILL_S = 1.0  # both feet on the floor for so long: a pause, or the stillness before a start
-CALM_S, MOVING_RAD_S = 0.1, 0.3  # a foot that is turns more slowly, on average over
+CALM_S, MOVING_RAD_S = 0.1, 0.3  # a standing foot turns more slowly, on average over
 STANDING_S = 1.5  # longer than a slow walker's foot lies flat
 PIECE_PAD_S = 0.6
 LOST_SWING_S = 1.5  # beside a silence a swing may be missing
@@ -32,7 +32,7 @@ TURNING_RAD = np.deg2rad(20.0)  # in the time of one stride; straight strides tu
 MIN_TURN_RAD = np.deg2rad(60.0)
 ONE_TURN_M = 0.6  # two turns to one side with no more way between them are one
 MAX_ARC_RAD = np.deg2rad(150.0)
-USUAL_STRIDE_S = 1.2  # where no stride reports
+USUAL_STRIDE_S = 1.2  # where no stride shows it
 
 
 @dataclass(frozen=True, slots=True)
@@ -55,7 +55,7 @@ class BodyWay:
     Attributes
     ----------
     time_s, way_m, heading_rad : (n,)
-        The way with its turns, the heading to the left, from the first sample on; of the foot that is received where
+        The way with its turns, the heading to the left, from the first sample on; of the foot with samples where
         the other is silent.
     """
 
@@ -100,7 +100,7 @@ class BodyWay:
 class FootSwings:
     """One foot's swings, ascending: toe-off and contact, the arc of the body's way, the heading before and after.
 
-    All (k,) but `heading_rad` (k, 2), which goes on from one swing to the next. `climb_m`: how much higher it is.
+    All (k,) but `heading_rad` (k, 2), which goes on from one swing to the next. `climb_m`: how far it rises.
     """
 
     toe_off_s: FloatArray
@@ -118,7 +118,7 @@ class FootSwings:
 
 @dataclass(frozen=True, slots=True)
 class ReceivedFoot:
-    """One foot: from when to when its sensor was received; its swings, stretch by stretch, each with its own
+    """One foot: from when to when its sensor gave samples; its swings, stretch by stretch, each with its own
     heading."""
 
     site: Site

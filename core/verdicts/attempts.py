@@ -53,7 +53,7 @@ def compare_attempts(
     Parameters
     ----------
     assessments
-        What may be stated about each of the two; a difference of what is not reported is none.
+        What may be stated about each of the two; where either is not reported there is no difference.
     is_chosen_before
         The measure was chosen before the visit, as a goal is: a sentence then needs the error alone.
 

@@ -38,7 +38,7 @@ class IdentifyingMotion:
 
     `sets` is the number of data sets of eq 2 (one each tenth of a second while something moves), `moving_s` how long
     that is; `about_rad_s` the root mean square of the joint's own rate about its axis, `across_rad_s` that of the
-    length of eq 3, the turning of both segments across the axis, without which eq 3 gives nothing.
+    length of eq 3, the turning of both segments across the axis, without which eq 3 determines nothing.
     """
 
     sets: int

@@ -295,7 +295,7 @@ def _zero(found: JointCalibration) -> Iterator[GateReason]:
 
 
 def _slip(recording: RecordingAnalysis, side: Side) -> Iterator[GateReason]:
-    """A slip that left strides is given by these strides; one that left none withholds all."""
+    """A slip that left strides is reported with these strides; after one that left none, nothing is reported."""
     from_s = recording.slipped_from_s.get(side)
     if from_s is not None and not recording.gait[side].strides.is_used.any():
         yield GateReason("strap", Verdict.NOT_REPORTED)
@@ -452,7 +452,7 @@ def _steady(values: FloatArray, limit: float, unit: str, gate: str = "halves") -
 
 
 def _below(margin: float | None, limit: float) -> float | None:
-    """The margin where it is what closed the gate: beyond its limit it was something else, and no figure reports it."""
+    """The margin where it is what closed the gate: beyond its limit it was something else, and no figure shows it."""
     known = _known(margin)
     return known if known is not None and known < limit else None
 

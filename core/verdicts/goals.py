@@ -1,7 +1,7 @@
-"""How a value is to its goal, and whether that is more than its error: a goal is a number and has none itself.
+"""How a value compares with its goal, and whether by more than its error: a goal is a number and has none itself.
 
 The error is that of a difference from a mean as sure: between visits for a figure of one leg or of the walk, between
-the legs for what they differ by. It is beside the value wherever that is reported, so that who reads both can follow;
+the legs for what they differ by. It is shown beside each value that is reported, so that who reads both can follow;
 for a goal, which is without error itself, it is more than is needed, by up to the root of two.
 """
 
@@ -14,7 +14,7 @@ from core.verdicts.stride_means import MeanOfStrides
 
 
 class GoalStanding(StrEnum):
-    """How a value is to a goal; the words of goals.csv.
+    """How a value compares with a goal; the words of goals.csv.
 
     SHORT: short of it by more than the error. SHORT_INSIDE and REACHED_INSIDE: short of it, or at it and beyond, and
     inside the error, so that the value is not distinguished from the goal. REACHED: at it or beyond it by more than
@@ -49,7 +49,7 @@ def beyond(goal: Goal, value: float) -> float:
 
 
 def standing(goal: Goal, value: float, error: float) -> GoalStanding:
-    """How a value is to its goal.
+    """How a value compares with its goal.
 
     Parameters
     ----------

@@ -44,7 +44,7 @@ def about_session(session: Session) -> list[Finding]:
 def about_joint(
     calibration: JointCalibration, found: Identified, turned: int | None, is_zero_typed: bool, has_stood: bool
 ) -> list[Finding]:
-    """What one joint's identification states of itself."""
+    """What one joint's identification reports about itself."""
     where, findings = str(calibration.joint), []
 
     def say(key: str, severity: Severity, **numbers: float | int | str) -> None:

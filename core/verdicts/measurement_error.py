@@ -1,6 +1,6 @@
 """By how much two means have to differ before more than chance, drift, clocks and straps is behind it.
 
-How sure one mean is, u, reports `core.verdicts.stride_means`. Of a difference U^2 = u1^2 + u2^2 + v^2 + 2 sigma^2
+How sure one mean is, u, is found in `core.verdicts.stride_means`. Of a difference U^2 = u1^2 + u2^2 + v^2 + 2 sigma^2
 and the error is 1.96 U, the minimal detectable change at 95 %; v is what another speed alone may make of it, and sigma
 adds what lies between the two means, by the kind of comparison.
 """
@@ -224,7 +224,7 @@ def compare(
     name
         The column of strides.csv.
     assessments
-        What may be stated about each of the two; a difference of what is not reported is none.
+        What may be stated about each of the two; where either is not reported there is no difference.
     speed_apart_m_s
         By how much the walks' speeds differ; what it alone may make of an angle or of stance is no difference.
     is_chosen_before

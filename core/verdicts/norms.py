@@ -36,7 +36,7 @@ class ReferenceCurves:
     """Mean and standard deviation between subjects (101,), degrees; flexion and dorsiflexion positive.
 
     `derivation`: who made these figures of what is PUBLISHED.
-    The zero of the hip is that of the pelvis's markers, some 10 deg from standing: its curve reports a shape alone.
+    The zero of the hip is that of the pelvis's markers, some 10 deg from standing: its curve shows a shape alone.
     """
 
     derivation: str
@@ -158,7 +158,7 @@ class AgeAndHeight(NamedTuple):
 
 
 class NoBand(StrEnum):
-    """Why no band is beside a walk."""
+    """Why no band is shown beside a walk."""
 
     CHILD = "child"
     SPEED_UNKNOWN = "speed_unknown"
@@ -181,7 +181,7 @@ class Bands:
 
 
 def froude_number(speed_m_s: float, leg_length_m: float) -> float:
-    """Speed reported in the length of the leg, so that short and tall people who walk alike have one number.
+    """Speed relative to the length of the leg, so that short and tall people who walk alike have one number.
 
     Returns
     -------
@@ -250,8 +250,8 @@ def peak_away_sd(
 ) -> float:
     """How many SD a peak lies from a band that is laid at the height of its curve.
 
-    The zero moves a whole curve, and laboratories differ by 5 to 7 deg in theirs: only what is left states something of
-    the walk. Since we read more knee flexion than optical markers, a knee lies as far as it does both as measured and
+    The zero moves a whole curve, and laboratories differ by 5 to 7 deg in theirs: only what is left describes the
+    walk. Since we read more knee flexion than optical markers, a knee lies as far as it does both as measured and
     divided by what we read too much.
 
     Parameters

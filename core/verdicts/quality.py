@@ -33,7 +33,7 @@ from core.signal.tracks import (
     nominal_step_s,
 )
 
-MIN_LOSS_PERCENT = 0.5  # distinguished from here on
+MIN_LOSS_PERCENT = 0.5  # reported from here on
 GRAVE_LOSS_PERCENT = 20.0
 GRAVITY_RANGE_G = (0.7, 1.4)  # median specific force of a sensor that reports g
 PLAUSIBLE_M_S2 = (5.0, 20.0)
@@ -273,7 +273,7 @@ def _clock_jumps(recording: Recording) -> list[tuple[tuple[Site, ...], Finding]]
 
 
 def _moves_with_others(recording: Recording, site: Site, offset_s: float) -> bool:
-    """Whether a site moves when its adjacent one does as both are stamped, more than it would without the offset.
+    """Whether a site moves when the adjacent segment does as both are stamped, more than without the offset.
 
     Sensors that were switched on and off one after the other are such.
     """
@@ -304,7 +304,7 @@ def _likeness(one: ImuBlock, other: ImuBlock, late_s: float) -> float:
 
 
 def _missing_sites(session: Session) -> list[Finding]:
-    """A adjacent one without which a worn sensor gives no joint."""
+    """An adjacent site without which a worn sensor gives no joint."""
     worn = {site for recording in session.recordings if recording.is_kept for site in recording.imu}
     findings = []
     for joint in LEG_JOINTS:

@@ -42,7 +42,7 @@ class SideMean:
 
 
 def joint_of(name: str, side: Side) -> Joint | None:
-    """Whose angle a column of strides.csv or fitting.csv reports; None for time, distance and the foot alone.
+    """Whose angle a column of strides.csv or fitting.csv contains; None for time, distance and the foot alone.
 
     Thigh and shank lean about the knee's axis, so what holds of the knee holds of them.
     """
@@ -187,7 +187,7 @@ def used_cycles(recording: RecordingAnalysis, joint: Joint) -> FloatArray:
 def mean_curve(recording: RecordingAnalysis, joint: Joint) -> MeanCycle:
     """The joint's mean over the strides used, radians; NaN where its shape or its sign is not reported.
 
-    Its height holds only where that is not not reported.
+    Its height holds only where that is reported.
     """
     found = mean_cycle(used_cycles(recording, joint))
     stated = recording.verdicts.joint(joint)

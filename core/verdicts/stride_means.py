@@ -12,7 +12,7 @@ import numpy as np
 from core.samples import FloatArray
 
 MIN_CORRELATION = 0.3  # of adjacent strides; 0 to 0.6 were seen in real walks, and short walks show too little
-MAX_CORRELATION = 0.9  # beyond, the walk drifts, which the halves report
+MAX_CORRELATION = 0.9  # beyond, the walk drifts, which the halves show
 
 
 @dataclass(frozen=True, slots=True)

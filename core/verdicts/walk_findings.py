@@ -24,7 +24,7 @@ def about_walk(walk: RecordingAnalysis, sites: Mapping[Side, Site | None]) -> li
     Parameters
     ----------
     sites
-        Which sensor reported the events of each side in `walk.gait`.
+        Which sensor gave the events of each side in `walk.gait`.
     """
     if walk.gait and not any(len(gait.strides) for gait in walk.gait.values()):
         return [Finding("no_strides", Severity.WARNING, walk.name)]
@@ -100,12 +100,12 @@ def _about_peaks(walk: RecordingAnalysis, gait: SideGait) -> Iterator[Finding]:
 
 
 def about_turns(walk: RecordingAnalysis) -> list[Finding]:
-    """Where the pelvis and the feet of a timed test report other turns; nothing without a sensor on the pelvis.
+    """Where the pelvis and the feet of a timed test give different turns; nothing without a sensor on the pelvis.
 
     Returns
     -------
     list of Finding
-        One with how many each reports, or none.
+        One with how many each gives, or none.
     """
     test = walk.timed
     if test is None or walk.pelvis is None or not len(walk.time_s) or test.missing:

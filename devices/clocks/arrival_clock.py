@@ -1,15 +1,15 @@
-"""Seconds of a sensor that reports none and counts nothing: from how many samples came, and when.
+"""Seconds of a sensor that gives none and counts nothing: from how many samples came, and when.
 
 What arrives was taken before: so each sample is later than the one before by a little more than the usual step, but
 never later than it arrived. The usual step is what the last seconds have shown. A single sample that is lost cannot be
-distinguished from one that came late; what is stated about such a sensor states that.
+distinguished from one that came late; what is reported about such a sensor mentions that.
 """
 
 from collections import deque
 
 MORE = 1.02  # of the usual step: an arrival that was not held up is met again within a second or so
-SPAN_S = 10.0  # of which the usual step is reported
-SURE_S = 1.0  # before that, the rate that was asked for reports it
+SPAN_S = 10.0  # from which the usual step is found
+SURE_S = 1.0  # before that, the rate that was asked for gives it
 PAUSE_S = 0.35  # a link holds nothing up for longer: it was away
 
 
@@ -19,7 +19,7 @@ class ArrivalClock:
     Parameters
     ----------
     rate_hz
-        What the sensor was reported.
+        What the sensor was set to.
     """
 
     def __init__(self, rate_hz: float) -> None:

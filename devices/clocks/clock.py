@@ -20,17 +20,17 @@ from devices.source import SensorCounts
 
 MOST_SKEW = 500e-6  # the worst quartz; what looks like more is latency that changed
 BIN_S = 0.5  # of which the earliest arrival counts; within it the clocks part by less than a quarter millisecond
-NEAR = 6  # arrivals next to the line, which report how dense they are there; no more than each third of all
+NEAR = 6  # arrivals next to the line, which show how dense they are there; no more than each third of all
 ALIKE_S = 1e-6  # latencies so near to one another differ by rounding only
 SLOPES = 201  # tried at a time, in ever narrower ranges
 UNLIKELY = -20.0  # logarithm of what is no part of a mean any more
-SPREAD_S = 10.0  # pieces whose earliest arrivals report how straight the clocks run
+SPREAD_S = 10.0  # pieces whose earliest arrivals show how straight the clocks run
 BACK_S = 1.0  # so far back a sample may have been overtaken on its way
 AHEAD_S = 5.0  # so much further than the host's a sensor's clock may step: the sample before had been held up
 AGREEING = 5  # samples that make a new clock of what looked damaged
 REMEMBERED = 3  # samples, of which the next has to follow one
 EARLY_S = 0.25  # so much sooner than all around it no sample comes: its stamp is wrong
-MOST_CLOCK_S = 1e12  # no clock shows more, and beyond it a double reports no milliseconds any more
+MOST_CLOCK_S = 1e12  # no clock shows more, and beyond it a double resolves no milliseconds any more
 
 Arrival = tuple[float, float]
 """A sample's time by the sensor's clock, and when it arrived."""
@@ -137,7 +137,7 @@ def _turn(a: Point, b: Point, c: Point) -> float:
 
 
 class ClockRuns:
-    """Reports which samples share one run of the sensor's clock, and which carry a time that cannot be.
+    """Finds which samples share one run of the sensor's clock, and which carry a time that cannot be.
 
     A sensor that was switched off begins again. A single wild stamp, of a message without a checksum, is damage; five
     that agree are a new run, whose first four are given up: but for one that begins after a loss that is known.

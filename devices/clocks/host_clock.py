@@ -2,7 +2,7 @@
 
 import time
 
-# Linux's monotonic clock is still while the machine sleeps, and so does what Python takes on macOS
+# Linux's monotonic clock stops while the machine sleeps, and so does what Python takes on macOS
 _CLOCK = getattr(time, "CLOCK_BOOTTIME", getattr(time, "CLOCK_MONOTONIC", None))
 
 

@@ -37,7 +37,7 @@ class LiveLine:
             return self._followed(device_s)
 
     def _learn(self, device_s: FloatArray, host_s: float) -> None:
-        # of samples that arrive together the last reports most: it waited least
+        # of samples that arrive together the last is the most informative: it waited least
         newest_s = float(device_s.max())
         number, late_s = int(newest_s // BIN_S), host_s - newest_s
         if number not in self._bins or late_s < self._bins[number][1]:
@@ -51,7 +51,7 @@ class LiveLine:
             self._fit, self._fitted_at_s = fit_clock(at_s, at_s + behind_s), newest_s
             if fit is None:
                 self._shift_s, self._stamped_s = 0.0, newest_s
-            else:  # go on from what was stated last
+            else:  # go on from what was stamped last
                 moved_s = (fit.host_s(at_s[-1:]) - self._fit.host_s(at_s[-1:]))[0]
                 self._shift_s += float(moved_s)
                 if abs(self._shift_s) > self.JUMPS_S:

@@ -1,9 +1,9 @@
 """Stamps of sensors that share one clock: one line to the host's clock for all of them.
 
 How late a sensor's samples arrive at the least is its own link's affair and cannot be seen. Where sensors are stamped
-one by one they lie apart by what their links differ; by one line they lie as their common clock states.
+one by one they lie apart by what their links differ; by one line they lie as their common clock shows.
 
-What was fetched from memories has no arrivals. When each was given to begin and to end bounds by how much the host's
+What was fetched from memories has no arrivals. When each was asked to begin and to end bounds by how much the host's
 clock is ahead of theirs; all of them together bound it best.
 """
 
@@ -22,8 +22,7 @@ Named = tuple[str, DecodedSensor]
 
 
 def tied(found: Sequence[Named]) -> list[Named]:
-    """Stamp sensors that share a clock by one line; all others stay as they are, and so does one that only reports
-    it."""
+    """Stamp sensors that share a clock by one line; all others stay as they are, also one that only claims to."""
     every = list(found)
     for is_fetched, together_by in ((False, _stamped), (True, _bounded)):
         for places in _together(found, is_fetched):
@@ -88,7 +87,7 @@ def _moved(
 def _on_one_turn(sensors: Sequence[DecodedSensor]) -> list[FloatArray]:
     """The shared clock's seconds (n,) of each, moved by whole turns.
 
-    Who received it first after it began again cannot know.
+    A sensor that was first received after the clock began again cannot show by how many.
     """
     first = sensors[0]
     reference_s = float(first.block.time_s[0] - _clock(first).device_s[0])

@@ -1,7 +1,7 @@
 """Samples of a Movella DOT out of a journal: what it streamed, or the file that was fetched from its memory.
 
 How the host's clock follows from a file's is known by its orders alone, for nothing arrived as it was taken: its first
-sample came after it was given to begin, its last before it stated that it had ended. Sensors on one clock bound it
+sample came after it was asked to begin, its last before it stated that it had ended. Sensors on one clock bound it
 together, to some hundredths of a second (`clocks/shared_clock.py`); to one another they are as exact as their clock.
 """
 

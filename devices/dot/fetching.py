@@ -1,7 +1,7 @@
-"""One file on its way out of a sensor: going on after a lost link, repaired, and stated where it could not be had.
+"""One file on its way out of a sensor: going on after a lost link, repaired, and noted where it could not be had.
 
     choose, fetch -> samples, numbered from 0 -> the end
-    a number is left out, or stated to be damaged: from there on again, at once, for that is valid while it sends
+    a number is left out, or marked as damaged: from there on again, at once, for that is valid while it sends
     the end: what lies behind the last sample is asked for once more, for its last ones may be lost on their way
 
 Each notification is given to who keeps it before it is looked at.
@@ -35,7 +35,7 @@ OVERTAKEN_S = 0.1  # so long after its end something may come that the end has o
 REPAIRS = 3  # so often what is missing is asked for again
 STUCK = 6  # so often in a row nothing new came
 SILENCE_S = 3.0
-TALK_S = 10.0  # so long it may talk before it states what it was asked for
+TALK_S = 10.0  # so long it may talk before it sends what it was asked for
 IDLE_TALK_S = 20.0  # so long it may send notices with nothing new in them
 AWAY_S = 60.0  # so long a sensor that was lost is looked for
 AGAIN_S = 0.5
@@ -155,7 +155,7 @@ class Fetching:
         self._repairs_amid = True  # until the sensor refuses it
 
     async def fetch(self) -> FetchedFile:
-        """All of it, repaired as often as `REPAIRS` states.
+        """All of it, repaired up to `REPAIRS` times.
 
         Raises
         ------
@@ -235,7 +235,7 @@ class Fetching:
         return await self._sensor.order(Order.FETCH_FROM, fetch_from(number).data[1:]) is DotAnswer.DONE
 
     async def _listen(self, required: range) -> None:
-        """Keep what comes, to the end or to the end of what is required."""
+        """Keep what comes, to the end or as far as it is needed."""
         latest, asked_from = required.start - 1, EVER
         known, until_s = len(self.framer.samples), from_now_s(IDLE_TALK_S)
         while (stated := await next_notice(self._sensor, until_s, self._take)) is not None:

@@ -147,7 +147,7 @@ async def _stopped_quietly(sensor: DotSensor) -> None:
     try:
         await stop(sensor)
     except (SourceLostError, SourceRefusedError):
-        return  # out of reach: whoever looks for its files is given that it records
+        return  # out of reach: whoever looks for its files learns that it records
 
 
 async def stop(sensor: DotSensor) -> None:
@@ -175,7 +175,7 @@ async def stop(sensor: DotSensor) -> None:
 
 
 async def _has_ended(sensor: DotSensor, within_s: float) -> bool:
-    """Whether it states within so long that it does something else; what it does not report is no end."""
+    """Whether it states within so long that it does something else; no answer is no end."""
     loop = asyncio.get_running_loop()
     until_s = loop.time() + within_s
     while await sensor.state() in (DotAnswer.RECORDING, DotAnswer.BUSY, DotAnswer.UNKNOWN):
@@ -191,7 +191,7 @@ async def list_files(sensor: DotSensor) -> tuple[RecordedFile, ...]:
     Raises
     ------
     DotRefusedError
-        It records, or does not report.
+        It records, or does not report whether it does.
     """
     await refuse_while_recording(sensor)
     cut_before = sensor.cut_notices
@@ -211,7 +211,7 @@ async def list_files(sensor: DotSensor) -> tuple[RecordedFile, ...]:
 
 
 async def _pieces(sensor: DotSensor) -> tuple[int, ...] | None:
-    """How many pieces of the memory each file takes; None where that was not reported whole."""
+    """How many pieces of the memory each file takes; None where that was not reported in full."""
     if await sensor.order(Order.LIST) is not DotAnswer.DONE:
         return None
     listed = b""

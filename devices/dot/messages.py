@@ -76,7 +76,7 @@ class DotMessage:
 
 @dataclass(frozen=True, slots=True)
 class DotInfo:
-    """What a sensor states of itself. `mac` as it is written, most significant byte first."""
+    """What a sensor reports about itself. `mac` as it is written, most significant byte first."""
 
     mac: str
     firmware: tuple[int, int, int]
@@ -185,7 +185,7 @@ SYNC_STOPPED = DotMessage(SYNC_GROUP, b"\x50\x00")
 
 
 def start_sync(root: str) -> DotMessage:
-    """What every sensor is reported, the root among them, by the root's `DotInfo.mac`."""
+    """What every sensor is sent, the root among them, with the root's `DotInfo.mac`."""
     return DotMessage(SYNC_GROUP, b"\x01" + bytes.fromhex(root.replace(":", ""))[::-1])
 
 
@@ -225,7 +225,7 @@ class DotAnswer(IntEnum):
 
 
 class Order(IntEnum):
-    """What a sensor is given to do with its memory; the first byte of a message's data."""
+    """What a sensor is asked to do with its memory; the first byte of a message's data."""
 
     GET_STATE = 0x02
     ERASE = 0x30
@@ -240,7 +240,7 @@ class Order(IntEnum):
 
 
 class DotNotice(IntEnum):
-    """What a sensor reports its memory; the first byte of a message's data."""
+    """What a sensor reports about its memory; the first byte of a message's data."""
 
     BUSY = 0x03
     ERASED = 0x33
@@ -296,7 +296,7 @@ class RecordedFile:
     number
         Counted from 1.
     started_utc_s
-        What `start_recording` was reported.
+        What `start_recording` was given.
     most_bytes
         About: as many pieces of the memory as it takes.
     """
@@ -309,7 +309,7 @@ class RecordedFile:
     def parsed(cls, number: int, data: bytes, pieces: int = 0) -> "RecordedFile":
         """Of a notice FILE_INFO, without its first byte, and how many pieces of the memory it takes.
 
-        What is there as its length is the timer that it was begun with (revision C, 5.2.4.9): it has none here.
+        What it has as its length is the timer that it was begun with (revision C, 5.2.4.9): it has none here.
 
         Raises
         ------

@@ -39,7 +39,7 @@ class StreamMode:
     has_orientation: bool
 
     def sample(self, payload: bytes) -> "DotSample | None":
-        """What a notification states; None where it is cut or states what cannot be."""
+        """What a notification contains; None where it is cut or contains what cannot be."""
         if len(payload) < self.shape.size:
             return None
         ticks, *values = self.shape.unpack_from(payload)
@@ -79,7 +79,7 @@ class RecordedSample:
 
     @classmethod
     def parsed(cls, data: bytes) -> "RecordedSample | None":
-        """Of a notice DATA, without its first byte; None where it is not what was chosen or states what cannot be."""
+        """Of a notice DATA, without its first byte; None where it is not what was chosen or contains what cannot be."""
         if len(data) != NUMBER.size + RECORDED.size:
             return None
         (number,) = NUMBER.unpack_from(data)
@@ -182,7 +182,7 @@ class FileFramer:
         return tuple(gaps)
 
     def has_forces(self) -> bool:
-        """Whether what is stated to be specific force can be a leg's: the maker's printed example changes two names."""
+        """Whether what is named specific force can be a leg's: the maker's printed example changes two names."""
         forces = sorted(math.hypot(*one.sample.force) for one in self.samples.values())
         return not forces or WORN_M_S2[0] < forces[len(forces) // 2] < WORN_M_S2[1]
 

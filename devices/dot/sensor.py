@@ -1,4 +1,4 @@
-"""One Movella DOT and its link: what it is asked and reported, each thing after the other.
+"""One Movella DOT and its link: what it is asked and ordered, each thing after the other.
 
 Everything here is a coroutine of the links' thread, waits a bounded time, and raises `SourceLostError` where the link
 is gone. To a sensor that records only its state is asked: a rate or a mode written then cuts the file.
@@ -41,13 +41,13 @@ Stated = TypeVar("Stated")
 
 NOTICE_S = 2.0
 BUSY_S, BUSY_TRIES = 0.5, 6
-ANSWER_S, ANSWER_TRIES = 0.1, 12  # what is read may still be the answer to what was reported before
+ANSWER_S, ANSWER_TRIES = 0.1, 12  # what is read may still be the answer to the order before
 FULL_NOTICE = bytes([RECORDING_GROUP, DotNotice.FULL])
 MOST_WAITING = 20_000  # notifications that nobody fetched: five minutes
 
 
 class DotRefusedError(SourceRefusedError):
-    """A sensor that does not do what it was reported."""
+    """A sensor that does not do what it was asked to."""
 
 
 def is_dot(one: Announced) -> bool:
@@ -68,7 +68,7 @@ class DotSensor:
     cut_notices
         How many notices arrived shorter than they say that they are: the link may carry too little.
     is_full
-        Whether it has stated since it was given to record last that its memory is full.
+        Whether it has reported that its memory is full since it was last asked to record.
     fetched_last
         The file whose sending was ordered last.
     """
@@ -144,7 +144,7 @@ class DotSensor:
         return await self._link.read(characteristic.uuid)
 
     async def _reported(self, characteristic: Characteristic, parsed: Callable[[bytes], Stated]) -> Stated:
-        """What it states there; one that states less than it has to is taken for lost, and tried again as such."""
+        """What it reports there; one that reports less than it has to is taken for lost, and tried again as such."""
         try:
             return parsed(await self._read(characteristic))
         except DotMessageError as problem:
@@ -271,7 +271,7 @@ class DotSensor:
             return b""
 
     def understood(self, payload: bytes) -> DotMessage | None:
-        """What a notice states; None where it arrived damaged."""
+        """What a notice contains; None where it arrived damaged."""
         try:
             return DotMessage.parsed(payload)
         except DotMessageError:

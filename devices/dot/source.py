@@ -296,7 +296,7 @@ class DotSource:
         if mode is None or (await sensor.settings()).rate_hz != group.rate_hz:
             if self._was_open:  # it was switched off meanwhile: its clock has begun again
                 group.leave(sensor.name)
-                self._clock_begun += 1  # now: should the link be lost next, nothing reports it any more
+                self._clock_begun += 1  # now: should the link be lost next, nothing shows it any more
             await sensor.stop_stream()
             await sensor.set_up(group.rate_hz, group.profile)
             sensor.taken()

@@ -1,9 +1,9 @@
-"""Movella DOTs on one clock: the steps that their maker reports, the waits between them, and who did not follow.
+"""Movella DOTs on one clock: the steps that their maker gives, the waits between them, and who did not follow.
 
     each: is it synchronised, then stop that; rate and profile, which cannot be changed until that is stopped
     all: start, by the root's address; disconnect
     12 s later: connect again, one by one; the first thing asked is how it went
-    all that are to stream: a second of it; clocks that are stated to be one must be received as one
+    all that are to stream: a second of it; clocks that are reported as one must arrive as one
 
 A failure is tried once more. The clocks part by about 2 ms in half an hour (Xsens DOT user manual 2021, 1 ppm): it is
 renewed then.
@@ -100,7 +100,7 @@ class NotSynchronisedError(SourceRefusedError):
 
 @dataclass(frozen=True, slots=True)
 class Synchronised:
-    """Sensors on one clock; those that stream now, each in its mode. `name` reports this clock from any other."""
+    """Sensors on one clock; those that stream now, each in its mode. `name` distinguishes the clock from others."""
 
     name: str
     at_ns: int
@@ -261,7 +261,7 @@ async def refuse_while_recording(sensor: DotSensor) -> None:
     Raises
     ------
     DotRefusedError
-        It records, or does not report.
+        It records, or does not report whether it does.
     SourceLostError
         It is out of reach.
     """
@@ -293,8 +293,7 @@ async def _is_stopped(sensor: DotSensor) -> bool:
 
 
 async def _received_as_one(sensors: Sequence[DotSensor]) -> tuple[dict[str, StreamMode], dict[str, SyncFailure]]:
-    """Let all stream, and hold their clocks against each other by what arrives: one that reports it may not be on
-    it."""
+    """Let all stream, and compare their clocks by what arrives: one that claims to be on it may not be."""
     modes, late_s, failed = {}, {}, {}
     for sensor in sensors:
         try:
@@ -319,7 +318,7 @@ async def _received_as_one(sensors: Sequence[DotSensor]) -> tuple[dict[str, Stre
 
 
 def _least_late_s(sensor: DotSensor, mode: StreamMode) -> tuple[float | None, bool]:
-    """How much later than its own clock states its samples arrived, at the least, and whether some arrived damaged."""
+    """How much later than by its own clock its samples arrived, at the least, and whether some arrived damaged."""
     framer = DotFramer(SourceInfo("", "", settings={"mode": mode.number}))
     least_s = None
     for came_ns, frame in sensor.taken():

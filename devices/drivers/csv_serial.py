@@ -34,7 +34,7 @@ class Columns:
     wraps_bits
         After so many bits the clock begins again; 0: never.
     count
-        How many columns a line has, so that one that was cut or ran into the next is no sample; 0: not reported.
+        How many columns a line has, so that one that was cut or ran into the next is no sample; 0: not given.
     rate_hz
         Where it is known, losses are counted by it.
 
@@ -152,7 +152,7 @@ class CsvFramer:
 
 
 class CsvSerial:
-    """The `SensorProtocol` of lines of numbers. Without `columns` it reads journals only, which report them."""
+    """The `SensorProtocol` of lines of numbers. Without `columns` it reads journals only, which contain them."""
 
     driver, version = DRIVER, VERSION
 

@@ -1,7 +1,7 @@
 """Streams of Lab Streaming Layer: which can be received, and what their samples hold.
 
-Many programs send through it: Consensys (Shimmer), BrainVision, OpenViBE, a lab's own. A stream reports the labels and
-units of its channels; what is a rate or a force is found by these and asked for where it is not reported. Stamps are
+Many programs send through it: Consensys (Shimmer), BrainVision, OpenViBE, a lab's own. A stream names the labels and
+units of its channels; what is a rate or a force is found by these and asked for where it is not given. Stamps are
 the sending machine's. Where Lab Streaming Layer's own measurement of that machine's clock agrees with what arrives it
 is taken; a stream that stamps by a clock of its own is put right by its arrivals (`devices.clocks.clock`).
 
@@ -172,7 +172,7 @@ def sensors_of(stream: str, labels: Sequence[str], units: Sequence[str]) -> tupl
     Raises
     ------
     SourceRefusedError
-        No channels of rate and force, or units that are not reported.
+        No channels of rate and force, or units that are not named.
     """
     places: dict[tuple[str, str], dict[str, int]] = {}
     for column, label in enumerate(labels):
@@ -235,7 +235,7 @@ class LslSource:
     Parameters
     ----------
     sensors
-        What its channels are, if their labels do not report.
+        What its channels are, where their labels do not show it.
     """
 
     has_bytes = False
@@ -277,7 +277,7 @@ class LslSource:
                 self._stream.name, _texts(info.get_channel_labels()), _texts(info.get_channel_units())
             )
             inlet.open_stream(timeout=OPEN_S)
-            with suppress(pylsl.util.TimeoutError):  # arrivals report until it is known
+            with suppress(pylsl.util.TimeoutError):  # arrivals are used until it is known
                 inlet.time_correction(timeout=OPEN_S)
         except (pylsl.util.LostError, pylsl.util.TimeoutError) as problem:
             raise SourceRefusedError(

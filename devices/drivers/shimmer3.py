@@ -57,7 +57,7 @@ class Command:
     REFUSED, DONE = 0xFE, 0xFF
 
 
-# it is silent until it is given to stream; this asks for its firmware, and is answered so where that is LogAndStream
+# it is silent until it is asked to stream; this asks for its firmware, and is answered so where that is LogAndStream
 KNOCK = bytes([Command.FIRMWARE]), bytes([Command.DONE, Command.FIRMWARE_ANSWER, 3, 0])
 # wide-range accelerometer, angular rate, battery, as three bytes of switches
 SENSORS = bytes([0x40, 0x30, 0x00])
@@ -86,7 +86,7 @@ CHECKSUM_SINCE = (0, 15, 0)
 CHECKSUM_SEED = 0xB0CA
 BATTERY_STEP = 7  # a hundredth of a volt
 CUT_STEPS = 8  # so many packets may be damaged in a row
-MOST_STEPS_S = 2.0  # so long a packet without a checksum is given by the last one's time; then two together report
+MOST_STEPS_S = 2.0  # so long a packet without a checksum is known by the last one's time; then by two together
 VOLTS, CHARGE = (3.3, 3.6, 3.7, 3.8, 3.95, 4.15), (0.0, 0.1, 0.3, 0.5, 0.75, 1.0)  # of a lithium cell at rest, about
 
 
@@ -148,7 +148,7 @@ class Shimmer3Framer:
         while len(held) - at >= size:
             is_packet = self._is_packet(shape, held, at, is_end)
             if is_packet is None:
-                break  # the next one reports
+                break  # the next one shows it
             if is_packet:
                 self._take(shape, held, at)
                 at += size
@@ -161,7 +161,7 @@ class Shimmer3Framer:
         self._held = held[at:]
 
     def _is_packet(self, shape: "_Shape", held: bytes, at: int, is_end: bool) -> bool | None:
-        """None: that cannot be reported yet."""
+        """None: that cannot be known yet."""
         if held[at] != Command.PACKET:
             return False
         if shape.has_checksum:
@@ -176,8 +176,7 @@ class Shimmer3Framer:
         return is_due and not shape.is_cut(held, at, ticks)
 
     def _is_meant(self, shape: "_Shape", held: bytes, at: int, is_end: bool) -> bool | None:
-        """Whether a checksum is right not just by chance, as one in 65 536 beside damage; None: not to be reported
-        yet."""
+        """Whether a checksum is right not just by chance, as one in 65 536 beside damage; None: not known yet."""
         if self._last is None:
             return True
         inner = shape.find_due(held, at, self._last)
@@ -185,7 +184,7 @@ class Shimmer3Framer:
             is_due = shape.is_step(_ticks(held, at) - self._last, round(MOST_STEPS_S * TICK_HZ))
             if is_due or not self._is_lost:
                 return True
-            inner = at + shape.size  # after a long loss any time may be right: the next packet reports
+            inner = at + shape.size  # after a long loss any time may be right: the next packet shows it
         if len(held) < inner + shape.size:
             return True if is_end else None
         return shape.is_whole(held, inner) == (inner == at + shape.size)
@@ -393,14 +392,14 @@ class _Talk:
                     quiet_s = time.monotonic() + QUIET_S
 
     def commanded(self, command: bytes) -> bool:
-        """Whether it did as it was reported."""
+        """Whether it did as it was asked."""
         self._channel.write(command)
         return self._received(lambda stated: stated[:1])[:1] == bytes([Command.DONE])
 
     def asked(self, command: int, answer: int, size: Callable[[bytes], int]) -> bytes:
         """What it answers, behind the answer's first byte; empty where it does not.
 
-        `size` gives how long that is from its beginning, or finds that it is too short to report.
+        `size` gives how long that is from its beginning, or finds that it is too short to show it.
         """
         self._channel.write(bytes([command]))
         begin = bytes([Command.DONE, answer])

@@ -178,7 +178,7 @@ def scaled(numbers: Sequence[int], unit: float) -> tuple[float, ...]:
 
 
 class WitMotion:
-    """The `SensorProtocol` of a WitMotion sensor. What it is reported is forgotten when it is switched off.
+    """The `SensorProtocol` of a WitMotion sensor. What it was set to is forgotten when it is switched off.
 
     Parameters
     ----------

@@ -1,8 +1,8 @@
 """WitMotion's sensors with Bluetooth LE 5: frames of twenty bytes in notifications, without time, counter or checksum.
 
 Source: WIT's manual of its Bluetooth 5.0 protocol: `55 61`, then acceleration, angular rate and angles, three numbers
-each, scaled as by cable (`witmotion.py`). Nothing gives when a sample was taken: `clocks/arrival_clock.py`.
-Samples that are lost singly are not seen, and every recording reports it. Not tried on hardware.
+each, scaled as by cable (`witmotion.py`). Nothing shows when a sample was taken: `clocks/arrival_clock.py`.
+Samples that are lost singly are not seen, and every recording mentions it. Not tried on hardware.
 """
 
 import re
@@ -26,7 +26,7 @@ from devices.transport.channels import READ_S
 from devices.transport.notifications import NotificationFrames, framed
 
 DRIVER, VERSION = "witmotion-ble", "1"
-MODEL = "WitMotion BLE, losses not seen"  # as it is with every recording and in every report
+MODEL = "WitMotion BLE, losses not seen"  # as shown with every recording and in every report
 UUID = "0000{:04x}-0000-1000-8000-00805f9a34fb"  # its own base: not the Bluetooth SIG's, which ends in 9b34fb
 SERVICE, MEASURED, COMMANDS = 0xFFE5, 0xFFE4, 0xFFE9
 NAME = re.compile(r"B?WT\d{2}")  # WT901BLE68, WT9011DCL-BT50, BWT901BLE5.0
@@ -98,7 +98,7 @@ class WitBleSource:
     Parameters
     ----------
     rate_hz
-        One of `devices.drivers.witmotion.RATES`; what it is reported is forgotten when it is switched off.
+        One of `devices.drivers.witmotion.RATES`; what it was set to is forgotten when it is switched off.
 
     Raises
     ------

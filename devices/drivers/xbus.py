@@ -13,7 +13,7 @@ from typing import NamedTuple
 PREAMBLE = b"\xfa\xff"  # and the address of a sensor that is the only one on its cable
 BEGIN = PREAMBLE + b"\x36"  # of what a sensor measured
 LONG = 0xFF  # in place of a length: the length follows
-MOST_DATA = 2048  # bytes; what reports more is no message
+MOST_DATA = 2048  # bytes; what announces more is no message
 HEADER = struct.Struct(">HB")  # of an item: identifier and length
 
 
@@ -35,7 +35,7 @@ ANSWERS = frozenset({Mid.ERROR, *(mid + 1 for mid in REQUESTS)})  # all else is 
 
 
 class Item:
-    """Identifiers of items, without the bits that report the numbers' format and the earth's axes."""
+    """Identifiers of items, without the bits that give the numbers' format and the earth's axes."""
 
     COUNTER = 0x1020
     FINE_TIME = 0x1060  # ticks of 100 us
@@ -51,7 +51,7 @@ class Item:
 ITEM_MASK = 0xF8F0
 AXES_MASK, NORTH_EAST_DOWN = 0x000C, 0x0004
 FORMAT_MASK = 0x0003  # float32, fixed point 12.20, fixed point 16.32, float64
-REALS = {  # items of real numbers in the format that their identifier reports, and how many
+REALS = {  # items of real numbers in the format that their identifier gives, and how many
     0x0810: 1,  # temperature
     Item.QUATERNION: 4,
     0x2020: 9,  # rotation matrix
@@ -185,7 +185,7 @@ class XbusFramer:
                 inner = held.find(BEGIN, inner + 1, end + 2)
             is_doubtful = held.endswith((PREAMBLE, PREAMBLE[:1])) and end <= len(held) < end + 2 and not is_end
             if end > len(held) or is_doubtful:
-                break  # its rest is on the way, or what gives whether the next one begins within it
+                break  # its rest is on the way, or what shows whether the next one begins within it
             if one is None:
                 self._pass_over(1)
             else:
@@ -235,7 +235,7 @@ def _checked(held: bytes, start: int, body: int, end: int, others: frozenset[int
 
 
 def _items(data: bytes) -> Items | None:
-    """The items of MTData2; None if they do not fill the message, which no checksum of 8 bits reports for certain."""
+    """The items of MTData2; None if they do not fill the message, which no checksum of 8 bits shows for certain."""
     items, at, length = {}, 0, len(data)
     unpack = HEADER.unpack_from
     while at < length - 2:

@@ -186,7 +186,7 @@ def received_in(path: Path) -> Received:
 
 
 class Ximu3:
-    """The `SensorProtocol` of an x-IMU3. It is left as its owner set it up, unless a rate is required.
+    """The `SensorProtocol` of an x-IMU3. It is left as its owner set it up, unless a rate is chosen.
 
     Parameters
     ----------

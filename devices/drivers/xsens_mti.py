@@ -205,7 +205,7 @@ def _owned_hz(channel: Channel, framer: MtiFramer) -> int:
 
 
 def _settings(channel: Channel, framer: MtiFramer, required: Sequence[tuple[int, int]]) -> dict[int, int]:
-    """What it sends, and how often, once it was given what is required; as it is where that is nothing."""
+    """What it sends, and how often, once it was asked for what is required; as it is where that is nothing."""
     framer.received.replies.clear()
     answer = _asked(channel, framer, Mid.OUTPUT, b"".join(SETTING.pack(*setting) for setting in required))[1:]
     return dict(SETTING.iter_unpack(answer[: len(answer) // SETTING.size * SETTING.size]))

@@ -1,6 +1,6 @@
 """Air that is not there: links to emulated sensors, behind the interface that bleak has for backends.
 
-What a sensor is to its link is here once; Bumble's virtual radio (tests) carries the same sensors.
+What a sensor is to its link is written here once; Bumble's virtual radio (tests) carries the same sensors.
 """
 
 import asyncio

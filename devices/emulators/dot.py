@@ -303,7 +303,7 @@ class EmulatedDot:
 
     @property
     def began_ns(self) -> int:
-        """When it was given to synchronise."""
+        """When it was asked to synchronise."""
         return self._sync_from_ns
 
     @property

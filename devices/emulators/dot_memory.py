@@ -205,7 +205,7 @@ class EmulatedMemory:
             self._notices.append(message(1, b"\x41"))
 
     def end_recording(self) -> None:
-        """What was recorded is a file, up to now or to when it was given to end."""
+        """What was recorded is a file, up to now or to when it was asked to end."""
         if self.state != RECORDING:
             return
         end_ns = self._now_ns() if self._ends_ns is None else self._reported_end_ns

@@ -1,6 +1,6 @@
 """A patient who is not there wears emulated sensors, and does what is asked.
 
-The motion is that of `simulation/walker.py`; each sensor measures it whenever its own clock reports it. The truth is
+The motion is that of `simulation/walker.py`; each sensor measures it at the times of its own clock. The truth is
 known.
 """
 
@@ -70,7 +70,7 @@ class Clip:
 
 
 class EmulatedPatient:
-    """Is, and performs the next recording of the kind that is asked for. One thread asks, any measure.
+    """Is standing, and performs the next recording of the kind that is asked for. One thread asks, any measure.
 
     Noise is added to each sample as a sensor of that rate has it; bias and scale are those of the walker.
     """
@@ -142,7 +142,7 @@ class EmulatedSensor:
     rate_hz
         As its owner set it, until a driver sets it to another.
     states_so
-        Reports whoever asks that it is emulated, so that what is recorded of it counts as simulated.
+        Answers whoever asks that it is emulated, so that what is recorded of it counts as simulated.
 
     Attributes
     ----------
@@ -227,7 +227,7 @@ RAW = (_uncalibrating(GYR_CALIBRATION, 100.0 * np.pi / 180), _uncalibrating(ACC_
 
 
 def _between(table: FloatArray, passed_ns: float) -> FloatArray:
-    """What a table (n, ...) states of a moment; it begins again after its end."""
+    """The value of a table (n, ...) at a moment; it begins again after its end."""
     at = passed_ns / 1e9 * FINE_HZ % (len(table) - 1)
     row = int(at)
     value: FloatArray = table[row] + (at - row) * (table[row + 1] - table[row])

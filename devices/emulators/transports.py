@@ -15,7 +15,7 @@ PIECE = 4096
 
 
 class Voice(Protocol):
-    """What an emulated sensor states and receives."""
+    """What an emulated sensor sends and receives."""
 
     def say(self) -> bytes:
         """All that is due by now."""

@@ -1,7 +1,7 @@
 """Answers of a limited process, written so that nothing in them has to be trusted.
 
 An answer is JSON, then the arrays that it names by number, as raw bytes. Nothing is unpickled: whoever receives it
-builds every object again, and refuses with `BrokenAnswerError` what has not the shape it should have.
+builds every object itself, and refuses with `BrokenAnswerError` what has not the shape it should have.
 """
 
 import datetime
@@ -39,7 +39,7 @@ class BrokenAnswerError(Exception):
 
 
 def send(stream: IO[bytes], details: Details, arrays: Sequence[Array] = ()) -> None:
-    """Write one message: its length, what it states as JSON, then the bytes of its arrays."""
+    """Write one message: its length, its content as JSON, then the bytes of its arrays."""
     shapes = [[array.dtype.str, list(array.shape)] for array in arrays]
     message = json.dumps({"details": details, "arrays": shapes}).encode()
     stream.write(LENGTH.pack(len(message)))
@@ -137,7 +137,7 @@ def findings_from(details: list[Details]) -> tuple[Finding, ...]:
 
 
 def details_of_trial(trial: ImportedTrial, arrays: list[Array]) -> Details:
-    """What a reader found in the files of a trial; what it states of sensors is in the keys of `SensorInfo`."""
+    """What a reader found in the files of a trial; what it gives about sensors is in the keys of `SensorInfo`."""
     return {
         "format": trial.format,
         "started": trial.started,

@@ -108,7 +108,7 @@ def read_apdm(path: Path) -> ApdmFile:
 
 
 def apdm_trial(files: Sequence[Path], _rate_hz: float | None = None) -> ImportedTrial:
-    """The sensors of one trial, all in one file; they share its stamps, which report the rate.
+    """The sensors of one trial, all in one file; they share its stamps, which give the rate.
 
     Raises
     ------

@@ -2,7 +2,7 @@
 
 `*_motion.tsv` has no heads: its columns are the rows of `*_channels.tsv`, which states what each is of which tracked
 point and in which unit; `*_motion.json` has the sampling frequency. The files belong together by their names, as BIDS
-has it; which they are is given by the table of channels. Times are those of a LATENCY channel, in seconds from
+has it; which they are is found by the table of channels. Times are those of a LATENCY channel, in seconds from
 `acq_time` in `*_scans.tsv`, else even. Settings that BIDS lets stand in a folder above are not looked for there.
 
 Two columns that `gaitwright export` adds say what BIDS has no word for: the sensor's number, and what its rates are. A
@@ -63,7 +63,7 @@ def bids_motion_trial(files: Sequence[Path], rate_hz: float | None = None) -> Im
     Parameters
     ----------
     rate_hz
-        Samples per second where the files do not report.
+        Samples per second where the files do not give it.
 
     Raises
     ------
@@ -222,7 +222,7 @@ def _times(
 
 
 def _check_axes(acc_m_s2: FloatArray, gyr_rad_s: FloatArray, rate_hz: float, point: str, where: str) -> None:
-    """What is stated to be in global axes may be: where a sensor turns, gravity has to turn in its own axes."""
+    """What is named as in global axes may be so: where a sensor turns, gravity has to turn in its own axes."""
     rows = max(int(WINDOW_S * rate_hz), 2)
     turned = -np.cross(gyr_rad_s, acc_m_s2) / rate_hz
     windows = len(turned) // rows

@@ -1,6 +1,6 @@
 """What runs in the limited process: one foreign file, or the files of one trial, at a time.
 
-It is limited before it imports what reads them, is given what to do in JSON, and answers as `answers` states. On Linux
+It is limited before it imports what reads them, is given its task in JSON, and answers as `answers` describes. On Linux
 it reads nothing itself: each task has a copy of the process (a fork), the only one in which bytes of others are parsed,
 and as little trusted as they are. It may open the task's own files and no others, and is gone with its answer.
 """
@@ -20,7 +20,7 @@ if TYPE_CHECKING:
 
 TOML, SITE, TRIAL, GATHER, REFERENCE, QUESTION = "toml", "site", "trial", "gather", "reference", "question"
 REFERENCE_S, REFERENCE_BYTES_A_SECOND = 10.0, 1_000_000.0  # of processor time; ten times what a text takes
-WORD = "read-foreign-files"  # what a frozen program that was started as this process is reported
+WORD = "read-foreign-files"  # the argument of a frozen program that is started as this process
 IS_LINUX: bool = sys.platform == "linux"
 PR_SET_PDEATHSIG = 1
 READ, REFUSED, MEMORY, UNFORESEEN = "read", "refused", "memory", "unforeseen"
@@ -31,7 +31,7 @@ def main() -> None:
     signal.signal(signal.SIGINT, signal.SIG_IGN)  # Ctrl C reaches all of a terminal; who asks ends this process
     asking, answering = os.fdopen(os.dup(0), "rb"), os.fdopen(os.dup(1), "wb")
     nowhere = os.open(os.devnull, os.O_RDWR)
-    for stream in (0, 1, 2):  # what a library states before it aborts is no line for the user
+    for stream in (0, 1, 2):  # what a library prints before it aborts is no line for the user
         os.dup2(nowhere, stream)
     limit_this_process(int(sys.argv[-1]))
     from devices.files.answers import receive, send
@@ -132,7 +132,7 @@ def _answer(asked: "Details", arrays: "list[Array]") -> "Details":
     except MemoryError:
         arrays.clear()
         return {"what": MEMORY}
-    except Exception as error:  # the edge of the process; what the file states stays out of the words
+    except Exception as error:  # the edge of the process; what the file contains is not in the words
         arrays.clear()
         return {"what": UNFORESEEN, "details": f"{type(error).__name__}, {_last_line(error)}"}
 

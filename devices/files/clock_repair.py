@@ -1,7 +1,7 @@
 """The clocks of files, repaired the same way for every reader: turns of counters, wrong stamps, steps back, jumps.
 
 A stamp that fits neither those before nor those after is put where it belongs, with a finding; where that is unknown
-its sample is left out. Where the clock goes on from another time than it left off, nothing gives how much time passed:
+its sample is left out. Where the clock goes on from another time than it left off, nothing shows how much time passed:
 the file is refused with the place, so that nobody reads a false rate or half a recording.
 """
 

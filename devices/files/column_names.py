@@ -1,4 +1,4 @@
-"""What the name of a column states: the quantity, its axis, the unit where it is reported, and of which sensor it is.
+"""What the name of a column states: the quantity, its axis, the unit where it is given, and of which sensor it is.
 
 "acc_x_m_s2", "LeftShank Gyroscope X (deg/s)", "ax", "q0". What a name does not say is not guessed here.
 """
@@ -215,7 +215,7 @@ def sensor_columns(names: Sequence[str], units: Mapping[str, str] | None = None)
 def _one_time(
     places: Mapping[tuple[str, Quantity], Mapping[str, list[str]]], meant: Mapping[str, NamedQuantity], key: str
 ) -> str:
-    """The column of times of a sensor, or of all; of several the one that reports its unit."""
+    """The column of times of a sensor, or of all; of several the one that names its unit."""
     for owner in (key, ""):
         names = places.get((owner, Quantity.TIME), {}).get("", [])
         reported = [name for name in names if meant[name].unit]

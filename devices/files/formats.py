@@ -1,4 +1,4 @@
-"""The programs whose files can be read, each reported by what is in a file, never by its name."""
+"""The programs whose files can be read, each recognised by what is in a file, never by its name."""
 
 import tomllib
 from collections.abc import Callable, Mapping, Sequence
@@ -30,7 +30,7 @@ HEAD_BYTES = 65_536  # heads of many sensors are long
 class FileFormat:
     """`is_it`: whether a file, whose first bytes are given, is of this format; a folder has none.
 
-    `trial`: what the files of one trial hold, with the samples per second where they do not report. `is_one_sensor`: a
+    `trial`: what the files of one trial hold, with the samples per second where they give none. `is_one_sensor`: a
     file holds one sensor, and a trial has several; else it holds all of them. `trial_name`: what the names of all files
     of a trial have in common, where the format itself states how they are called.
     """

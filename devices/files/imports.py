@@ -149,7 +149,7 @@ def _refuse_apart(sensors: Sequence[ImportedSensor]) -> None:
 
 
 def _refuse_jumps(sensors: Sequence[ImportedSensor]) -> None:
-    """How much time passed between two stamps, each sensor's clock reports alone; the others show where it is wrong."""
+    """How much time passed between two stamps, each sensor's clock alone shows; the others show where it is wrong."""
     spans = [spans_of(sensor.block.time_s) for sensor in sensors]
     for number, sensor in enumerate(sensors):
         jump = jump_of(spans[number], [*spans[:number], *spans[number + 1 :]])

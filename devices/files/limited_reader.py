@@ -207,7 +207,7 @@ def end(process: Process) -> None:
     process.wait()
     for stream in (process.stdin, process.stdout):
         if stream is not None:
-            with contextlib.suppress(OSError):  # what could not be stated to it any more
+            with contextlib.suppress(OSError):  # what could not be sent to it any more
                 stream.close()
 
 

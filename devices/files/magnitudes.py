@@ -1,8 +1,8 @@
 """Units held to the size of what was measured: every importer refuses what no sensor on a person can have felt.
 
-Gravity is in every accelerometer, so the middle of its sizes reports m/s2 from g, and from acceleration without
+Gravity is in every accelerometer, so the middle of its sizes distinguishes m/s2 from g, and from acceleration without
 gravity. Angular rates have no such constant; beyond the ranges of sensors their unit is another, and where there is an
-orientation, it reports the rates by itself.
+orientation, it gives the rates' unit by itself.
 """
 
 import numpy as np
@@ -29,7 +29,7 @@ def check_magnitudes(
     gyr_unit: str = "rad/s",
     is_export: bool = True,
 ) -> None:
-    """Refuse samples whose sizes are not those of the units that they are stated to be in. Missing ones report nothing.
+    """Refuse samples whose sizes do not fit the units that they are given in. Missing ones show nothing.
 
     Parameters
     ----------

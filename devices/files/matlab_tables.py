@@ -32,7 +32,7 @@ from devices.files.refusal import FileRefusedError, quoted
 from devices.files.trial import ImportedTrial
 
 OF_THREE_AXES = (Quantity.ACC, Quantity.FREE_ACC, Quantity.GYR, Quantity.MAG)
-OF_ALL = (Quantity.TIME, Quantity.COUNTER)  # what a structure may report of those that it holds
+OF_ALL = (Quantity.TIME, Quantity.COUNTER)  # what a structure may give for those that it holds
 UNITS = ("units", "unit")
 NAMES = ("name", "label", "sensor", "location", "segment", "placement", "site", "id", "serial")
 TABLES = ("table", "timetable", "timeseries")
@@ -89,7 +89,7 @@ def _tables(path: Path) -> Sequence[NamedTable]:
     around = zip(*(one.path[:-1] for one in found), strict=False)
     common = sum(
         1 for _ in takewhile(lambda names: len(set(names)) == 1, around)
-    )  # what is around all reports no sensor
+    )  # what is around all distinguishes no sensor
     calls = ["_".join(one.path[common:]) for one in found]
     return [
         NamedTable(
@@ -177,7 +177,7 @@ def _add(group: _Group, name: str, values: FloatArray) -> None:
 
 
 def _of_columns(reported: Mapping[str, str], columns: Mapping[str, FloatArray]) -> dict[str, str]:
-    """The units of columns, informed of these or of what they are the axes of."""
+    """The units of columns, given for these or for what they are the axes of."""
     found = {}
     for column in columns:
         base = column[:-2] if column[-2:].lower() in ("_x", "_y", "_z") else column

@@ -137,7 +137,7 @@ def read_dot(path: Path, asked_hz: float | None = None) -> DotFile:
     is_empty = np.logical_and.accumulate((acc == 0.0).all(axis=1) & (gyr == 0.0).all(axis=1))
     if not is_empty.all():  # the export begins with a row of nothing but zeros
         acc[is_empty] = gyr[is_empty] = np.nan
-    check_magnitudes(acc, None, path.stem, where)  # of rates in deg/s the orientation reports
+    check_magnitudes(acc, None, path.stem, where)  # rates in deg/s are recognised by the orientation
     is_rate_derived = not (set(GYR) <= set(table.numbers) or set(TURNS) <= set(table.numbers))
     ids = tuple(dict.fromkeys([*_named(path), *filter(None, [settings.get(TAG)])]))
     return DotFile(
@@ -169,12 +169,12 @@ def movella_dot_trial(files: Sequence[Path], rate_hz: float | None = None) -> Im
     """The files of one trial, one sensor in each.
 
     Synchronised sensors share one clock, and their samples stand at its times. Others start together at zero, each
-    on a clock of its own: how far they are apart is for the motion to report.
+    on a clock of its own: how far they are apart is for the motion to show.
 
     Parameters
     ----------
     rate_hz
-        Samples per second where neither the files nor their times report.
+        Samples per second where neither the files nor their times give it.
 
     Raises
     ------

@@ -54,9 +54,9 @@ SET_OUTPUT = "Set the sensor to send rate of turn, acceleration and sample time 
 
 @dataclass(frozen=True, slots=True)
 class MtiStream:
-    """What was read of one stream: one row for each message with motion, NaN where it did not report.
+    """What was read of one stream: one row for each message with motion, NaN where it held no value.
 
-    `lone`: how many messages reported a rate or an acceleration and not both.
+    `lone`: how many messages held a rate or an acceleration and not both.
     """
 
     ticks: FloatArray
@@ -89,12 +89,12 @@ def mti_trial(files: Sequence[Path], rate_hz: float | None = None) -> ImportedTr
     Parameters
     ----------
     rate_hz
-        Samples per second, for streams that report a counter and no time.
+        Samples per second, for streams that contain a counter and no time.
 
     Raises
     ------
     FileRefusedError
-        No motion was sent, or nothing that reports its time, in the only file.
+        No motion was sent, or nothing that gives its time, in the only file.
     OSError
         A file cannot be read.
     """
@@ -227,7 +227,7 @@ def _times(stream: MtiStream, asked_hz: float | None, where: str) -> RepairedClo
     Raises
     ------
     FileRefusedError
-        Some message reports neither, or the clock steps back for good.
+        A message contains neither, or the clock steps back for good.
     """
     if np.isfinite(stream.ticks).all():
         time_s = np.unwrap(stream.ticks, period=2.0**FINE_BITS) / FINE_HZ
@@ -268,7 +268,7 @@ def _forces(
     Raises
     ------
     FileRefusedError
-        Gravity is taken out, and nothing gives where down is.
+        Gravity is taken out, and nothing shows which way is down.
     """
     if np.isfinite(stream.force).any():
         return stream.force[is_new], False

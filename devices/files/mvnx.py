@@ -96,7 +96,7 @@ def mvnx_trial(files: Sequence[Path], rate_hz: float | None = None) -> ImportedT
     Parameters
     ----------
     rate_hz
-        Frames per second where the file does not report.
+        Frames per second where the file does not give them.
 
     Raises
     ------
@@ -201,7 +201,7 @@ def _numbers(found: MvnxFile, text: str, width: int, frame: str) -> FloatArray:
 
 
 def _check_stamps(file: MvnxFile, index: Numbers, rate_hz: float) -> None:
-    """The stamps in ms and the frames' numbers have to report the same rate."""
+    """The stamps in ms and the frames' numbers have to give the same rate."""
     stamps_s = np.array(file.stamps_ms) / 1000.0
     if len(index) < 2 or not np.isfinite(stamps_s[[0, -1]]).all():
         return

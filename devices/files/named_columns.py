@@ -1,7 +1,7 @@
 """Sensors of tables of no particular program, whose columns say by their names what they are (`column_names`).
 
 What a name does not say is found by size where size leaves one answer only, and reported as a finding; where it leaves
-two, the file is refused with the name that would settle it. What is reported is held to its size, too.
+two, the file is refused with the name that would settle it. What a name does say is held to the size, too.
 """
 
 from collections.abc import Callable, Sequence
@@ -45,13 +45,13 @@ def sensors_of_table(table: NamedTable, rate_hz: float | None) -> list[ImportedS
     Parameters
     ----------
     rate_hz
-        Samples per second as somebody reported it; None: nobody did.
+        Samples per second as somebody entered it; None: nobody did.
 
     Raises
     ------
     FileRefusedError
-        No sensor, two columns that mean the same, units that are not what they are stated to be or that cannot be
-        reported, neither times nor a rate, times that step back.
+        No sensor, two columns that mean the same, units that do not match what is given or that cannot be
+        determined, neither times nor a rate, times that step back.
     """
     try:
         found = sensor_columns(list(table.columns), table.units)
@@ -198,7 +198,7 @@ def _gyr_unit(table: NamedTable, named: SensorColumns, gyr: FloatArray, findings
 
 
 def _reported_unit(table: NamedTable, names: Sequence[str], quantity: Quantity) -> str:
-    """The unit that the names of three columns report, or that is given of them; empty where none is.
+    """The unit in the names of three columns, or the one given for them; empty where there is none.
 
     Raises
     ------
@@ -234,7 +234,7 @@ def _reported_unit(table: NamedTable, names: Sequence[str], quantity: Quantity) 
 def _orientation(q: FloatArray, acc: FloatArray) -> FloatArray | None:
     """(n, 4) unit quaternions, earth from sensor; None where they do not turn the specific force upwards.
 
-    Whether a program means earth from sensor or sensor from earth is in no name; gravity reports.
+    No name shows whether a program means earth from sensor or sensor from earth; gravity does.
     """
     length = np.linalg.norm(q, axis=1)
     is_whole = np.abs(length - 1.0) < 0.05

@@ -12,14 +12,14 @@ from devices.files.tables import Table
 
 @dataclass(frozen=True, slots=True)
 class NamedTable:
-    """Columns of one table or file, all that is given of them, and where they stand.
+    """Columns of one table or file, all that is known about them, and where they are.
 
     Attributes
     ----------
     columns : name -> (n,)
         Numbers, NaN where empty; of one sensor all of one length.
     units
-        Of columns whose unit is elsewhere than in their name.
+        Of columns whose unit is not in their name.
     where, file
         The file's name in refusals, and its path.
     called
@@ -27,7 +27,7 @@ class NamedTable:
     place
         Where a row is in the file ("line 12").
     rate_hz
-        Samples per second as the file reports; None where it does not.
+        Samples per second as the file gives it; None where it does not.
     time_s : (n,) or None
         Stamps in seconds that the file keeps beside its columns.
     left_out
@@ -56,7 +56,7 @@ def named_table_of(
     Parameters
     ----------
     names, units
-        Of all its columns; units of those whose unit is elsewhere than in their name.
+        Of all its columns; units of those whose unit is not in their name.
     read
         Reads the columns of these names as numbers.
 

@@ -1,6 +1,6 @@
 """The times of the samples of a table of no particular program: by its stamps, by a counter or by a rate alone.
 
-A unit that no name reports is found by the rates that sensors have, where these leave one answer only.
+A unit that no name contains is found by the rates that sensors have, where these leave one answer only.
 """
 
 from dataclasses import dataclass
@@ -22,7 +22,7 @@ MOST_DOUBLED = 0.2  # of the samples: beyond, the stamps are too coarse to go by
 
 @dataclass(frozen=True, slots=True)
 class Stamps:
-    """Seconds of the samples that are new; of all samples which are; by what they are reported."""
+    """Seconds of the samples that are new; which of all samples those are; what the times were found by."""
 
     time_s: FloatArray
     is_new: BoolArray
@@ -38,7 +38,7 @@ def stamps_of(
     Parameters
     ----------
     asked_hz
-        Samples per second as somebody reported it; None: nobody did.
+        Samples per second as somebody entered it; None: nobody did.
     is_there : (n,)
         The rows of the table that hold samples of this sensor.
     findings
@@ -47,7 +47,7 @@ def stamps_of(
     Raises
     ------
     FileRefusedError
-        Neither times nor a rate, two rates, a unit that nothing reports, times that are missing, step back or repeat.
+        Neither times nor a rate, two rates, a unit that nothing gives, times that are missing, step back or repeat.
     """
     reported_hz = _one_rate(table, asked_hz)
     rows = np.flatnonzero(is_there)
@@ -104,7 +104,7 @@ def _one_rate(table: NamedTable, asked_hz: float | None) -> float | None:
 
 
 def _checked_rate(table: NamedTable, time_s: FloatArray, reported_hz: float | None) -> float | None:
-    """Samples per second by the stamps, which have to be near what is reported."""
+    """Samples per second by the stamps, which have to be near the rate that is given."""
     if len(time_s) < 2:
         return reported_hz
     step_s = np.diff(time_s)

@@ -2,7 +2,7 @@
 
 Lines of a head up to `endheader`, a line of names, then a time in seconds and for each sensor four numbers with commas
 between, scalar first: earth from sensor, earth z up, as OpenSim's own readers of sensors write them. Rates are derived
-from them. There is no acceleration: gravity is in for it, which reports the shape of angles and no landing of a foot.
+from them. There is no acceleration: gravity takes its place, which shows the shape of angles and no landing of a foot.
 
 Not held against a real file: read as OpenSim's documentation describes it.
 """
@@ -101,7 +101,7 @@ def opensim_trial(files: Sequence[Path], rate_hz: float | None = None) -> Import
     Parameters
     ----------
     rate_hz
-        Rows per second where there are too few to report.
+        Rows per second where there are too few to determine it.
 
     Raises
     ------

@@ -1,4 +1,4 @@
-"""What a device's own orientation reports: angular rates, which of two kinds its gyroscope's are, and gravity."""
+"""What a device's own orientation shows: angular rates, which of two kinds its gyroscope's are, and gravity."""
 
 import numpy as np
 from numpy.typing import NDArray
@@ -15,10 +15,10 @@ def derive_rates(q_earth_from_sensor: FloatArray, counter: Numbers, rate_hz: flo
     """Angular rate at the instant of every sample, (n, 3) in sensor axes, from the orientation, (n, 4).
 
     Around a sample the orientation is a curve of rotation vectors in that sample's own axes, and the rate is the slope
-    of this curve where it passes zero. The slope is the central difference over two adjacent ones to each side (fourth
+    of this curve where it passes zero. The slope is the central difference over two samples to each side (fourth
     order: 0.2 % low at a tenth of the sampling rate), or over one where a second is missing. Both are symmetric about
     the stamp: the rate belongs to it and not to an instant half a sample beside it. Samples at a border or gap have no
-    adjacent one on one side, and no rate.
+    sample on one side, and no rate.
 
     Parameters
     ----------
@@ -32,7 +32,7 @@ def derive_rates(q_earth_from_sensor: FloatArray, counter: Numbers, rate_hz: flo
     Returns
     -------
     (n, 3)
-        rad/s, in sensor axes; NaN where a adjacent one is missing.
+        rad/s, in sensor axes; NaN where a sample beside it is missing.
     """
     before_2, before, after, after_2 = (turn_to(q_earth_from_sensor, counter, steps) for steps in (-2, -1, 1, 2))
     over_two = (8.0 * (after - before) - (after_2 - before_2)) * rate_hz / 12.0
@@ -59,7 +59,7 @@ def rate_kind_by(
     Returns
     -------
     RateKind or None
-        None: neither by far, or less than a second reports.
+        None: neither by far, or there is less than a second of data.
     """
     at_stamp = derive_rates(q_earth_from_sensor, counter, rate_hz)
     before = -turn_to(q_earth_from_sensor, counter, -1) * rate_hz

@@ -10,9 +10,9 @@ LEAST_COMMON = 0.5  # of the shortest recording, during which all of one trial h
 
 
 def with_own_clocks(sensors: Sequence[ImportedSensor]) -> list[ImportedSensor]:
-    """Name each sensor's clock, so that the motion has to report how far it is off, and let the trial begin at 0 s.
+    """Name each sensor's clock, so that the motion has to show how far it is off, and let the trial begin at 0 s.
 
-    Where the times that the clocks report cannot be of one trial, each recording begins with the others, which is
+    Where the times that the clocks give cannot be of one trial, each recording begins with the others, which is
     reported.
 
     Parameters

@@ -89,7 +89,7 @@ def _stream(asked: "DuckDBPyRelation") -> "Array":
 @contextmanager
 def _opened(file: Path) -> "Iterator[DuckDBPyConnection]":
     with duckdb.connect(":memory:", config=dict(LOCKED)) as connection:
-        # stated at the connection, it would leave files called ":memory:" in the folder of now to be written
+        # set at the connection, it would leave files called ":memory:" in the folder of now to be written
         connection.execute("SET enable_external_access = false")
         try:
             rows = pa.dataset.dataset(str(file), format="parquet", filesystem=pa.fs.LocalFileSystem())
@@ -139,7 +139,7 @@ def _refused(problem: Exception) -> FileRefusedError:
 
 
 def _reason(problem: Exception) -> str:
-    """What a library states, in one line and without its mark of a mistake."""
+    """A library's message, in one line and without its mark of a mistake."""
     first, *more = str(problem).splitlines() or [type(problem).__name__]
     stated = KIND.sub("", first).rstrip("!.:")
     hint = next((line.rstrip("?!.") for line in more if line.startswith(HINTS)), "")

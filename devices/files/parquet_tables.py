@@ -51,7 +51,7 @@ def _table(path: Path) -> NamedTable:
 
 
 def _columns(path: Path) -> dict[str, str]:
-    """The units of the columns by their names; empty where none is reported."""
+    """The units of the columns by their names; empty where none is given."""
     import pyarrow as pa  # here, not above: the window starts without it
     import pyarrow.parquet as pq
 

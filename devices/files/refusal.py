@@ -1,4 +1,4 @@
-"""The refusal of a file that is not what it states it is."""
+"""The refusal of a file that is not what it claims to be."""
 
 from collections.abc import Mapping
 

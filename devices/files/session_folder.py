@@ -61,7 +61,7 @@ IN_THIS_PROCESS = InThisProcess()
 def read_session(folder: Path, reader: SessionReader = IN_THIS_PROCESS) -> Session:
     """Read a session folder.
 
-    Everything the folder states and everything odd about it is in the result, its recordings in the file's order.
+    Everything the folder contains and everything odd about it is in the result, its recordings in the file's order.
     `Recording.imu` of a large session reads a site when asked for; then asking can raise, if a file changed since.
 
     Parameters
@@ -79,7 +79,7 @@ def read_session(folder: Path, reader: SessionReader = IN_THIS_PROCESS) -> Sessi
     Raises
     ------
     FileRefusedError
-        The folder is not what it states it is: see `session_toml.parse` and `site_files.read_site`; a recording's
+        The folder is not what it claims to be: see `session_toml.parse` and `site_files.read_site`; a recording's
         folder missing or outside of the session folder, a site there twice, no samples at all, more samples than their
         files can hold.
 
@@ -104,7 +104,7 @@ def write_session(session: Session, folder: Path, reader: SessionReader = IN_THI
     """Write `session` into `folder`, whole or not at all: beside it first, then renamed.
 
     Samples are written as CSV and read back bit for bit. A session folder that is there is replaced; what it holds
-    beside its session (a reference, a note) is taken along. `reader` gives what belongs to the session that is there.
+    beside its session (a reference, a note) is taken along. `reader` finds what belongs to the session that is there.
 
     Raises
     ------
@@ -152,7 +152,7 @@ def _read(folder: Path, reader: SessionReader) -> Session:
         imu, noticed = _read_recording(files[plan.recording.name], reader, shelf)
         if shelf is None:
             held_bytes += sum(_bytes_of(block) for block in imu.values())
-            if held_bytes > MOST_HELD_BYTES:  # Parquet states in a kilobyte that a number is there a billion times
+            if held_bytes > MOST_HELD_BYTES:  # a kilobyte of Parquet can hold one number a billion times
                 raise FileRefusedError(
                     plan.recording.name,
                     "its files contain more samples than their size allows",

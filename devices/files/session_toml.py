@@ -186,7 +186,7 @@ SIGN: Mapping[str, Known] = {joint.value: (joint.value, _sign) for joint in LEG_
 
 
 def parse(text: str) -> tuple[Session, tuple[Plan, ...]]:
-    """What the file states: a session without recordings, and the recordings to read.
+    """What the file contains: a session without recordings, and the recordings to read.
 
     Raises
     ------

@@ -8,8 +8,8 @@
 
 Each sample is a time of 3 bytes and the channels in a fixed order; where sensors were synchronised, each block begins
 with a sign and 8 bytes: how far this clock is ahead of the leading one's, all bits set where that is not known. By
-what an open reader of such files states of them (pyshimmer); one of its own test files and what Consensys made of it
-were read to the same numbers once, by hand. Calibrated as what is received live. Parts of an hour each, of one folder
+what an open reader of such files shows of them (pyshimmer); one of its own test files and what Consensys made of it
+were read to the same numbers once, by hand. Calibrated as live data is. Parts of an hour each, of one folder
 and called by numbers, are one recording.
 """
 
@@ -39,7 +39,7 @@ MOST_AHEAD_OFF = 0.05 * TICK_HZ  # what the radio reports is that far off its li
 MOST_OFF_RATE = 0.02
 GYR_SCALE = 100.0 * np.pi / 180  # what its sensitivities are stored in multiples of, per rad/s
 TIME_SIZE = 3
-# what is measured in the order in which it is in a sample: bit of its switch, bytes
+# what is measured, in its order in a sample: bit of its switch, bytes
 ORDER: Mapping[str, tuple[int, int]] = {
     "acc_low_noise": (7, 6),
     "battery": (13, 2),
@@ -196,7 +196,7 @@ def _since(raw: Ticks, begun: int, period: int) -> Ticks:
 
 
 def _ahead(name: str, offsets: Sequence[tuple[int, int]], count: int, period: int) -> FloatArray:
-    """(count,) ticks by which the clock is ahead, on a line through what the radio reported; a few of it may be
+    """(count,) ticks by which the clock is ahead, on a line through the radio's values, a few of which may be
     wrong."""
     at_sample, ahead = np.array(offsets, dtype=float).T
     if len(offsets) < 2:

@@ -3,7 +3,7 @@
 CSV holds calibrated data of one sensor, or of several side by side.
 
 A line `sep=`, a line of names such as `Shimmer_40AC_Accel_LN_X_CAL`, a line of units, as public files show them; a
-delimiter is behind the last column. Times are milliseconds since 1970. Sensors that were synchronised by their
+delimiter follows the last column. Times are milliseconds since 1970. Sensors that were synchronised by their
 base report `TimestampSync`, and share its clock. Of two accelerometers that of the wide range is taken: a foot's
 landing is beyond the 2 g of the other.
 """
@@ -122,7 +122,7 @@ def _sensors(path: Path) -> list[ImportedSensor]:
     with path.open("rb") as file:
         line = next(islice(file, len(before) + 1, None), b"").decode("utf-8", "replace").rstrip("\r\n")
     reported = [one.strip() for one in line.split(max(DELIMITERS, key=line.count))]
-    units = dict(zip(names, reported, strict=False))  # a delimiter more or less is behind the last
+    units = dict(zip(names, reported, strict=False))  # a delimiter more or less follows the last
     found: dict[str, ShimmerColumns] = {}
     for name in names:
         if parts := NAME.fullmatch(name):
@@ -174,7 +174,7 @@ def _scale(path: Path, units: Mapping[str, str], names: Sequence[str], quantity:
     Raises
     ------
     FileRefusedError
-        Their unit is not reported, or none of the quantity.
+        Their unit is not given, or none of the quantity.
     """
     reported = {unit_of(quantity, units.get(name, "")) for name in names}
     unit = reported.pop() if len(reported) == 1 else ""

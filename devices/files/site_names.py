@@ -1,4 +1,4 @@
-"""Where a sensor was worn, as its name states it in the words that programs and people use for legs.
+"""Where a sensor was worn, as its name gives it in the words that programs and people use for legs.
 
 A guess for somebody to look at, never for a place where nobody does: names are given by hand.
 """
@@ -36,7 +36,7 @@ OTHER = {
 
 
 def site_of_name(name: str) -> Site | None:
-    """The site that a name like "Left Upper Leg", "femur_l" or "rightFoot" states; None where it states none, or
+    """The site that a name like "Left Upper Leg", "femur_l" or "rightFoot" gives; None where it gives none, or
     two."""
     words = _words(name)
     sides = {side for side, known in SIDES.items() if known & set(words)}
@@ -48,7 +48,7 @@ def site_of_name(name: str) -> Site | None:
 
 
 def without_site(name: str) -> str:
-    """A name less what states where its sensor was worn: what the sensors of one trial have in common.
+    """A name without what shows where its sensor was worn: what the sensors of one trial have in common.
 
     A number of the sensor at the end goes with it: eight hexadecimal digits, or twelve.
     """

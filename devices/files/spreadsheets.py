@@ -58,7 +58,7 @@ def read_xlsx(path: Path, where: str, numeric: Collection[str], header_names: st
     numeric
         Columns to be read as numbers, NaN where empty; others are left out.
     header_names
-        The header is the first row with a cell that states this.
+        The header is the first row with a cell that contains this.
 
     Raises
     ------
@@ -78,7 +78,7 @@ def read_xlsx(path: Path, where: str, numeric: Collection[str], header_names: st
         with path.open("rb") as file:
             book = openpyxl.load_workbook(file, read_only=True, data_only=True)
             for sheet in book.worksheets:
-                sheet.reset_dimensions()  # what it states of its own size may be wrong
+                sheet.reset_dimensions()  # the size that it gives may be wrong
                 found = _read_sheet(sheet.iter_rows(values_only=True), where, numeric, header_names)
                 if found is not None:
                     return found

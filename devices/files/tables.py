@@ -29,7 +29,7 @@ CORRECT_IT = "Correct the file or export it again"
 class Table:
     """One file's columns, all of one length: `numbers` those that were asked for as numbers, `texts` all others.
 
-    `place` states where a row of the table is in the file ("line 12"). `is_open` is true for a text whose last line
+    `place` gives where a row of the table is in the file ("line 12"). `is_open` is true for a text whose last line
     has no end: its last cell may have been cut.
     """
 
@@ -55,7 +55,7 @@ class TextShape:
     names
         Of the columns, in their order.
     units
-        What a line of units below the header states of each column; empty where there is no such line.
+        What a line of units below the header gives for each column; empty where there is no such line.
     decimal
         The decimal point: "," in files of some countries.
     first
@@ -111,7 +111,7 @@ def read_csv(
     decimal
         The decimal point.
     header_names
-        The header is the first line in which this is; lines before it are passed over.
+        The header is the first line that contains this; lines before it are passed over.
 
     Raises
     ------
@@ -283,7 +283,7 @@ def _read_body(
             ),
         )
     except pa.ArrowMemoryError:
-        raise  # which gives nothing of the file's lines
+        raise  # which is not about the file's lines
     except pa.ArrowException as error:
         return error
 

@@ -79,7 +79,7 @@ class UnreadFile:
 
 @dataclass(frozen=True, slots=True)
 class ImportedTrial:
-    """`format`: one of `formats.FORMATS`. `started`: as the file states it, empty where it does not.
+    """`format`: one of `formats.FORMATS`. `started`: as the file gives it, empty where it does not.
 
     `is_simulated`: the files, or the session that they are a part of, say that nobody was measured.
     """
@@ -109,7 +109,7 @@ class Gathered:
 
 
 def no_ids(_path: Path) -> Sequence[str]:
-    """No id: nothing but what is in a file reports whose it is."""
+    """No id: only what is in a file shows whose it is."""
     return ()
 
 

@@ -208,14 +208,14 @@ def _straightened(stamp_s: FloatArray, rate_hz: float, clock: FileClock) -> Stra
 
 
 def lasting_step_back(stamp_s: FloatArray, rate_hz: float) -> int | None:
-    """Find the first sample from which on stamps of packets are earlier than those before report, and stay so.
+    """Find the first sample from which on stamps of packets are earlier than those before imply, and stay so.
 
     Parameters
     ----------
     stamp_s : (n,)
         Finite.
     rate_hz
-        As the sender reports it.
+        As the sender gives it.
     """
     window, least_s = max(round(LATE_S * rate_hz), 4), max(1.5 / rate_hz, LEAST_LOSS_S)
     back = np.flatnonzero(np.diff(stamp_s) < -least_s) + 1
@@ -244,12 +244,12 @@ def straight_times(stamp_s: FloatArray, rate_hz: float) -> StraightTimes | None:
     stamp_s : (n,)
         Finite, else they are left as they are.
     rate_hz
-        As the sender reports it.
+        As the sender gives it.
 
     Returns
     -------
     StraightTimes or None
-        None: the stamps are even as they are, or too few to report.
+        None: the stamps are even as they are, or too few to decide.
     """
     window = max(round(LATE_S * rate_hz), 4)
     if len(stamp_s) <= 2 * window or not np.isfinite(stamp_s).all():

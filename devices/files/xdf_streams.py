@@ -47,9 +47,9 @@ class XdfStream:
     Attributes
     ----------
     labels, units
-        Of its channels; empty where they are not reported.
+        Of its channels; empty where they are not given.
     rate_hz
-        As the sender reports it; None: it reports none.
+        As the sender gives it; None: it gives none.
     samples : (n, channels)
     stamp_s : (n,)
         On the recording computer's clock where `has_clock`, else on the sender's.
@@ -73,7 +73,7 @@ class XdfStream:
 
 @dataclass(frozen=True, slots=True)
 class XdfRecording:
-    """`others`: names of the streams of texts. `started`: as the file reports it, empty where it does not."""
+    """`others`: names of the streams of texts. `started`: as the file gives it, empty where it does not."""
 
     streams: tuple[XdfStream, ...]
     others: tuple[str, ...]

@@ -2,7 +2,7 @@
 
 The matrix is written by columns and earth from sensor: Mat[i][j] is row i, column j, and turns the specific force of a
 sensor at rest to earth z. Euler angles are degrees, turned about z (yaw), then y, then x. The rates of MTw sensors are
-means over the interval before their stamp, which the orientation in the same file reports.
+means over the interval before their stamp, as the orientation in the same file shows.
 """
 
 import re
@@ -47,7 +47,7 @@ WITH_IT = "Export it again from MT Manager with these data"
 class MtFile:
     """One sensor's file: n samples in sensor axes, NaN where a value is missing.
 
-    `counter` ascends: turns of the device's 16 bits are taken out. `rate_hz` None: the file does not report.
+    `counter` ascends: turns of the device's 16 bits are taken out. `rate_hz` None: the file does not give it.
     """
 
     path: Path
@@ -64,7 +64,7 @@ class MtFile:
 def is_mtmanager(_path: Path, head: bytes) -> bool:
     """Whether a file that begins so is one of these texts, with the comments MT Manager heads them with.
 
-    Columns alone do not report: those of Movella DOT have the same names, and other ticks of time.
+    Columns alone are not enough: those of Movella DOT have the same names, and other ticks of time.
     """
     return head.lstrip(b"\xef\xbb\xbf").startswith(b"//") and COUNTER.encode() in head
 
@@ -125,7 +125,7 @@ def mtmanager_trial(files: Sequence[Path], rate_hz: float | None = None) -> Impo
     Parameters
     ----------
     rate_hz
-        Update rate where the files do not report it.
+        Update rate where the files do not give it.
 
     Raises
     ------

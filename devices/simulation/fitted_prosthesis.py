@@ -1,4 +1,4 @@
-"""The demonstration's above-knee prosthesis: how it is built, and how it is set after what is stated to be changed."""
+"""The demonstration's above-knee prosthesis: how it is built, and how it is set after the changes entered."""
 
 from collections.abc import Mapping
 from dataclasses import replace

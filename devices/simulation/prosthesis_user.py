@@ -1,4 +1,4 @@
-"""The demonstration's user of an above-knee prosthesis, who walks as the prosthesis is stated to be set."""
+"""The demonstration's user of an above-knee prosthesis, who walks by the settings that were entered."""
 
 import threading
 from collections.abc import Callable, Iterable
@@ -14,10 +14,10 @@ from devices.simulation.walker import PEOPLE, Standing, Walk, WalkerSettings, si
 
 
 class ProsthesisUser(ReplaySource):
-    """Is and moves freely as `demonstration`; each walk is made when it is asked for, which takes up to a second.
+    """Standing and moving as in `demonstration`; each walk is made when it is asked for, which takes up to a second.
 
-    Every walk differs a little from the others, as people's do. Of what is stated to be changed these parts move the
-    leg, as `walker_prosthesis` states: the foot's front and back screws by angle and shift, these and the pylon by
+    Every walk differs a little from the others, as people's do. Of the changes entered, those of these parts move
+    the leg, see `walker_prosthesis`: the foot's front and back screws by angle and shift, these and the pylon by
     height, the knee by its angle (where it is stopped) and by turns (resistance in swing). Nothing else does.
 
     Parameters

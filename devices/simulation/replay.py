@@ -343,7 +343,7 @@ def _faster(now_ns: Callable[[], int], speed: float) -> Callable[[], int]:
 
 
 def _piece(clip: _Clip, name: str, from_s: float, to_s: float, lag_s: float) -> ImuBlock:
-    """What a clip states of from <= t < to, stamped with when it is sent."""
+    """What a clip holds of from <= t < to, stamped with when it is sent."""
     block, moved_s = clip.imu[name], clip.start_s - clip.first_s
     before_s = min(to_s, clip.end_s - SEAM_S) - moved_s
     first, last = block.time_s.searchsorted((from_s - moved_s, before_s))

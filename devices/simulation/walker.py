@@ -341,7 +341,7 @@ def _stand_or_walk(
     per_leg: Mapping[Side, np.random.Generator],
 ) -> tuple[dict[Side, LegMotion], float]:
     if isinstance(required, Walk):
-        # no stride moved longer than 2.2 s; the plan states how much of this is needed
+        # no stride moved longer than 2.2 s; the plan gives how much of this is needed
         slowest = max(1.0, float(changes.of_steps(2 * required.strides)[0].max()))
         ample = required.standing_before_s + required.standing_after_s + 2.2 * slowest * (required.strides + 2)
         time_s = _fine_clock(settings, ample)

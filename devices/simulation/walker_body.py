@@ -47,7 +47,7 @@ class Manner(StrEnum):
     ankle-foot orthosis. DRAGGING: a foot that hangs, its toes on the floor in early swing, landing on the toes or flat;
     toe-off is where the toes begin to slide. TOE_FIRST: lands on the toes, then lowers the heel. HEMIPARETIC: of one
     side, after a stroke: the foot lands and lifts nearly flat, the knee bends little in swing, and the leg lands late
-    and represents a shorter time than the other.
+    and is in stance for a shorter time than the other.
     """
 
     ORDINARY = "ordinary"
@@ -91,7 +91,7 @@ class Variation:
     """Standard deviations beyond the walker's own small ones.
 
     From stride to stride, where `correlation` is that of successive strides; from walk to walk; and from strapping to
-    strapping, whose `knee_deg` and `ankle_deg` are of what the sensors report, the joints themselves staying as they
+    strapping, whose `knee_deg` and `ankle_deg` are of what the sensors show, the joints themselves staying as they
     are.
     """
 
@@ -249,7 +249,7 @@ class TimedCourse:
     lap_m
         Of the courses to and fro, from turn to turn.
     pauses
-        How often the patient is still on the way, in courses to and fro.
+        How often the patient stops on the way, in courses to and fro.
     hesitates
         Before a turn the patient waits for a moment and takes shorter steps.
     slowing
@@ -317,7 +317,7 @@ class WalkerSettings:
         truth (`JointTruth.sensor_gain`), whose angles stay those of the bones.
     tissue_turn_rad
         How far tissue turns a thigh's sensor about the flexion axis, to and fro in step with the gait, where there is
-        tissue; shank and foot by their share. Nothing reports it from flexion. On people it may be 2 to 4 deg.
+        tissue; shank and foot by their share. Nothing distinguishes it from flexion. On people it may be 2 to 4 deg.
     variation
         How gait varies beyond the walker's own small spread: `PEOPLE` is as people do.
     """

@@ -182,7 +182,7 @@ def walk_bouts(
 def climb(motion: LegMotion, heights_m: FloatArray) -> LegMotion:
     """The same motion on stairs: each swing leads the foot to the height of its next foothold.
 
-    The leg goes up as it is, with the angles of level walking: what is given of it is the way of the foot alone.
+    The leg goes up as it is, with the angles of level walking: only the path of the foot is modelled.
 
     Parameters
     ----------

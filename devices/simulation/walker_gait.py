@@ -1,9 +1,9 @@
 """Standing and walking of a simulated leg, whose foot never slides and whose knee bends as a human's does.
 
-The order of things for one leg: when and where the foot is (`StepPlan`); the forward path of the hips, shared by
+The order of things for one leg: when and where the foot is put (`StepPlan`); the forward path of the hips, shared by
 both legs; the knee curve; the pitch of the foot while it rolls over heel, sole and toe. These give the ankle in stance.
 In swing the ankle's curve and the hip's path are bridged from toe-off to the next initial contact; the foot follows.
-Each hip has a path of its own: a pelvis would have to give by some centimetres, which no sensor on the legs can report.
+Each hip has a path of its own: a pelvis would have to give by some centimetres, which no sensor on the legs can show.
 """
 
 from dataclasses import replace
@@ -129,7 +129,7 @@ def walk_leg(leg: Leg, plan: WalkPlan, time_s: FloatArray, sway_m: FloatArray, r
 
 
 def _as_set(leg: Leg, plan: WalkPlan, time_s: FloatArray) -> WalkPlan:
-    """The plan as the prosthesis is set: where it is, when it is flat and when its heel rises."""
+    """The plan as the prosthesis is set: where the foot is, when it is flat and when its heel rises."""
     setting = leg.prosthesis
     if setting == AS_BUILT:
         return plan
@@ -295,7 +295,7 @@ def _roll(pitch: FloatArray) -> tuple[FloatArray, FloatArray]:
 
 
 def _shank_lean(leg: Leg, ahead_m: FloatArray, knee: FloatArray) -> FloatArray:
-    """How far the shank leans forward, rad (n,), when the hip is `ahead_m` of the ankle and the knee is bent."""
+    """How far the shank leans forward, rad (n,), with the hip `ahead_m` ahead of the ankle and the knee bent."""
     along = leg.shank_m + leg.thigh_m * np.cos(knee)
     across = leg.thigh_m * np.sin(knee)
     return np.arcsin(ahead_m / np.hypot(along, across)) + np.arctan2(across, along)

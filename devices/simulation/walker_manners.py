@@ -18,7 +18,7 @@ class Gait:
     `flat_pitch_rad` is the foot's pitch in the middle of stance; `toe_off_pitch_rad`, where not NaN, its pitch at
     toe-off, else the ankle's plantarflexion decides. Where `is_ankle_stiff` the foot turns with the shank. In the first
     `drag` (a share) of swing the toes stay on the floor. A leg lands `late`, as a share of the stride, against half a
-    stride after the other, and is so much shorter, so that both double supports stay as long.
+    stride after the other, and its stance is so much shorter, so that both double supports stay as long.
     """
 
     speed_m_s: float

@@ -29,7 +29,7 @@ from devices.simulation.walker_sensors import Mounting, SensorClock, interpolate
 HALF_WIDTH_M = 0.085  # the hips' centres are 0.17 m apart
 OBLIQUITY_RAD, ROTATION_RAD, TILT_RAD = np.deg2rad([4.0, 6.0, 2.0])  # over a stride; it tilts twice in it
 LEAN_RAD = np.deg2rad(2.0)  # forward while walking
-SWAY_RAD = np.deg2rad(1.3)  # of the legs about the ankles, towards the side that is: 2 cm at the hips
+SWAY_RAD = np.deg2rad(1.3)  # of the legs about the ankles, towards the stance side: 2 cm at the hips
 SURGE_RAD = np.deg2rad(0.8)  # forward and back with every step: 0.14 m/s about the mean speed, as people have
 HEADING_S = 0.4  # the way that the body faces, from thighs that turn with every step
 # Sensors against bones on people: pelvis 1.4, 0.8, 1.6 deg (tilt, obliquity, rotation), thigh roll 1.7, length 4 to 9

@@ -14,7 +14,7 @@ Modelled, since no choice of the patient is in it:
 Not modelled: that people compensate. Where the knee of above-knee users was moved by 2 cm, the hip's moment, the length
 of the step and the trunk answered (Koehler-McNicholas, Lipschutz & Gard 2016, J Rehabil Res Dev 53(6):1089, abstract
 read); in ten with a prosthesis below the knee neither angles nor times changed (Jonkergouw 2019, Gait Posture 68:122,
-abstract and highlights read). So a change here moves more than it will on people, and gives nothing of them.
+abstract and highlights read). So a change here moves more than it will on people, and proves nothing about them.
 """
 
 from dataclasses import dataclass

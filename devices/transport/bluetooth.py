@@ -208,7 +208,7 @@ class BluetoothLink:
             await self._up().write_gatt_char(uuid, data, response=True if is_answered else None)
 
     async def subscribe(self, characteristic: int, uuid: str) -> None:
-        """Let what this notifies be received."""
+        """Receive what this characteristic notifies."""
 
         def received(_sender: object, data: bytearray) -> None:
             self._notified(characteristic, bytes(data))
@@ -239,7 +239,7 @@ async def _begun(work: Coroutine[Any, Any, Result], ended: threading.Event) -> "
 
 
 async def _left(client: "BleakClient") -> None:
-    with suppress(Exception):  # it is gone, whatever its adapter states to that
+    with suppress(Exception):  # it is gone, whatever its adapter answers to that
         await _within(client.disconnect(), LEAVES_S)
 
 

@@ -71,7 +71,7 @@ class TcpChannel:
         except OSError as problem:
             raise _unreachable(self.place) from problem
         self._socket.setsockopt(socket.IPPROTO_TCP, socket.TCP_NODELAY, 1)
-        # a sensor that is switched off states no goodbye
+        # a sensor that is switched off does not close its connection
         self._socket.setsockopt(socket.SOL_SOCKET, socket.SO_KEEPALIVE, 1)
         self._socket.settimeout(READ_S)
 
@@ -100,7 +100,7 @@ class TcpChannel:
 class UdpChannel:
     """Datagrams of one sensor; others that come to the same port have channels of their own, or are left out.
 
-    A datagram that is lost takes whole messages with it. Nobody states when the sensor is gone: it is silent then.
+    A datagram that is lost takes whole messages with it. Nothing shows when the sensor is gone: it is silent then.
     """
 
     serial = ""
@@ -149,7 +149,7 @@ class UdpChannel:
 class _UdpPort:
     """A port of this computer, and the sensors that send to it, distinguished by the address that they send from.
 
-    Where several share one address, that of the sensor's own port reports. Whoever reads takes what has come for all.
+    Where several share one address, the sensor's own port decides. Whoever reads takes what has come for all.
     """
 
     _known: ClassVar[dict[int, "_UdpPort"]] = {}
@@ -205,7 +205,7 @@ class _UdpPort:
                 data, sender = self._socket.recvfrom(MOST_BYTES)
             except TimeoutError:
                 return
-            except ConnectionResetError:  # Windows reports so that what was sent found nobody
+            except ConnectionResetError:  # Windows: what was sent before found nobody
                 return
             if (waiting := self._waiting.get(self._owner(sender))) is not None:
                 waiting.append(data)

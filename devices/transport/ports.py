@@ -18,7 +18,7 @@ from devices.transport.channels import MOST_BYTES, READ_S
 MORE_PORTS = "GAITWRIGHT_PORTS"  # further ports, such as emulators', by their paths
 # names of Bluetooth ports that are worth the seconds they take: bound by hand on Linux, made by pairing on macOS
 SENSORS_RADIO = ("rfcomm", "Shimmer3")
-LOOK_S = 0.5  # a port that is gone is missed so soon, whatever its driver states
+LOOK_S = 0.5  # a port that is gone is missed so soon, whatever its driver reports
 
 
 @dataclass(frozen=True, slots=True)
@@ -34,7 +34,7 @@ class PortInfo:
 
     @property
     def key(self) -> str:
-        """What is plugged in, whichever port it is at; the port where that cannot be reported."""
+        """What is plugged in, whichever port it is at; the port where that is not known."""
         return f"{self.usb[0]:04x}:{self.usb[1]:04x} {self.serial}" if self.serial and self.usb else self.device
 
     @property

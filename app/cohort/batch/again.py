@@ -24,7 +24,7 @@ Keep = Callable[[bytes], None]
 
 @dataclass(frozen=True, slots=True)
 class AgainTask:
-    """One session to be analysed, as it is reported and as `bare` leaves it."""
+    """One session to be analysed, as it is described and as `bare` leaves it."""
 
     session_id: UUID
     session: Session
@@ -55,7 +55,7 @@ def analyse_again(
     workers: Workers,
     report: Report,
 ) -> AgainResult:
-    """Analyse sessions that this version has not analysed as they are reported now; each is kept once it is done.
+    """Analyse sessions that this version has not analysed as they are described now; each is kept once it is done.
 
     Parameters
     ----------

@@ -208,7 +208,7 @@ def serve(pipe: "Connection[Any, Any]") -> None:
 
 
 def _answer(asked: bytes, pipe: "Connection[Any, Any]") -> tuple[object, Exception | None]:
-    """What comes of a call, or what it raised; states in between that it is begun."""
+    """What comes of a call, or what it raised; reports in between that it is begun."""
     try:
         fn, args, kwargs = pickle.loads(asked)  # by the asking process, through a pipe that only it has
     except Exception as error:  # whoever asked gets it

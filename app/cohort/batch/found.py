@@ -12,7 +12,7 @@ from devices.files.refusal import FileRefusedError
 from devices.files.session_toml import FILE_NAME
 
 OURS = frozenset(("parameters.csv", "parameters.parquet", "failures.csv"))  # what is beside the results
-LETTERS = 8  # of a name that nothing else distinguish
+LETTERS = 8  # of a name that nothing else distinguishes
 
 
 @dataclass(frozen=True, slots=True)
@@ -28,7 +28,7 @@ def find_sessions(folder: Path, out: Path) -> tuple[FoundSession, ...]:
     """All session folders under `folder`, or itself, in the order of their names; nothing in `out` or hidden.
 
     A session's name is that of its folder. Recordings inside their results (`NAME/session`) are called as these. Where
-    several sessions have one name, each is given by its path.
+    several sessions have one name, each is named by its path.
 
     Raises
     ------
@@ -44,7 +44,7 @@ def find_sessions(folder: Path, out: Path) -> tuple[FoundSession, ...]:
         raise FileRefusedError(str(folder), "there is no session folder in it", remedy)
     by_name = defaultdict(list)
     for place, (name, _) in places.items():
-        by_name[name.casefold()].append(place)  # some disks do not report large letters from small ones
+        by_name[name.casefold()].append(place)  # some disks do not distinguish large letters from small ones
     found = []
     for place, (name, named_after) in places.items():
         shares_name = len(by_name[name.casefold()]) > 1

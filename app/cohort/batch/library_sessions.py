@@ -1,7 +1,7 @@
 """The sessions of a library for a batch: read here one after the other, since its key leaves this process for nobody.
 
-A session's samples and words leave the library with its results, so the audit states it before they are read. Whether a
-session is as it was is distinguished from the library's rows and the digests of its recordings, without opening any of
+A session's samples and words leave the library with its results, so the audit notes it before they are read. Whether a
+session is as it was is determined from the library's rows and the digests of its recordings, without opening any of
 them.
 """
 
@@ -38,7 +38,7 @@ class LibrarySessions:
         return tuple(self._ids)
 
     def content(self, name: str) -> str:
-        """What the library states of a session, in one word.
+        """What the library holds of a session, in one word.
 
         Raises
         ------

@@ -22,7 +22,7 @@ from core.verdicts.quantities import OF_BOTH, OF_HIPS, PARAMETERS
 Row = dict[str, str | float | int | bool | None]
 
 BOTH = "both"
-UNNUMBERED = "#"  # before what reports a batch's patients apart until the table numbers them
+UNNUMBERED = "#"  # before what distinguishes a batch's patients until the table numbers them
 WALK_SPEED = "walk_speed_m_s"
 
 
@@ -98,7 +98,7 @@ class ReportedOf:
 
 
 def reported_of_folder(session: Session, mark: str) -> ReportedOf:
-    """What reports a batch's patients apart, keyed with its mark, until its table numbers them; and the session's
+    """What distinguishes a batch's patients, keyed with its mark, until its table numbers them; and the session's
     day."""
     code = session.patient.code
     if not code:

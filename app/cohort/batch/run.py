@@ -20,7 +20,7 @@ from app.system.tables import typed_cell, write_table
 from devices.files.refusal import FileRefusedError, one_line
 
 FAILURES = "failures.csv"
-WATCHED = 50  # sessions that the rate is distinguished from: it may change within a batch
+WATCHED = 50  # sessions that the rate is computed from: it may change within a batch
 
 Work = Callable[[BatchTask], SessionOutcome]
 
@@ -175,7 +175,7 @@ def progress_words(result: BatchResult, end: datetime | None, per_minute: float)
 
 
 def _with_patient(row: Row, numbers: dict[str, str]) -> Row:
-    """A patient of a folder gets a number in place of what only this batch can report; a library gives pseudonyms."""
+    """A patient of a folder gets a number in place of what only this batch can resolve; a library gives pseudonyms."""
     patient = row["patient"]
     if not isinstance(patient, str) or not patient.startswith(UNNUMBERED):
         return row

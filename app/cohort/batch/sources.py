@@ -15,7 +15,7 @@ class SessionSource(Protocol):
     def names(self) -> Sequence[str]: ...
 
     def content(self, name: str) -> str:
-        """What is in a session, in one word; empty where only who reads it can report.
+        """What is in a session, in one word; empty where only whoever reads it can know.
 
         Raises
         ------

@@ -89,7 +89,7 @@ def work_group(work: Callable[[T], R], tasks: tuple[T, ...]) -> GroupResult[R]:
             break
         try:
             results.append(work(task))
-        except Exception as error:  # one task's fault is not its adjacent ones'
+        except Exception as error:  # one task's fault is not that of the others
             results.append(error)
     return GroupResult(tuple(results), perf_counter() - began_s)
 

@@ -172,7 +172,7 @@ def _files(folder: Path) -> Iterator[Path]:
 
 
 def _add(path: Path, digest: _Hash) -> None:
-    """What cannot be read is reported as such: only some of these files are the session, and reading that refuses
+    """What cannot be read is noted as such: only some of these files are the session, and reading that refuses
     them."""
     try:
         if path.is_symlink():

@@ -81,8 +81,8 @@ def write_csv(columns: Sequence[str], rows: Iterable[Sequence[object]], out: Pat
 
 
 def aligned_lines(columns: Sequence[str], rows: Iterable[Sequence[object]]) -> Iterator[str]:
-    """Give the table for a terminal, numbers at the right, long texts cut; after `MOST_ON_TERMINAL` rows it reports
-    it."""
+    """Give the table for a terminal, numbers at the right, long texts cut; after `MOST_ON_TERMINAL` rows a note
+    follows."""
     left = iter(rows)
     shown = [tuple(row) for row in islice(left, MOST_ON_TERMINAL)]
     cells = [[_short(name) for name in columns], *([_short(value) for value in row] for row in shown)]

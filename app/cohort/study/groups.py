@@ -35,7 +35,7 @@ REPORTED, REPORTED_WITH_CARE = ("read",), ("read", "care")
 
 
 class Grouping(StrEnum):
-    """What sessions can be grouped by; never by session or walk, which would report single people."""
+    """What sessions can be grouped by; never by session or walk, which would reveal single people."""
 
     CONDITION = "condition"
     DEVICE = "device"
@@ -77,7 +77,7 @@ class GroupRow:
         A condition or device as typed; `left`; `prosthetic`; a band by its lower edge ("18", "0.4", the first "0");
         empty: not stated, or a speed that cannot be read.
     sessions, patients, walks
-        Those with a value that counts; no patients where one of the sessions does not report its own.
+        Those with a value that counts; no patients where one of the sessions does not name its own.
     mean, sd, standard_error, half_interval
         Of the sessions' values, in the unit that the measure's name ends with; sd, standard error and half of the 95 %
         interval are NaN under three sessions.
@@ -123,7 +123,7 @@ class GroupRow:
 class GroupAnswer:
     """The groups in their order, those without a value too.
 
-    `sessions` and `patients` count each once, however many groups it is in (no patients where a session does not report
+    `sessions` and `patients` count each once, however many groups it is in (no patients where a session does not name
     its own); `simulated` of them are simulated, and `simulated_left_out` sessions are not among them for being so.
     """
 
@@ -217,7 +217,7 @@ def table_of(found: GroupAnswer) -> tuple[list[str], Iterable[list[str | int | f
 
 
 def _sides(table: ParameterTable, measure: str) -> tuple[str, str]:
-    """Which rows report this parameter: those of the legs, else those of both together, as of cadence."""
+    """Which rows contain this parameter: those of the legs, else those of both together, as of cadence."""
     reported = f"SELECT DISTINCT side FROM {VIEW} WHERE {quoted_name(measure)} IS NOT NULL"
     found = {side for (side,) in table.found(reported).rows}
     return (BOTH, BOTH) if found == {BOTH} else LEG_SIDES

@@ -30,7 +30,7 @@ class FoundRows:
 class ParameterTable:
     """One row per session, walk and side, as the view `parameters`.
 
-    A number that is none (NaN) is empty there, as a not reported one is, so that no mean has to be given to pass over
+    A number that is none (NaN) is empty there, as one that is not reported is, so that no mean has to be made to skip
     it.
     """
 

@@ -1,4 +1,4 @@
-"""What the page of questions states: its groups, what is shown, what was left out, and what the intervals do not
+"""What the page of questions shows: its groups, what is shown, what was left out, and what the intervals do not
 hold."""
 
 from app.cohort.study.groups import (

@@ -202,5 +202,5 @@ def _writing(found: GroupAnswer, path: Path) -> Work:
 
 
 def _short(path: Path) -> str:
-    """A table as it is called on the page: its folder states more than its name."""
+    """A table as it is called on the page: its folder identifies it better than its name."""
     return f"{path.parent.name}/{path.name}"

@@ -106,7 +106,7 @@ class GoalsOfPatient(QObject):
         return state.operator.name if state is not None else ""
 
     def _save(self, key: GoalKey, change: Callable[[Sequence[Goal]], tuple[Goal, ...]]) -> None:
-        """Say what is to hold of one figure, on what was shown of it."""
+        """Set what is to hold of one figure, based on what was shown of it."""
         if self._patient is None or self._is_busy:
             return
         patient_id, reported, field = self._patient.id, self._patient.details, goal_field(key)

@@ -125,7 +125,7 @@ class GoalsPage(TallPage):
         self.measure.setFocus()
 
     def submit(self) -> None:
-        """Report what was typed, or say at its field what is missing."""
+        """Pass on what was typed, or show at its field what is missing."""
         if self.value.value is None:
             if not self.value.text.strip():
                 self.value.set_wrong(tr("Enter the target value."))

@@ -53,7 +53,7 @@ class _Read:
 
 
 class Importing(QObject):
-    """What leads to the page that states what is in files, and on from it: one session after the other.
+    """What leads to the page that shows what is in files, and on from it: one session after the other.
 
     Signals
     -------
@@ -317,7 +317,7 @@ def _read(paths: Sequence[Path], rate_hz: float | None, report: Report) -> _Read
 
 
 def _named(name: str) -> str:
-    """What is given of a patient, by the name that it has in the library."""
+    """What a patient's data are called, by the name that each has in the library."""
     return {
         "birth_year": tr("birth year"),
         "sex": tr("sex"),

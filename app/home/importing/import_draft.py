@@ -128,8 +128,8 @@ class DraftCards(QWidget):
         self._on_changed()
 
     def show_chains(self, chains: "Chains") -> bool:
-        """Take the legs that the motion reports: ask which of them is the left one, unless a site that was stated
-        reports it.
+        """Take the legs that the motion gives: ask which of them is the left one, unless a site that was stated
+        gives it.
 
         Returns whether they fit the sites that were stated.
         """

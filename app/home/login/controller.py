@@ -35,7 +35,7 @@ class Entry(QObject):
     entered = Signal(object)  # OpenedState
     uncovered = Signal()
     left = Signal()  # from the cover, for another operator
-    shown = Signal(object)  # the page that is required now
+    shown = Signal(object)  # the page that is to be shown now
 
     def __init__(
         self, look: ThemeNotifier, controller: LibraryController, settings: Settings, folder: Path, parent: QObject
@@ -117,7 +117,7 @@ class Entry(QObject):
         self._show(self.log_in)
 
     def show_recording(self, is_recording: bool) -> None:
-        """Report the cover whether a recording goes on."""
+        """Notify the cover whether a recording goes on."""
         if self.is_covering:
             self.log_in.show_recording(is_recording)
 

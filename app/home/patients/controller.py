@@ -37,7 +37,7 @@ class _Patients:
 
 
 class PatientsAtHome(QObject):
-    """`is_awaited` reports a patient's code whether sessions are still being made, as in the demonstration."""
+    """`is_awaited` returns for a patient's code whether sessions are still being made, as in the demonstration."""
 
     chosen = Signal()  # who is in sight, or nobody
     refused = Signal(str, str)

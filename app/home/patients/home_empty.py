@@ -1,4 +1,4 @@
-"""What is in the place of patients as long as there is none: how to begin, what a session needs and how it goes."""
+"""What is shown in place of patients while there are none: how to begin, what a session needs and how it goes."""
 
 from PySide6.QtCore import QPointF, QRectF, QSize, Qt
 from PySide6.QtGui import QFontMetrics, QPainter, QPaintEvent
@@ -16,7 +16,7 @@ from app.widgets.themed import Themed
 from app.wording.translation import tr
 
 CIRCLE = 26
-NARROW_BELOW = 760  # px of the design: what a session needs is under one another
+NARROW_BELOW = 760  # px of the design: what a session needs is listed one below another
 WIDE_FROM = 960
 PAGE_EDGE, EDGE, NARROW_EDGE, GAP = 24, 80, 24, 16  # from the page's edge to the card, and from that to the words
 LINE = 20

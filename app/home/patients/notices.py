@@ -1,4 +1,4 @@
-"""What home states above its pages of the library that was opened: its age, and what was done without its server."""
+"""What home shows above its pages of the library that was opened: its age, and what was done without its server."""
 
 from PySide6.QtCore import QObject, Signal
 

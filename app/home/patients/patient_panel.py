@@ -114,7 +114,7 @@ class PatientPanel(Themed):
         self._on_look_changed()
 
     def say_none_yet(self, *, is_awaited: bool) -> None:
-        """What is where sessions would, where there are none; `is_awaited`: they come by themselves."""
+        """What is shown in place of sessions where there are none; `is_awaited`: they come by themselves."""
         words = (
             tr("Visits of this patient are being recorded and will appear here.")
             if is_awaited

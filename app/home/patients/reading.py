@@ -88,7 +88,7 @@ def read_patient(opened: "OpenedLibrary", patient_id: UUID) -> PatientReading:
 
 
 def compute_courses(opened: "OpenedLibrary", session_ids: Sequence[UUID], report: Report) -> int:
-    """Evaluate sessions, so that what of them is in the course is kept.
+    """Evaluate sessions, so that what the course shows of them is kept.
 
     Returns
     -------

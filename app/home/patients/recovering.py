@@ -1,6 +1,6 @@
-"""What was being recorded when the library was last in use, or while it did not answer: brought back, and stated.
+"""What was being recorded when the library was last in use, or while it did not answer: brought back, and reported.
 
-What is not decided yet, recovered earlier or closed amid a walk, is stated, too, at every start: the library knows it.
+What is not decided yet, recovered earlier or closed amid a walk, is reported too at every start: the library knows it.
 """
 
 from collections.abc import Mapping, Sequence
@@ -36,9 +36,9 @@ NO_NAMES: Mapping[UUID, str] = {}
 
 
 class _Outcome(NamedTuple):
-    """What was recovered, what was put into the session it states it is of, and what is left of either.
+    """What was recovered, what was put into the session that it names, and what is left of either.
 
-    `undecided`: walks of earlier starts of which nobody has stated yet whether they are kept. `names`: what all
+    `undecided`: walks of earlier starts of which nobody has decided whether they are kept. `names`: what all
     are called in their sessions.
     """
 
@@ -57,7 +57,7 @@ class _Message(NamedTuple):
 
 
 class Recovering(QObject):
-    """States one thing after the other, each until it is dismissed."""
+    """Shows one thing after the other, each until it is dismissed."""
 
     recovered = Signal()
 
@@ -72,7 +72,7 @@ class Recovering(QObject):
         banner.acted.connect(self._choose_folder)
 
     def begin(self, state: OpenedState) -> None:
-        """Bring back what `state` reports, and say what is still to be decided; `recovered` follows where there was
+        """Bring back what `state` names, and say what is still to be decided; `recovered` follows where there was
         anything to bring back."""
         self._waiting, self._lost, self._brought_home = [], [], state.brought_home
         interrupted = state.interrupted

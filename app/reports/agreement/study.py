@@ -105,7 +105,7 @@ class ComparedWalk:
 
 @dataclass(frozen=True, slots=True)
 class AgreementStudy:
-    """All walks of a session that a reference reports; `left_over` are trials and walks that found no partner."""
+    """All walks of a session that a reference covers; `left_over` are trials and walks that found no partner."""
 
     walks: tuple[ComparedWalk, ...]
     left_over: tuple[str, ...]
@@ -210,7 +210,7 @@ def _overlap(walks: Sequence[RecordingAnalysis], one: int, its: FoundOffset, oth
 
 
 def _is_of_other_times(one: NamedTrial, its: FoundOffset, others: Sequence[tuple[NamedTrial, FoundOffset]]) -> bool:
-    """Whether a trial lies on instants of a walk that no other trial reports, as passes through one volume do."""
+    """Whether a trial lies on instants of a walk that no other trial covers, as passes through one volume do."""
     first_s, last_s = _span_of(one, its.offset_s)
     spans = [_span_of(other, fit.offset_s) for other, fit in others]
     return all(last_s <= first + APART_S or last <= first_s + APART_S for first, last in spans)
@@ -272,7 +272,7 @@ def _angles_compared(
 def _reference_of(
     walk: RecordingAnalysis, joint: Joint, pairs: Sequence[tuple[NamedTrial, Alignment]]
 ) -> tuple[FloatArray, BoolArray]:
-    """The reference's angle (n,) at the walk's instants, of whichever trial reports it, and where any trial lies."""
+    """The reference's angle (n,) at the walk's instants, from whichever trial gives it, and where any trial lies."""
     reference, is_within = np.full(len(walk.time_s), np.nan), np.zeros(len(walk.time_s), dtype=bool)
     for named, alignment in pairs:
         if joint not in named.trial.angles:
@@ -310,7 +310,7 @@ def _rows_of_strides(walk: RecordingAnalysis, side: Side) -> IntArray | None:
 def _events_compared(
     walks: Sequence[RecordingAnalysis], compared: Mapping[int, ComparedWalk], one: NamedTrial
 ) -> list[tuple[int, ComparedWalk]]:
-    """The walk that a trial's events or strides report of, with them: its own, that of its name, else the likeliest."""
+    """The walk that a trial's events or strides describe, with them: its own, that of its name, else the likeliest."""
     if not one.trial.events and not one.trial.strides:
         return []
     with_gait = [w for w, walk in enumerate(walks) if walk.gait]

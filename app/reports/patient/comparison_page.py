@@ -270,7 +270,7 @@ def _row(comparison: Comparison, side: Side, measure: Measure) -> list[Cell | st
 
 
 def _compared(comparison: Comparison, measure: Measure, side: Side, part: Part) -> Compared:
-    """A measure of a part and of the one that it is reported against."""
+    """A measure of a part and of the one that it is compared with."""
     base = comparison.base_of(part)
     if measure.is_of_walk:
         return comparison.compare_walks(measure, part, base)

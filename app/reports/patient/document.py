@@ -57,7 +57,7 @@ def set_pages(template: bytes, data: dict[str, Any], made_at: datetime) -> bytes
 
 def draw_pages(template: bytes, data: dict[str, Any], made_at: datetime, ppi: float) -> list[bytes]:
     """The same pages as PNG, of so many px an inch."""
-    pages: Any = typst.compile(  # stated to be bytes; of PNG, it is a list with one for each page
+    pages: Any = typst.compile(  # annotated as bytes; for PNG, it is a list with one for each page
         template,
         format="png",
         ppi=ppi,
@@ -81,7 +81,7 @@ class ReportPreview:
     def pages(self, request: ReportRequest, ppi: float) -> list[bytes]:
         """Give the report's pages as PNG, as they will print; errors as in `make_report`."""
         with self._lock:
-            pages: Any = self._compiler.compile(  # stated to be bytes; of PNG, it is a list with one for each page
+            pages: Any = self._compiler.compile(  # annotated as bytes; for PNG, it is a list with one for each page
                 self._template,
                 format="png",
                 ppi=ppi,
@@ -162,7 +162,7 @@ def report_data(request: ReportRequest) -> dict[str, Any]:
 
 
 def pages_of_walk(facts: Facts) -> list[list[Block]]:
-    """All figures of the walk, as far as there are some: of one without a stride page one states why."""
+    """All figures of the walk, as far as there are some; for one without a stride, page one states why."""
     has_joint = any(map(facts.has_joint, JointKind))
     return [*([curves_page(facts)] if has_joint else []), *([time_page(facts)] if facts.gait else [])]
 

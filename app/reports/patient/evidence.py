@@ -24,7 +24,7 @@ from core.verdicts.model import NOT_MEASURED, GateReason, JointVerdicts
 from core.verdicts.quantities import assessment_of, raw_values
 
 JOINT_WIDTH = "23mm"  # takes a verdict; a joint's longer name, as German has them, breaks before its side
-MARGIN_BEYOND = 100.0  # how many times better states no more from here on
+MARGIN_BEYOND = 100.0  # from here on, how many times better adds nothing
 
 
 def evidence(facts: Facts) -> list[Block]:
@@ -204,7 +204,7 @@ def hips_table(facts: Facts) -> list[Block]:
 
 
 def clocks_in_words(facts: Facts) -> str:
-    """How the clocks of both legs are tied, and by how much they are apart where the hips report it."""
+    """How the clocks of both legs are tied, and by how much they are apart where the hips show it."""
     clock = facts.walk.leg_clock
     if clock is None:
         return ""
@@ -282,7 +282,7 @@ def thirds_apart(values: FloatArray) -> float:
 
 
 def _ranges_of_walks(facts: Facts, joint: Joint) -> list[FloatArray]:
-    """Of every stride used of each walk, as evidence: whatever may be stated about the joint."""
+    """For every stride used of each walk, as evidence, regardless of what may be reported about the joint."""
     gaits = [walk.gait[joint.side] for walk in facts.part.walks if joint.side in walk.gait]
     found = [raw_values(gait, f"{joint.kind}_range_deg")[gait.strides.is_used] for gait in gaits]
     return [one[np.isfinite(one)] for one in found]

@@ -1,4 +1,4 @@
-"""The page that is alone: who, what differs, what may be read, every joint's curve, a few numbers, how sure."""
+"""The page usable alone: who, what differs, what may be read, every joint's curve, a few numbers, how sure."""
 
 import math
 

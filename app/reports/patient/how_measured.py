@@ -25,7 +25,7 @@ from core.signal.tracks import MAX_REPORTED_GAP_S, nominal_step_s
 from core.verdicts.measurement_error import ComparisonKind, sigma_of
 from core.verdicts.norms import KNEE_OVERREAD
 
-MOST_MODELS = 2  # of more, their number is reported
+MOST_MODELS = 2  # for more, their number is given
 MODEL_LENGTH = 32
 
 Titled = tuple[str, str]
@@ -79,7 +79,7 @@ def _sensors(facts: Facts) -> str:
 
 
 def _models(reported: list[SensorInfo]) -> str:
-    """Which sensors, as they or their files report: "6 × MTi, firmware 4.2"."""
+    """Which sensors, as given by them or their files: "6 × MTi, firmware 4.2"."""
     named = Counter((_foreign(tr(one.model)), _foreign(one.firmware)) for one in reported)
     if len(named) > MOST_MODELS:
         return tr("{count} sensors of {kinds} models").format(count=len(reported), kinds=len(named))
@@ -92,12 +92,12 @@ def _models(reported: list[SensorInfo]) -> str:
 
 
 def _foreign(text: str) -> str:
-    """What a sensor or a file states of itself may be anything, and of any length."""
+    """What a sensor or a file states about itself may be anything, and of any length."""
     return isolated(breakable(shortened(plain(text).strip(), MODEL_LENGTH)))
 
 
 def _rates(reported: list[SensorInfo], blocks: list[ImuBlock]) -> str:
-    """At which rate, as the sensors or their files report it, and as the stamps show it."""
+    """At which rate, as the sensors or their files give it, and as the time stamps show it."""
     found = [1.0 / nominal_step_s(block.time_s) for block in blocks if len(block) > 1]
     shown = tr("{rate} Hz by time stamps").format(rate=_span(found, 1)) if found else tr("rate not known")
     set_to = [one.rate_hz for one in reported if one.rate_hz]
@@ -176,7 +176,7 @@ def _hips() -> str:
 
 
 def _kind(facts: Facts) -> RateKind | None:
-    """What one sample of an angular rate represents, as the sensors report it or the data showed; None: neither."""
+    """What one sample of an angular rate represents, as the sensors give it or the data showed; None: neither."""
     reported = {info.rate_kind for site, info in facts.visit.session.sensors.items() if site in _worn(facts)}
     found = {RateKind(str(one.numbers["kind"])) for one in _findings(facts, "rate_kind_found")}
     known = (reported - {None}) | found

@@ -29,7 +29,7 @@ ALWAYS = (KNEE, PUSH_OFF, STANCE, STEP_TIME, KNEE_RANGE)
 
 
 def key_numbers(facts: Facts, comparison: Comparison | None) -> list[Block]:
-    """A table of up to five measures that were worn and are not not reported on both legs; nothing without any."""
+    """A table of up to five measures that were worn and are reported for at least one leg; nothing without any."""
     rows = key_rows(facts, comparison)
     if not rows:
         return []
@@ -53,7 +53,7 @@ def key_numbers(facts: Facts, comparison: Comparison | None) -> list[Block]:
 
 
 def key_rows(facts: Facts, comparison: Comparison | None) -> list[LegsRow]:
-    """What the findings report, what goals are of, then what always is there."""
+    """What the findings report, what goals are about, then what is always shown."""
     rows = {row.column: row for row in what_differs(facts) if row.values}
     reported = [one.column for one in ranked_findings(facts, comparison, BANDS_ON_PAPER)]
     columns = dict.fromkeys([*reported, *(column for column, row in rows.items() if row.goals), *ALWAYS])

@@ -69,7 +69,7 @@ def _remarks(request: ReportRequest, facts: Facts) -> list[Block]:
 
 
 def _joined(findings: Sequence[Finding]) -> list[Finding]:
-    """Report what holds alike of several places once, of all of them."""
+    """Report once, for all of them, what holds alike for several places."""
     places: dict[tuple[object, ...], dict[str, None]] = {}
     first: dict[tuple[object, ...], Finding] = {}
     for finding in findings:

@@ -201,7 +201,7 @@ def _texts(
 
 
 def _changed(now_deg: float, first: _First, say: Say) -> list[str]:
-    """What is stated is the difference of what is printed, so that who subtracts finds the same."""
+    """The difference stated is that of the printed values, so that whoever subtracts finds the same."""
     apart, error = round(now_deg) - round(first.knee_deg), math.ceil(first.since.error)
     stated = say(MORE if apart > 0 else LESS).format(change=abs(apart)) if apart else say(SAME)
     is_real = first.since.exceeds and abs(apart) > error
@@ -223,7 +223,7 @@ def _speed(facts: Facts, first: _First | None, say: Say, language: str) -> str:
 
 
 def _goals(facts: Facts, say: Say, language: str) -> list[str]:
-    """What was agreed of the measures that this page reports; that it is reached only of what is read without care."""
+    """What was agreed about the measures on this page; a goal is called reached only where it is read without care."""
     stated = []
     for found in facts.goals:
         goal = found.goal

@@ -164,8 +164,7 @@ def _verdict(facts: Facts, side: Side, column: str) -> Verdict:
 
 
 def _is_any_reported(facts: Facts, kind: JointKind, column: str) -> bool:
-    """Whether a row has anything to report: at initial contact, and of a hip outwards, there is nothing but a
-    height."""
+    """Whether a row has anything to report: at initial contact, and of a hip outwards, there is only a height."""
     return ("initial_contact" not in column and not column.startswith(ABDUCTION)) or any(
         _verdict(facts, side, column) in (Verdict.READ, Verdict.CARE) for side in Side
     )
@@ -199,7 +198,7 @@ def value_cell(facts: Facts, side: Side, column: str) -> Cell | str:
 
 
 def _difference_cells(facts: Facts, column: str) -> list[Cell | str]:
-    """The difference, its error, and both in words. Of what is not reported on either leg there is none."""
+    """The difference, its error, and both in words. There is none where either leg is not reported."""
     if not all(facts.value(side, column).n for side in Side):
         return [NOTHING] * 3
     found = compare_legs(facts.part, column, facts.first_and_second)

@@ -34,7 +34,7 @@ class Phases:
 
 
 def phases_of(facts: Facts, side: Side) -> Phases | None:
-    """The means over the strides used; None where timing may not be reported or a foot sensor did not report them."""
+    """The means over the strides used; None where timing may not be reported or a foot sensor did not give them."""
     stance = facts.value(side, "stance_percent")
     if not is_mean_enough(stance.n):
         return None

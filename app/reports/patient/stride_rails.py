@@ -17,7 +17,7 @@ from core.verdicts.quantities import values_of
 WIDTH, HEIGHT = 175 * MM, 33 * MM
 LEFT_EDGE, RIGHT_EDGE, TOP, FOOT = 24.0, 78.0, 14.0, 22.0  # points around the plot
 LEAST_SPAN_DEG, TICK_DEG = 20.0, 10.0
-LETTERS = {  # on the rail; each is reported in words under the heading
+LETTERS = {  # on the rail; each is described in words under the heading
     Reason.TURN: "t",
     Reason.START: "b",
     Reason.STOP: "s",

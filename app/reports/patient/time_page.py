@@ -148,7 +148,7 @@ def _mean_cell(facts: Facts, side: Side, column: str, value: MeanAndSd, decimals
 
 
 def _between(facts: Facts, column: str) -> Difference | None:
-    """What the legs differ by in a column of strides.csv; None where that is not reported of both."""
+    """What the legs differ by in a column of strides.csv; None where it is not reported for both."""
     if not all(facts.value(side, column).n for side in Side):
         return None
     found = compare_legs(facts.part, column, facts.first_and_second)
@@ -165,7 +165,7 @@ def difference_cells(found: Difference | None, decimals: int) -> list[Cell | str
 
 
 def _single_support_row(facts: Facts) -> list[Cell | str]:
-    """A leg is alone while the other swings; each in % of the swinging leg's stride.
+    """A leg is in single support while the other swings; each in % of the swinging leg's stride.
 
     As with double support, both legs' timing has to be beyond doubt.
     """

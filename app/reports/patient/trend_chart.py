@@ -1,5 +1,4 @@
-"""One measure over the dates of a patient's visits: dates to scale, whiskers of half an error, gaps where not
-reported."""
+"""One measure over a patient's visits, dates to scale; whiskers of half an error, gaps if not reported."""
 
 import datetime
 import math
@@ -93,7 +92,7 @@ def _line(
     aside: float,
     bottom: float,
 ) -> list[str]:
-    """A leg's values, joined where no visit between them is not reported, each with its whisker."""
+    """A leg's values, joined where every visit between them is reported, each with its whisker."""
     colour, dash = (COLOURS[side], DASHES[side]) if side is not None else (PAPER.ink, "")
     parts = []
     for one, other in pairwise(values):
@@ -121,7 +120,7 @@ def _line(
 
 
 def _axis(low: float, high: float) -> tuple[float, float, float]:
-    """Round ends of an axis about all that is on it, and its step."""
+    """Round ends of an axis about all that is drawn on it, and its step."""
     span = max(high - low, 1e-3)
     size = 10.0 ** math.floor(math.log10(span / TICKS))
     step = next(size * k for k in (1, 2, 2.5, 5, 10) if size * k * TICKS >= span)

@@ -77,7 +77,7 @@ def charts_of_tests(visits: Sequence[CourseVisit], condition: str, facts: Facts)
 
 
 def _goals(walked: Sequence[CourseVisit], condition: str, facts: Facts) -> list[str]:
-    """Each goal that was agreed before this visit: at which visit it was first reached, and how it is now."""
+    """Each goal that was agreed before this visit: at which visit it was first reached, and if it is met now."""
     wording = []
     for goal in facts.part.agreed.reported:
         parts = [(number, visit) for number, visit in enumerate(walked, start=1) if visit.day > goal.agreed]
@@ -141,7 +141,7 @@ def _sentences(lines: Sequence[TrendLine], facts: Facts, visits: int) -> list[st
 
 
 def _movement(line: TrendLine) -> tuple[str, Side | None]:
-    """What is given of once: speed is one, in a timed test or out of it."""
+    """What is reported only once: speed is one, in a timed test or out of it."""
     return (SPEED if line.column.endswith(SPEED) else line.column), line.side
 
 

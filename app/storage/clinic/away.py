@@ -53,7 +53,7 @@ MARK = "away {library}"  # the setting that states up to which entry of its audi
 NOT_COVERED = "away-not-covered-{number}"  # a folder that is kept: what was edited in it is not on the server
 OWN_TO_EACH = {"settings", "operators", "audit", "patients", "corrections"}  # tables that are not copied row by row
 
-DERIVED = {"results", "courses", "readings"}  # tables that are computed again from the others, or of a server alone
+DERIVED = {"results", "courses", "readings"}  # tables that are recomputed from the others, or of a server alone
 SERVERS = {"kept_as", "station", "version", "patient_id"}  # columns that change at the server by themselves
 
 _log = logging.getLogger(__name__)

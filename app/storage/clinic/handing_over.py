@@ -1,6 +1,6 @@
 """What a station recorded is handed over to the clinic's shared place, each journal once.
 
-A journal is put there under the hash of its bytes and read back; then its row reports it; then the file here is a copy.
+A journal is put there under the hash of its bytes and read back; then its row records it; then the file here is a copy.
 Killed anywhere in between, the next time goes on: what is there already is not put again.
 """
 
@@ -49,7 +49,7 @@ def hand_over(opened: OpenedLibrary) -> frozenset[UUID]:
 
 
 def count_waiting(opened: OpenedLibrary) -> int:
-    """How many recordings are on this station's disk alone, as the names of files and their rows report.
+    """How many recordings are on this station's disk alone, as the names of files and their rows show.
 
     Raises
     ------

@@ -41,7 +41,7 @@ def join(folder: Path, address: str, journals: str = "") -> Station:
     LibraryError
         The address is none, the server does not answer or has no library, or something is in the folder.
     PlaceUnconfirmedError
-        No place was named here; it gives which one the server names.
+        No place was named here; the error gives the one that the server names.
     PlaceMissingError
         The shared place is not there under this name.
     """

@@ -134,7 +134,7 @@ class JournalStore:
         )
 
     def fetch(self, name: str, target: Path) -> None:
-        """Bring a journal here, beside its place first; it is what its name states, or it is not there.
+        """Bring a journal here, beside its place first; its content matches its name, or it is not there.
 
         Raises
         ------

@@ -1,7 +1,7 @@
 """Who may open a clinic's library: the slots' file is a row on the server, and each station keeps a copy of it.
 
-With the copy a station reports a wrong passphrase from a right one, and lets somebody in again after a lock, while the
-server does not answer. A change is made on the server, under its write lock, or not at all.
+With the copy a station distinguishes a wrong passphrase from a right one, and lets somebody in again after a lock,
+while the server does not answer. A change is made on the server, under its write lock, or not at all.
 """
 
 import json

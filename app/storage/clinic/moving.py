@@ -97,7 +97,7 @@ def move_to_server(opened: OpenedLibrary, station: Station, report: Report) -> M
                 _put_later_entries(library.database, server)
             _refuse_difference(library.database, server, "Empty the server's database, then move the library again")
             moved = _counted(server, len(kept), size)
-            replace_file(folder / MOVING, LAST_STEP)  # from here on it may be open there, whatever is known of that
+            replace_file(folder / MOVING, LAST_STEP)  # from here on it may be open there, whether that is known or not
             with server.writing() as session:
                 set_state(session, ServerState.OPEN)
         else:

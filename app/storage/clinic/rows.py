@@ -27,7 +27,7 @@ SERVERS_OWN = (
     STATE_SETTING,
     TARGET_SETTING,
 )  # settings that a library in a folder has no use for
-# columns that report where something is rather than what it is
+# columns that give where something is rather than what it is
 PLACES: Mapping[str, frozenset[str]] = {"journals": frozenset({"kept_as"}), "recordings": frozenset({"station"})}
 
 

@@ -3,7 +3,7 @@
 station.json    the server's address, and this station's id; its owner's alone, for the address may hold a password
 cache/          copies of journals that are in the shared place, fetched or handed over; they may go at any time
 
-The environment variable GAITWRIGHT_DATABASE_URL is in for the address, GAITWRIGHT_JOURNALS for the shared place
+The environment variable GAITWRIGHT_DATABASE_URL replaces the address, GAITWRIGHT_JOURNALS the shared place
 where it has another name on this computer.
 """
 

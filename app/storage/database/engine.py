@@ -43,7 +43,7 @@ PG_BUILD_LOCK = 0x6761_6974  # any number, the same at all stations
 PG_MAY_WRITE = "SELECT has_table_privilege(to_regclass('settings'), 'UPDATE')"
 PG_WRITE_LOCK = "LOCK TABLE settings IN SHARE ROW EXCLUSIVE MODE"
 ONLY_READS = "only_reads"  # in the `info` of a connection whose login may change nothing
-# a server that was unplugged gives nothing more: after ten seconds it counts as gone
+# a server that was unplugged sends nothing more: after ten seconds it counts as gone
 PG_SILENT = {
     "keepalives_idle": 5,
     "keepalives_interval": 2,
@@ -271,7 +271,7 @@ def postgres_engine(url: str, try_s: float = TRY_S, *, is_kept: bool = True) -> 
 
 @cache
 def _impatient_connection() -> "type[PgConnection[Any]]":
-    """A connection that is closed once the server has stated nothing for `PG_SILENT_S`."""
+    """A connection that is closed once the server has sent nothing for `PG_SILENT_S`."""
     import psycopg
 
     class ImpatientConnection(psycopg.Connection[Any]):
@@ -376,7 +376,7 @@ def _reported() -> Iterator[None]:
         _log.warning("the database refused: %s (%s)", type(cause), getattr(cause, "sqlite_errorcode", None))
         raise _sentence(error) from None
     except (ValueError, LookupError, TypeError, AttributeError) as error:
-        # whoever writes on a server may put anything into a row; what is stated about it would quote it
+        # whoever writes on a server may put anything into a row; a message about it would quote it
         _log.warning("a row cannot be read: %s", "".join(traceback.format_tb(error.__traceback__)))
         raise LibraryFaultError(
             "The library has an entry that Gaitwright did not write", "Restore the library from a backup"
@@ -435,7 +435,7 @@ def _sentence(error: DBAPIError | PoolTimeoutError | sqlite.Error) -> LibraryErr
         )
     if "readonly" in words or "unable to open" in words:
         return LibraryFaultError("The library file cannot be opened for writing", "Check the permissions of its folder")
-    if type(cause).__module__.startswith("psycopg"):  # while a connection is made the server states why, if it answers
+    if type(cause).__module__.startswith("psycopg"):  # while connecting, the server gives the reason, if it answers
         for stated, (what, remedy) in PG_SENTENCES:
             if any(one in words for one in stated):
                 return LibraryFaultError(what, remedy)

@@ -8,7 +8,7 @@ NOT_FINITE = "not finite"
 
 
 def finite_json(value: object) -> str:
-    """`value` as JSON; a number that is not finite becomes an object that states which."""
+    """`value` as JSON; a number that is not finite becomes an object that names it."""
     try:
         return json.dumps(value, allow_nan=False)
     except ValueError:

@@ -311,7 +311,7 @@ class ResultRow(Base):
 
 
 class CourseRow(Base):
-    """What is of a session in its patient's course, as it came of all that `key` is a digest of."""
+    """What a session adds to its patient's course, as it resulted from all that `key` is a digest of."""
 
     __tablename__ = "courses"
 

@@ -18,7 +18,7 @@ Sums = tuple[int, int]
 def is_end_lost(log: Path) -> bool:
     """Return whether the write-ahead log holds saved changes that SQLite is going to drop.
 
-    A power cut amid a write may look like that too: then the changes had not been stated to be saved.
+    A power cut amid a write may look like that too: then the changes had not been reported as saved.
 
     Raises
     ------
@@ -28,7 +28,7 @@ def is_end_lost(log: Path) -> bool:
     try:
         content = log.read_bytes()
         while content[: HEADER.size] != (now := log.read_bytes())[: HEADER.size]:
-            content = now  # another program has begun the log again meanwhile
+            content = now  # another program has restarted the log meanwhile
     except FileNotFoundError:
         return False  # it was closed well
     if len(content) <= HEADER.size:

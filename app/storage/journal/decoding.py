@@ -43,9 +43,9 @@ class DecodedJournal:
     sensors
         Samples and counts by the sensor's name. What lies between two segments was not recorded, so it is not lost.
     sources
-        Every source, as it was given of last.
+        Every source, as it was described last.
     undecoded
-        Those of them whose driver is not known here, or of which no record reports any more.
+        Those of them whose driver is not known here, or which no record describes any more.
     dropped_records
         Records that the disk was too slow for.
     reports
@@ -64,7 +64,7 @@ class DecodedJournal:
         return any(source.is_simulated for source in self.sources)
 
     def recording(self, reported: Recording, placement: Mapping[str, Site]) -> Recording:
-        """The recording that `reported` reports, with the samples of the sensors that were worn."""
+        """The recording that `reported` describes, with the samples of the sensors that were worn."""
         imu = {site: self.sensors[name].block for name, site in placement.items() if name in self.sensors}
         return replace(reported, imu=imu)
 
@@ -125,7 +125,7 @@ class _JournalSegment:
         self.undecoded: list[str] = []
         self.last_ns = self.header.opened_ns
         self._reported_dropped = self._dropped_before = 0
-        self._is_reported_again: set[int] = set()  # sources that a continuation reports as they were: nothing was cut
+        self._is_reported_again: set[int] = set()  # sources that a continuation describes as they were: nothing was cut
         self._decoders: dict[int, StreamDecoder] = {}
         self._samples: dict[str, list[_SampleRows]] = {}
 
@@ -316,7 +316,7 @@ def _joined_unknown(name: str, blocks: Sequence[ImuBlock]) -> NDArray[np.generic
 def _opened_later_s(before: _JournalSegment, header: JournalHeader) -> float:
     """How long after a segment the next one was opened.
 
-    By the monotonic clock, which nobody sets; where it began again in between, with the machine, by the wall clock, but
+    By the monotonic clock, which nobody sets; where it restarted in between, with the machine, by the wall clock, but
     never before the last record.
     """
     recorded_ns = before.last_ns - before.header.opened_ns

@@ -85,7 +85,7 @@ class JournalHeader:
 
     @classmethod
     def parsed(cls, content: bytes, where: str, wrapped_key: bytes | None = None) -> "JournalHeader":
-        """Read a header; `wrapped_key`, from the library's own row, is in for one that is damaged.
+        """Read a header; `wrapped_key`, from the library's own row, replaces one that is damaged.
 
         Raises
         ------

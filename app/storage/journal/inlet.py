@@ -18,7 +18,7 @@ class Inlet:
     """Between whoever reads a source and the one thread that writes. Every method may be called from any thread.
 
     A record waits here until it is written, so one whose writing failed is still here to be counted. What does not fit
-    is dropped and counted; before its source's next record the source is given of again, with how many it lacks.
+    is dropped and counted; before its source's next record the source is described again, with how many it lacks.
     """
 
     def __init__(
@@ -28,7 +28,7 @@ class Inlet:
         opened_ns: int,
         awake_s: Callable[[], float] = time.monotonic,
     ) -> None:
-        """`awake_s` reports by what clock records wait: one that is still with the process blames no disk for it."""
+        """`awake_s` is the clock that records wait by: one that stops with the process blames no disk for it."""
         self._limit_bytes, self._now_ns, self._last_ns, self._awake_s = limit_bytes, now_ns, opened_ns, awake_s
         self._change = threading.Condition()
         self._waiting: deque[Waiting] = deque()

@@ -45,7 +45,7 @@ class SampleLayout:
 
 @dataclass(frozen=True, slots=True)
 class SourceEntry:
-    """A source as a journal reports it: when it begins, after a change, and after records of it had to be dropped."""
+    """A source as a journal describes it: when it begins, after a change, and after records of it were dropped."""
 
     number: int
     info: SourceInfo
@@ -68,8 +68,7 @@ class SourceEntry:
 
 @dataclass(frozen=True, slots=True)
 class Belonging:
-    """Of which session a recording is, and what was given of it, in the text of a mark: its row may not be there
-    yet."""
+    """Of which session a recording is, and what was stated of it, in a mark's text: its row may not exist yet."""
 
     session_id: UUID
     details: Recording
@@ -212,7 +211,7 @@ def key_text(meaning: KeyMeaning) -> str:
 
 
 def with_keys(planned: PlannedTest | None, marks: Iterable[tuple[float, str]]) -> PlannedTest | None:
-    """The test with the keys that a journal's marks report, seconds and text; what is stated about it already stays."""
+    """The test with the keys that a journal's marks contain, seconds and text; what it already has stays."""
     if planned is None or planned.start_key_s is not None or planned.end_key_s is not None:
         return planned
     at_s = {text: time_s for time_s, text in marks if text.startswith(KEY_PRESSED)}

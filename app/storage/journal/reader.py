@@ -157,7 +157,7 @@ class _Window:
         self.offset += count
 
     def skip_to(self, mark: bytes) -> None:
-        """Leave the place that was looked at, for where `mark` is next or may begin."""
+        """Leave the place that was looked at, for where `mark` occurs next or may begin."""
         found = self._held.find(mark, self._place + 1)
         end = found if found >= 0 else max(len(self._held) - len(mark) + 1, self._place + 1)
         self.skip(end - self._place)

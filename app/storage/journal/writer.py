@@ -119,9 +119,9 @@ class JournalWriter:
         self.path, self.header = segment.path, segment.header
         self._file, self._seal, self._room = file, Seal(segment.header, segment.key), room
         self._shelter, self._next = shelter, next_segment
-        self._sources: dict[int, SourceEntry] = {}  # as the file reports them
+        self._sources: dict[int, SourceEntry] = {}  # as the file describes them
         self._last_ns = segment.header.opened_ns
-        self._dropped_before = self._dropped_bytes_before = 0  # informed of by the segment before
+        self._dropped_before = self._dropped_bytes_before = 0  # described by the segment before
         self._expected_bytes_s, self._on_trouble = bytes_per_s, on_trouble
         self._inlet = inlet
         self._troubles: set[Trouble] = set()
@@ -158,7 +158,7 @@ class JournalWriter:
         Parameters
         ----------
         folder
-            It may be missing, but the folder that it is in may not: a library that is gone is not made again.
+            It may be missing, but the folder that it is in may not: a library that is gone is not recreated.
         data_key
             The library's, to wrap the journal's key with; None for the demonstration's library: nothing is sealed.
         bytes_per_s
@@ -166,7 +166,7 @@ class JournalWriter:
         shelter
             None: where `folder` cannot be written any more, the recording ends.
         awake_s
-            By what clock the disk is late: one that is still with the process blames no disk for it.
+            By what clock the disk is late: one that stops with the process blames no disk for it.
 
         Raises
         ------
@@ -203,7 +203,7 @@ class JournalWriter:
         return cls(file, segment, bytes_per_s, room, on_trouble, inlet, shelter, following)
 
     def source(self, info: SourceInfo, layout: SampleLayout | None = None) -> int:
-        """Report of a source before its first byte; returns its number. `layout` for one that gives samples.
+        """Describe a source before its first byte; returns its number. `layout` for one that gives samples.
 
         Raises
         ------
@@ -213,7 +213,7 @@ class JournalWriter:
         return self._inlet.source(info, layout)
 
     def change(self, source: int, info: SourceInfo, layout: SampleLayout | None = None) -> None:
-        """Report of a source whose settings changed, or which came back: what follows does not join what was before."""
+        """Describe a source whose settings changed, or which came back: what follows does not join what was before."""
         self._inlet.change(source, info, layout)
 
     def received(self, source: int, data: bytes) -> bool:
@@ -406,7 +406,7 @@ class JournalWriter:
             self._file.close()
 
     def _go_into_shelter(self) -> None:
-        """Go on in the shelter, in the next segment, which is given of the sources as the one before was."""
+        """Go on in the shelter, in the next segment, in which the sources are described as in the one before."""
         assert self._shelter is not None  # without one nothing else was drawn
         assert self._next is not None
         self._shelter.made()

@@ -40,7 +40,7 @@ class FreeMotionView:
         By the site that a sensor is stated to be at, the one where the motion puts it, in two looks that agree; empty
         where it contradicts nothing.
     site_of
-        By the sensor's name: as was stated, or as the motion has reported.
+        By the sensor's name: as was stated, or as the motion has shown.
     chains
         What is known of the legs where the placement is left to the motion.
     is_side_open
@@ -125,9 +125,9 @@ class FreeMotionEstimator:
 
 
 class UnplacedFreeMotionEstimator:
-    """The motion of sensors whose sites it has to report itself: it is held back until it has, and then made up for.
+    """The motion of sensors whose sites it has to show itself: it is held back until it has, and then made up for.
 
-    Where both legs began together, or only one wears sensors, `name_leg` settles what the motion cannot report.
+    Where both legs began together, or only one wears sensors, `name_leg` settles what the motion cannot show.
 
     Parameters
     ----------
@@ -190,7 +190,7 @@ class UnplacedFreeMotionEstimator:
         return placed.state
 
     def _look(self, worn: Mapping[str, ImuBlock]) -> None:
-        """Whether the motion reports by now who is where."""
+        """Whether the motion shows by now which sensor is where."""
         while _begin_s(self._held[0]) < self._now_s - KEPT_S and len(self._held) > 1:
             del self._held[0]
         self._search.update(worn)

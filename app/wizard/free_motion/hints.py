@@ -48,14 +48,13 @@ def first_hint() -> Hint:
 
 
 def unplaced_hint() -> Hint:
-    """While the motion is to report which sensor is where: the leg that moves first is the left one."""
+    """While the motion is to show which sensor is where: the leg that moves first is the left one."""
     how = tr("Then the right leg. The movement identifies the sensor positions.")
     return Hint(tr("Move the left leg first"), how, tr("Then the right leg."))
 
 
 def judged(motion: FreeMotionState, prosthetic_sides: frozenset[Side]) -> dict[Joint, GaugeState]:
-    """Give what is stated about each joint, whichever is asked for now: the gauge's word is the rail's and the
-    hint's."""
+    """Give the words for each joint, whichever is asked for now: the gauge's word is the rail's and the hint's."""
     return {
         joint: gauge_face(joint, state, required_of(joint, prosthetic_sides), is_now=False).state
         for joint, state in motion.joints.items()

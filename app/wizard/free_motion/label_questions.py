@@ -21,9 +21,9 @@ class LabelQuestions(QObject):
     changed
         Something else is asked, or nothing any more.
     relabelled
-        Sensors are worn otherwise than they were stated to be: what the motion has reported was given of others.
+        Sensors are worn otherwise than they were stated to be: what the motion has shown was of others.
     leg_named
-        Which leg a sensor is on was answered, or that was undone, before the motion has reported the sites.
+        Which leg a sensor is on was answered, or that was undone, before the motion has shown the sites.
     """
 
     changed = Signal()
@@ -57,12 +57,12 @@ class LabelQuestions(QObject):
         return (*self._visit.sensors.doubt_in_words(), ()) if self.is_in_doubt else self._side.words
 
     def begin(self) -> None:
-        """Another recording begins: nothing is asked yet. What was kept or informed of sensors holds for the visit."""
+        """Another recording begins: nothing is asked yet. What was kept or stated about sensors holds for the visit."""
         self._side = SideQuestion()
         self._visit.sensors.doubt({})
 
     def ask_for_side(self, chains: "Chains | None") -> None:
-        """The motion does not report left from right: both legs began together, or one alone wears sensors."""
+        """The motion does not distinguish left from right: both legs began together, or one alone wears sensors."""
         if chains is not None:
             session = self._visit.session
             placed = session.placements[-1].site_of if session is not None and session.placements else {}
@@ -71,7 +71,7 @@ class LabelQuestions(QObject):
             self.changed.emit()
 
     def withdraw(self) -> None:
-        """The motion has reported the sites itself."""
+        """The motion has shown the sites itself."""
         self._side.withdraw()
 
     @Slot(int)

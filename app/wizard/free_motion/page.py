@@ -107,7 +107,7 @@ class FreeMotionPage(Themed):
         self._on_look_changed()
 
     def ask(self, what: str, then: str = "", answers: tuple[str, ...] = (), *, is_understood: bool = False) -> None:
-        """Say what the motion contradicts, or cannot report, and offer one or two answers; empty takes it back.
+        """Say what the motion contradicts, or cannot show, and offer one or two answers; empty takes it back.
 
         `is_understood`: it is no question but what was answered to one, and the second button takes that back.
         """

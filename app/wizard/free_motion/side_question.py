@@ -50,8 +50,7 @@ class SideQuestion:
         return SILENT
 
     def look(self, chains: Chains, earlier: Mapping[str, Side]) -> None:
-        """Ask, unless that was asked or answered of one of these legs. `earlier` is what was stated about sensors
-        before."""
+        """Ask, unless one of these legs was asked about or answered. `earlier`: what was stated of sensors before."""
         self._earlier = dict(earlier)
         known = self.asked or (self.reported[0] if self.reported is not None else None)
         if any(known in leg.sensors for leg in chains.legs):
@@ -75,6 +74,6 @@ class SideQuestion:
         self.reported = sensor, side
 
     def withdraw(self) -> None:
-        """Ask no longer, for the motion has reported it itself; an answer that was undone is still required."""
+        """Ask no longer, for the motion has shown it itself; an answer that was undone is still required."""
         if not self._is_undone:
             self.asked, self._contradicted = None, None

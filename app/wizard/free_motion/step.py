@@ -232,7 +232,7 @@ class FreeMotionStep(Step):
 
     @property
     def _is_unplaced(self) -> bool:
-        """Whether a motion is to report where the sensors are, and none has."""
+        """Whether a motion is to show where the sensors are, and none has."""
         sensors = self._visit.sensors
         return sensors.is_left_to_motion and not sensors.site_of
 
@@ -270,8 +270,7 @@ class FreeMotionStep(Step):
         return self._then is AfterRecording.ITSELF and not (self._has_moved or recordings.is_recording)
 
     def _begin(self, side: Side | None = None) -> None:
-        """Record; one leg alone takes only that leg's sensors, so that what the other's motion reported stays in
-        force."""
+        """Record; one leg alone takes only that leg's sensors, so that what the other's motion gave stays in force."""
         acquisition, recordings = self._visit.sensors.acquisition, self._visit.recordings
         if acquisition is None or self._visit.session is None or recordings.is_recording:
             return
@@ -322,7 +321,7 @@ class FreeMotionStep(Step):
         assert self._estimator is not None
         view, sensors = self._estimator.state, self._visit.sensors
         self._elapsed_s = view.elapsed_s
-        if view.site_of and not sensors.site_of:  # the motion has reported it
+        if view.site_of and not sensors.site_of:  # the motion has shown it
             sensors.assign_all(view.site_of)
             self._visit.worn.place_once_ended()
             self.labels.withdraw()
@@ -348,12 +347,12 @@ class FreeMotionStep(Step):
             self.changed.emit()  # what stopping costs is read, not watched
 
     def _with_enough(self) -> frozenset[Joint]:
-        """The joints whose gauge states that the motion is enough: one that is no hinge is not among them."""
+        """The joints whose gauge shows that the motion is enough: one that is no hinge is not among them."""
         states = judged(self._motion, self._visit.prosthetic_sides)
         return frozenset(joint for joint, state in states.items() if state in CLOSED)
 
     def _joined(self, motion: FreeMotionState) -> FreeMotionState:
-        """With what the other leg's motion reported before, if one leg alone is repeated."""
+        """With what the other leg's motion gave before, if one leg alone is repeated."""
         return replace(
             motion,
             joints={**self._before.joints, **motion.joints},
@@ -426,7 +425,7 @@ class FreeMotionStep(Step):
 
     @Slot()
     def _show_question(self) -> None:
-        """Show what is to be answered, or what was understood; the page is left alone where that is there."""
+        """Show what is to be answered, or what was understood; the page is left alone where that is shown already."""
         words = self.labels.words if self._is_recording or self.labels.is_in_doubt else SILENT
         if words != self._asked_words:
             self._asked_words = words
@@ -435,7 +434,7 @@ class FreeMotionStep(Step):
     @Slot()
     def _on_relabelled(self) -> None:
         self._visit.worn.place_once_ended()
-        self._watch()  # what the motion reported was given of others
+        self._watch()  # what the motion gave was of other sensors
 
     @Slot()
     def _on_leg_named(self) -> None:

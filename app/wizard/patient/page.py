@@ -409,7 +409,7 @@ def _sex_on_page(patient: Patient) -> str:
 
 
 def _sides_on_page(patient: Patient) -> tuple[str, str]:
-    """Give the choices that show the patient's sides; where two are reported, the prosthesis is the one it is about."""
+    """Give the choices that show the patient's sides; where two are entered, the prosthesis is the one it is about."""
     if patient.prosthetic_side not in ("", "none"):
         return patient.prosthetic_side, "prosthetic"
     return patient.affected_side or "none", "affected"

@@ -154,7 +154,7 @@ class PatientStep(Step):
         self.changed.emit()
 
     def _on_visit_changed(self) -> None:
-        """Show what another station stated of the feet, so that nobody answers over what was not seen."""
+        """Show what another station entered about the feet, so that nobody answers over what was not seen."""
         if self._is_entered and self._visit.without_ankle != self._shown_without:
             self._fill()
 

@@ -141,7 +141,7 @@ class ReportPage(Themed):
         self._card.setMaximumWidth(QWIDGETSIZE_MAX if self._is_narrow else words)
 
     def show_comment(self, comment: str) -> None:
-        """Show what was stated earlier; the typing goes on where it was if it is the same."""
+        """Show what was typed earlier; the typing goes on where it was if it is the same."""
         if comment != self.comment.toPlainText():
             with QSignalBlocker(self.comment):
                 self.comment.setPlainText(comment)
@@ -204,11 +204,11 @@ class ReportPage(Themed):
 
     @property
     def is_typing(self) -> bool:
-        """Whether words stand here that were not reported of yet."""
+        """Whether there are words here that were not passed on yet."""
         return self._pause.isActive()
 
     def flush(self) -> None:
-        """Report of words that are still being typed."""
+        """Pass on words that are still being typed."""
         if self._pause.isActive():
             self._pause.stop()
             self._on_paused()

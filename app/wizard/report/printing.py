@@ -14,7 +14,7 @@ PAGE_SIZES = {"a4": QPageSize.PageSizeId.A4, "letter": QPageSize.PageSizeId.Lett
 
 
 class ReportPrinter(QObject):
-    """`confirmed` is reported once somebody has chosen a printer; `put` then puts the pages on it."""
+    """`confirmed` is emitted once somebody has chosen a printer; `put` then puts the pages on it."""
 
     confirmed = Signal()
 

@@ -68,7 +68,7 @@ class ReportStep(Step):
         self.saved: Path | None = None
         self.is_saving = False
         self._kept: frozenset[str] = frozenset()  # of what was typed freely: leaves with the files without a name
-        self._shown_comment = ""  # as it stood on the page, or was distinguished from there, last
+        self._shown_comment = ""  # as it was last shown on the page, or passed on from there
         self._clinic = ""
         self._earlier: tuple[UUID, AnalysedVisit] | None = None  # as was read last
         self._before: tuple[CourseVisit, ...] = ()  # earlier visits of the course, in order of time

@@ -19,7 +19,7 @@ LeftOut = Mapping[Side, tuple[float, ...]]
 
 
 class StrideChoice(QObject):
-    """States what is required; the library follows, and `SessionRecordings.changed` gives when it has."""
+    """States what is required; the library follows, and `SessionRecordings.changed` is emitted when it has."""
 
     offered = Signal(str, object)  # what was done, and what undoes it
 

@@ -51,7 +51,7 @@ class ColumnsReported:
 
     @property
     def is_whole(self) -> bool:
-        """Whether every meaning but `UNUSED` is reported once."""
+        """Whether every meaning but `UNUSED` is entered once."""
         return sorted(meaning for meaning in self.meanings if meaning) == sorted(
             meaning for meaning in Meaning if meaning
         )
@@ -62,9 +62,9 @@ class ColumnsForm(Themed):
     Signals
     -------
     changed
-        Something else is reported.
+        Something else is entered.
     back_pressed
-        Other sources are required.
+        Other sources are asked for.
     """
 
     changed = Signal()
@@ -124,7 +124,7 @@ class ColumnsForm(Themed):
         (self.meanings[0] if self.meanings else self.back).setFocus()
 
     def show_places(self, places: Sequence[str]) -> None:
-        """Say at which ports these lines are received."""
+        """Say at which ports these lines arrive."""
         self._where.setText(tr("Text lines (CSV) at {places}").format(places=", ".join(places)))
 
     def show_reported(self, reported: ColumnsReported) -> None:
@@ -141,7 +141,7 @@ class ColumnsForm(Themed):
             _choose(choice, key)
 
     def show_values(self, values: Sequence[str]) -> None:
-        """Show what each column states now; four times a second is enough."""
+        """Show what each column contains now; four times a second is enough."""
         for shown, value in zip(self._values, values, strict=False):
             if shown.text() != value:
                 shown.setText(value)

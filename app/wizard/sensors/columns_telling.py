@@ -25,7 +25,7 @@ FASTEST_RAD_S = 40.0  # nobody's leg turns so fast
 
 
 class ColumnsTelling(QObject):
-    """One port is listened to; what is given of it holds for all ports that send as many columns."""
+    """One port is listened to; what is stated of it holds for all ports that send as many columns."""
 
     changed = Signal()
 
@@ -42,7 +42,7 @@ class ColumnsTelling(QObject):
 
     @property
     def columns(self) -> Columns | None:
-        """What is reported; None while something is missing."""
+        """What is entered; None while something is missing."""
         reported = self._form.reported if self._form is not None and self._is_shown else None
         if reported is None or not reported.is_whole:
             return None
@@ -95,7 +95,7 @@ class ColumnsTelling(QObject):
         self._form.show_message(*(_missing() if columns is None else _stated_of(columns, table)))
 
     def keep(self) -> None:
-        """Remember what is reported, and let go of the port.
+        """Remember what is entered, and let go of the port.
 
         Raises
         ------
@@ -115,7 +115,7 @@ class ColumnsTelling(QObject):
 
 
 def _reported_of(columns: Columns | None, count: int) -> ColumnsReported:
-    """As the form shows it; nothing is given of the columns of something unknown."""
+    """As the form shows it; nothing is stated about the columns of something unknown."""
     meanings = [Meaning.UNUSED] * count
     if columns is None:
         return ColumnsReported(tuple(meanings))

@@ -33,7 +33,7 @@ NOTE_SHARE = 0.6  # of a note's width: broken into two lines it needs no more
 
 @dataclass(frozen=True, slots=True)
 class DotLine:
-    """One sensor that was received. `note`: what is the matter with it; `firmware` empty until it was asked."""
+    """One sensor that was found. `note`: what is the matter with it; `firmware` empty until it was asked."""
 
     name: str
     is_worn: bool = True
@@ -123,7 +123,7 @@ class DotForm(Themed):
     changed
         They are to measure otherwise.
     back_pressed
-        Other sources are required.
+        Other sources are asked for.
     """
 
     turned = Signal(int)
@@ -183,7 +183,7 @@ class DotForm(Themed):
         self._show_consequence()
 
     def show_dots(self, lines: Sequence[DotLine]) -> None:
-        """Show what was received, and what is known of each."""
+        """Show what was found, and what is known of each."""
         if tuple(lines) == self._lines:
             return
         self._lines = tuple(lines)

@@ -42,7 +42,7 @@ class DotSetup(QObject):
     ready
         A `SourceChoice` whose sensors are on one clock.
     left
-        Other sources are required.
+        Other sources are asked for.
     """
 
     changed = Signal()
@@ -75,7 +75,7 @@ class DotSetup(QObject):
 
     @property
     def dots(self) -> "tuple[ReceivedDot, ...]":
-        """Those that were received."""
+        """Those that were found."""
         return self._fleet.dots if self._fleet is not None else ()
 
     @property
@@ -105,7 +105,7 @@ class DotSetup(QObject):
         progress.stop_pressed.connect(self._sensors.sync.stop)
 
     def begin(self, choice: "SourceChoice", known: Collection[str]) -> None:
-        """Ask the sensors of this choice who they are. `known` are names that are worn, if they are received."""
+        """Ask the sensors of this choice who they are. `known` are names that are worn, if they are found."""
         self.end()
         self._sensors.sync.forget()
         assert choice.make_fleet is not None

@@ -14,7 +14,7 @@ from core.samples import FloatArray, ImuBlock
 
 @dataclass(frozen=True, slots=True)
 class PlacingState:
-    """What the movement so far reports.
+    """What the movement so far shows.
 
     Attributes
     ----------

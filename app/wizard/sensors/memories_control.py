@@ -1,7 +1,7 @@
 """What the sensors' memories hold: found out, held against the library, fetched where it was left, and erased.
 
 Only what this program began is fetched here: it knows that those sensors were on one clock. Nothing is erased before
-it was stated what that is and what of it is kept, and the button was pressed once more.
+it was shown what that is and what of it is kept, and the button was pressed once more.
 """
 
 import datetime
@@ -40,7 +40,7 @@ class MemoriesControl(QObject):
     changed
         Something else is shown, or can be done.
     left
-        The sensors are required, and whether they were live before.
+        The sensors are asked for, and whether they were live before.
     """
 
     changed = Signal()

@@ -176,7 +176,7 @@ class SensorsPage(Themed):
         self.places.set_from_behind(is_from_behind)
 
     def show_sources(self, options: Sequence[SourceOption], chosen: str = "") -> None:
-        """Offer what sensors can be received through; `chosen` is the key of the one in force."""
+        """Offer what sensors can be reached through; `chosen` is the key of the one in force."""
         is_shown = self.sources.currentIndex() == self.sources.findData(chosen)
         if (is_shown and (tuple(options), chosen) == self._offered) or self.sources.view().isVisible():
             return  # in its view one is chosen now
@@ -273,7 +273,7 @@ class SensorsPage(Themed):
         self._refresh()
 
     def show_shaken_together(self, sensors: Sequence[str]) -> None:
-        """Say that several were shaken at once, which gives nothing; none takes it back."""
+        """Say that several were shaken at once, which shows nothing; none takes it back."""
         if tuple(sensors) != self._shaken_together:
             self._shaken_together = tuple(sensors)
             self._refresh()

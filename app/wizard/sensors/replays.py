@@ -1,6 +1,6 @@
 """What was stored can be played as if it were measured now: a session of the library, or a session folder.
 
-Which, the user states; reading takes seconds, and is done beside the screen.
+The user chooses which; reading takes seconds, and is done beside the screen.
 """
 
 from collections.abc import Callable

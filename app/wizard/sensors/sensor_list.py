@@ -96,7 +96,7 @@ class SensorList(Themed):
             self.selected.emit(name)
 
     def set_narrow(self, is_narrow: bool) -> None:
-        """Report rate and battery in the second line, where there is no room for columns."""
+        """Show rate and battery in the second line, where there is no room for columns."""
         if is_narrow != self._is_narrow:
             self._is_narrow = is_narrow
             self._on_look_changed()

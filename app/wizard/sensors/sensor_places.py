@@ -104,8 +104,7 @@ class SensorPlaces(Themed):
             self.tiles[site].show_place(place)
 
     def set_names(self, names: tuple[str, ...]) -> None:
-        """Make room on the tiles for these sensors with whatever may be stated about them, so that no tile grows
-        later."""
+        """Make room on the tiles for these sensors and all that may be stated of them, so that no tile grows later."""
         if names != self._names:
             self._names = names
             self._arrange()
@@ -186,7 +185,7 @@ class SensorPlaces(Themed):
 
     @property
     def has_notes_below(self) -> bool:
-        """Whether the names are so long that what is stated about a sensor is under its name."""
+        """Whether the names are so long that what is stated about a sensor goes under its name."""
         metrics = QFontMetrics(self._look.theme.font(12, SEMIBOLD, is_code=True))
         room = self._look.theme.px(TILE[0] - 2 * PADDING - 2)
         return any(metrics.horizontalAdvance(" · ".join((name, _notes()[0]))) > room for name in self._names)
@@ -376,5 +375,5 @@ def _notes() -> tuple[str, ...]:
 
 
 def number_of(site: Site) -> int:
-    """The key that states this place: 1 to 6, left leg first; 7 the pelvis."""
+    """The key for this place: 1 to 6, left leg first; 7 the pelvis."""
     return list(Site).index(site) + 1

@@ -43,7 +43,7 @@ LOST = 0.01  # of the samples; above it the radio wants a look
 
 @dataclass(frozen=True, slots=True)
 class SensorRow:
-    """One sensor as it is now. `battery` 0 to 1, None: it does not report; `silent_s` 0 while it is received.
+    """One sensor as it is now. `battery` 0 to 1, None: it gives none; `silent_s` 0 while it sends.
 
     `quiet`: why it is to send nothing; not `is_loss_seen`: nobody can see what is lost of it. `has_memory`: walks can
     be recorded in it.
@@ -199,7 +199,7 @@ class SensorRowView(DraggedButton):
             one.setFocusPolicy(policy)
 
     def ask(self) -> None:
-        """Open the list of places under the button that states the present one."""
+        """Open the list of places under the button that names the present one."""
         self.selected.emit(self.name)
         menu = _PlaceMenu(self._look, self.sensor.site, self._places_offered, self)
         menu.chosen.connect(self._on_place_chosen)
@@ -314,7 +314,7 @@ class SensorRowView(DraggedButton):
 
 
 class _WornOn(PaintedButton):
-    """States the place, and opens the list of places."""
+    """Names the place, and opens the list of places."""
 
     pressing_keys = (*PaintedButton.pressing_keys, Qt.Key.Key_Down)
 

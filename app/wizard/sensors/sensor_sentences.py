@@ -23,7 +23,7 @@ def stated_of_dragged(sensor: str, site: Site, worn: Mapping[Site, SensorRow]) -
 
 
 def stated_of_shaken_together(sensors: Sequence[str]) -> Stated:
-    """Several were shaken at once, which gives nothing."""
+    """Several were shaken at once, which shows nothing."""
     first, *_, last = sensors
     what = (
         tr("{first} and {last} were both shaken.").format(first=first, last=last)
@@ -48,7 +48,7 @@ def stated_of_sensors(
     bared
         Sites that a sensor was taken off from.
     next_place
-        Where the sensor that is shaken next goes; None where places are reported otherwise.
+        Where the sensor that is shaken next goes; None where places are stated otherwise.
     places
         Where sensors can be worn.
     """

@@ -29,9 +29,9 @@ class SessionChooser(Themed):
     opened
         The id of a session that is to be replayed.
     folder_pressed
-        A session folder is required instead.
+        A session folder is asked for instead.
     back_pressed
-        No session is required after all.
+        No session is asked for after all.
     """
 
     chosen = Signal(object)

@@ -1,4 +1,4 @@
-"""Where there are no sensors yet: what they can be received through, and what is being looked for."""
+"""Where there are no sensors yet: what they can be reached through, and what is being looked for."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -18,7 +18,7 @@ from app.wording.translation import tr
 
 @dataclass(frozen=True, slots=True)
 class SourceOption:
-    """Something that sensors can be received through; `note` is what was found there: "6 found".
+    """Something that sensors can be reached through; `note` is what was found there: "6 found".
 
     `is_last`: offered after all others, and takes the place of none.
     """

@@ -140,7 +140,7 @@ class Sources(Sequence[SourceChoice]):
         return SourceChoice(key, words.format(name=name, count=count), make, is_simulated, make_fleet=make_fleet)
 
     def _open_all(self) -> Acquisition:
-        """Search again, and take all sensors that are received."""
+        """Search again, and take all sensors that are found."""
         self._found = found = self._looked()
         others = [sensor for sensor in found.sensors if sensor.driver != MOVELLA_DOT]
         if found.sensors and not others:
@@ -185,7 +185,7 @@ def _networks() -> Sequence[str]:
 
 
 def _of_streams(address: str) -> SourceChoice:
-    """The streams where this computer has this address. Whom that asks is reported before."""
+    """The streams where this computer has this address. It is stated before whom that asks."""
     make = partial(_open_streams, address)
     if address == THIS_COMPUTER:
         return SourceChoice(STREAMS + address, tr("Streams from programs on this computer"), make)

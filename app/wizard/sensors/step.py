@@ -1,4 +1,4 @@
-"""Six sensors on, or seven, and each known: received through a source, and reported where they are worn."""
+"""Six sensors on, or seven, and each known: found through a source, and stated where it is worn."""
 
 from dataclasses import replace
 from typing import TYPE_CHECKING
@@ -35,7 +35,7 @@ TRACE_TICKS, ROW_TICKS = 3, 8  # of 30 a second: traces ten times a second, rows
 
 
 class SensorsStep(Step):
-    """The library is given who wears what when the step is left, and only if that is news."""
+    """The library is informed of who wears what when the step is left, and only if that is news."""
 
     id = StepId.SENSORS
 
@@ -149,8 +149,7 @@ class SensorsStep(Step):
             self._take_places()
 
     def _take_places(self) -> None:
-        """Other places of the same sensors: they were reported wrongly; another sensor at a place: strapped on
-        since."""
+        """Other places of the same sensors: entered wrongly; another sensor at a place: strapped on since."""
         visit, worn, known = self._visit, self._visit.sensors.site_of, self._known_places
         known_at, worn_at = {site: name for name, site in known.items()}, visit.sensors.sensor_at
         if not visit.recordings.since_strapped:
@@ -233,7 +232,7 @@ class SensorsStep(Step):
 
     @property
     def _is_asking(self) -> bool:
-        """Whether something is in the place of the sensors that are open, or that are to be."""
+        """Whether something is shown in place of the sensors that are open, or that are to be."""
         is_of_dots = self.setup.is_on or self.setup.is_synchronising or self.memories.is_on
         return is_of_dots or self.telling.is_on or self.stored.is_on
 
@@ -253,7 +252,7 @@ class SensorsStep(Step):
 
     @property
     def _known_places(self) -> dict[str, Site]:
-        """Site by the sensor's name, as the library was reported last in this session."""
+        """Site by the sensor's name, as it was last passed to the library in this session."""
         session = self._visit.session
         return session.placements[-1].site_of if session is not None and session.placements else {}
 
@@ -415,7 +414,7 @@ class SensorsStep(Step):
             sensors.search(choice)
 
     def _end_asking(self) -> None:
-        """Let go of all that is in the place of the sensors, or would come there once it is read."""
+        """Let go of all that is shown in place of the sensors, or would come there once it is read."""
         self.stored.end()
         self.telling.end()
         self.setup.end()
@@ -435,7 +434,7 @@ class SensorsStep(Step):
         self.changed.emit()
 
     def _on_asking_left(self) -> None:
-        """Other sources are required than what is asked about."""
+        """Other sources are asked for than those in question."""
         self._end_asking()
         self._show_asked()
 
@@ -449,7 +448,7 @@ class SensorsStep(Step):
         self.page.focus()
 
     def _use_columns(self) -> None:
-        """Remember what is reported, and search again: all that is known is received then."""
+        """Remember what is entered, and search again: all that is known is found then."""
         try:
             self.telling.keep()
         except OSError as problem:

@@ -32,7 +32,7 @@ class StoredReplay(QObject):
     read
         A `SourceChoice` that plays what was chosen.
     left
-        No session is required after all.
+        No session is asked for after all.
     """
 
     changed = Signal()

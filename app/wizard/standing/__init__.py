@@ -1,1 +1,1 @@
-"""The patient is still: page, step, and what is computed of the standing."""
+"""Standing still: page, step, and what is computed of the standing."""

@@ -56,7 +56,7 @@ class StandStillView:
     moved
         Who made the count begin again last.
     silent
-        Who is not received.
+        The sensors from which nothing is received.
     restarts
         How often it began again by itself.
     is_read_back
@@ -84,7 +84,7 @@ class StandStillView:
 
     @property
     def is_known(self) -> bool:
-        """Whether enough was known of all sensors to show whether they move."""
+        """Whether enough was received from all sensors to show whether they move."""
         return bool(self.movement_deg_s) and all(map(math.isfinite, self.movement_deg_s.values()))
 
 
@@ -222,7 +222,7 @@ class StandStillPage(Themed):
 
 
 class _ZeroCard(Card):
-    """The angles at which the patient is, and the way round the standing. The fields scroll where they must."""
+    """The angles of the patient in standing, and the way round the standing. The fields scroll where they must."""
 
     edited = Signal(object, object)
 
@@ -342,7 +342,7 @@ class _Fields(QScrollArea):
 
 
 class _ZeroField(NumberField):
-    """One joint's angle; reports the joint with it."""
+    """One joint's angle; `reported` gives the joint with it."""
 
     reported = Signal(object, object)
 

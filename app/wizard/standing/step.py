@@ -1,4 +1,4 @@
-"""Three seconds of standing: each sensor's bias, and the angles at which the patient is."""
+"""Three seconds of standing: each sensor's bias, and the angles of the patient in standing."""
 
 import math
 from dataclasses import replace
@@ -183,7 +183,7 @@ class StandStillStep(Step):
         self.changed.emit()
 
     def _sound(self, left_s: float) -> None:
-        """Let each second of the count be received."""
+        """Play a sound for each second of the count."""
         left = math.ceil(left_s)
         if self._phase is StandPhase.COUNTING and self._is_recording and left != self._received:
             self._received = left

@@ -1,4 +1,4 @@
-"""The alignments walked so far, each with what was changed, and the next change as it is reported before its walk."""
+"""The alignments walked so far, each with what was changed, and the next change as it is entered before its walk."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -54,7 +54,7 @@ class AlignmentCard(Card):
     chosen
         The number of an alignment from 0, and whether it is to stand beside the one shown.
     reported
-        Something of the next change was reported: `entry` holds it.
+        Something of the next change was entered: `entry` holds it.
     """
 
     chosen = Signal(int, bool)
@@ -113,8 +113,8 @@ class AlignmentCard(Card):
             self._scroll.verticalScrollBar().setValue(top)
 
     def set_compact(self, is_compact: bool) -> None:
-        """Report the change in two rows where the card has the width of the window, and little height."""
-        self._head_row.setVisible(not is_compact)  # the tab states it, and the sentence above whose it is
+        """Show the entry of the change in two rows where the card has the width of the window, and little height."""
+        self._head_row.setVisible(not is_compact)  # the tab shows it, and the sentence above names whose it is
         self._scroll.setMinimumHeight(self._look.theme.px(LEAST_LIST_COMPACT if is_compact else LEAST_LIST))
         steppers = [*self.steppers.values()]
         bottom = Qt.AlignmentFlag.AlignBottom
@@ -134,7 +134,7 @@ class AlignmentCard(Card):
             self._grid.addWidget(self.written, 4, 0, 1, 2)
 
     def show_entry(self, title: str) -> None:
-        """Show the next change as `entry` holds it; `title` states from where."""
+        """Show the next change as `entry` holds it; `title` names the alignment it starts from."""
         entry = self._entry
         self.next_title.setText(title)
         if self.parts.currentData() != entry.part:
@@ -199,7 +199,7 @@ class AlignmentCard(Card):
 
 
 class _AlignmentRow(Themed):
-    """One alignment; pressed it is shown, with Shift it is beside."""
+    """One alignment; a press shows it, with Shift beside the one shown."""
 
     accessible_role = QAccessible.Role.ListItem
 

@@ -19,7 +19,7 @@ NOTHING_REPORTED = dict.fromkeys(FIGURES, 0.0)
 
 
 class ChangeEntry:
-    """The next change while it is reported: each part has its figures and words, and `part` is the one in hand."""
+    """The next change while it is entered: each part has its figures and words, and `part` is the one in hand."""
 
     def __init__(self) -> None:
         self.part = ProsthesisPart.FOOT_FRONT_SCREW
@@ -46,7 +46,7 @@ class ChangeEntry:
 
     @property
     def parts(self) -> tuple[PartChange, ...]:
-        """All that was reported so far."""
+        """All that was entered so far."""
         reported = []
         for part in ProsthesisPart:
             figures, text = self._figures.get(part, NOTHING_REPORTED), self._texts.get(part, "").strip()
@@ -55,7 +55,7 @@ class ChangeEntry:
         return tuple(reported)
 
     def load(self, parts: Sequence[PartChange]) -> None:
-        """Report all of a change again; empty: nothing."""
+        """Enter all of a change again; empty: nothing."""
         self._figures = {one.part: {name: getattr(one, name) for name in FIGURES} for one in parts}
         self._texts = {one.part: one.text for one in parts}
 
@@ -98,7 +98,7 @@ def chain_of(recordings: Sequence[Recording], returned_to: str) -> AlignmentChai
 
 
 def next_walk(chain: AlignmentChain, entry: ChangeEntry, new_condition: str) -> tuple[str, AlignmentChange | None]:
-    """What the next walk is called and what was changed before it: with nothing reported, the same condition again."""
+    """What the next walk is called and what was changed before it: with nothing entered, the same condition again."""
     if entry.parts:
         return new_condition, AlignmentChange(chain.base, entry.parts)
     return chain.base, chain.changes.get(chain.base)

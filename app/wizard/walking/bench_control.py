@@ -40,10 +40,10 @@ class Bench(QObject):
         super().__init__(parent)
         self._visit = visit
         self.entry = ChangeEntry()
-        self.is_requested = True  # else the list of walks is there
+        self.is_requested = True  # else the list of walks is shown there
         self._returned_to = ""
         self._shown = self._beside = ""  # letters; empty: the latest, and what it was changed from
-        self._to_undo = ""  # in words, as long as the prosthesis is stated to be put back
+        self._to_undo = ""  # in words, as long as the prosthesis counts as put back
         self._discarded = ""  # the name of the latest walk, if it was discarded and the next is as it was
         self._may_undo_return = False
 
@@ -64,7 +64,7 @@ class Bench(QObject):
 
     @property
     def is_shown(self) -> bool:
-        """Whether it is in the place of the walks, while none is recorded."""
+        """Whether it is shown in the place of the walks, while none is recorded."""
         return self.is_requested and self.is_offered
 
     def turn(self) -> None:
@@ -82,13 +82,13 @@ class Bench(QObject):
         return next_walk(chain, self.entry, new_alignment(chain.next_letter, list(chain.changes)))
 
     def begun(self) -> None:
-        """The next walk begins: what was given of it is its own now."""
+        """The next walk begins: what was entered for it is its own now."""
         self.entry.load(())
         self._returned_to = self._shown = self._beside = self._to_undo = self._discarded = ""
         self._may_undo_return = False
 
     def discarded(self, walk: Recording) -> None:
-        """A walk does not count, but the prosthesis is still as it was then: what was changed is given of the next."""
+        """A walk does not count, but the prosthesis is still as it was then: what changed is entered for the next."""
         known, change, walks = self.chain.changes, walk.alignment, self._visit.recordings.walks
         is_latest = bool(walks) and walks[-1].details.name == walk.name
         if is_latest and walk.condition in known:
@@ -100,7 +100,7 @@ class Bench(QObject):
         self.changed.emit()
 
     def counts_again(self, walk: Recording) -> None:
-        """A walk counts that was discarded: what was given of the next for its sake is its own again."""
+        """A discarded walk counts after all: what was entered for the next because of it is its own again."""
         if walk.name != self._discarded:
             return
         self._returned_to = self._discarded = ""

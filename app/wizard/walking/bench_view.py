@@ -36,7 +36,7 @@ ALIGNMENTS, CURVES, CHANGES = "alignments", "curves", "changes"
 
 @dataclass(frozen=True, slots=True)
 class BenchState:
-    """All that the bench shows. `parts`: what is drawn, the earlier first; `found` None where one is alone."""
+    """What the bench shows. `parts`: what is drawn, the earlier first; `found` None where one is shown alone."""
 
     answer: Answer
     rows: Sequence[AlignmentRow]

@@ -1,4 +1,4 @@
-"""What the bench states of two alignments: one sentence of the prosthetic side, and what must be known to read it."""
+"""What the bench shows of two alignments: one sentence of the prosthetic side, and what must be known to read it."""
 
 import math
 
@@ -17,7 +17,7 @@ SPEED = "speed_m_s"
 
 
 def bench_answer(found: Comparison, prosthetic: Side) -> Answer:
-    """Report what of the prosthetic side changed most errors from the other alignment, with its error."""
+    """Return what of the prosthetic side changed by the most errors from the other alignment, with its error."""
     shown, other = found.parts[1], found.against
     few = [part for part in (shown, other) if part.strides(prosthetic) < MIN_STRIDES_FOR_SD]
     if few:
@@ -57,7 +57,7 @@ def speeds_in_words(shown: Part, other: Part) -> str:
 
 
 def _is_reported_of(row: Compared) -> bool:
-    """Whether a sentence may report of it: judged, of one leg, and no height, which the standing zero is in."""
+    """Whether a sentence may name it: judged, of one leg, and no height, which the standing zero is in."""
     return is_judged(row) and not row.measure.is_of_walk and not row.measure.needs_height
 
 

@@ -1,4 +1,4 @@
-"""What is beside and between the live curves: strides and cadence, the walk just stopped, and the one to come."""
+"""Shown beside and between the live curves: strides and cadence, the walk just stopped, and the one to come."""
 
 import math
 from collections.abc import Mapping

@@ -1,4 +1,4 @@
-"""What the patient's earlier visits report of timed tests, as it was kept for the course: nothing is evaluated for
+"""What the patient's earlier visits have of timed tests, as it was kept for the course: nothing is evaluated for
 it."""
 
 import datetime
@@ -79,5 +79,5 @@ class EarlierTests(QObject):
             self.changed.emit()
 
     def _on_refused(self, _what: str, _remedy: str) -> None:
-        """No harm: what was before is not reported. It is asked for again when the step is entered again."""
+        """No harm: what was before is not shown. It is asked for again when the step is entered again."""
         self._session_id = None

@@ -29,7 +29,7 @@ from core.timed.live import LiveTest
 
 KEPT_S = 15.0
 SILENT_S = 0.5
-# Beyond, a knee or ankle is not where its sensors are stated to be. Of 12 ankles of people walking after a stroke three
+# Beyond, a knee or ankle is not where the stated sites put it. Of 12 ankles of people walking after a stroke three
 # left it, for 0.2 s in all at most: such samples are left out, and only where they are more so is the whole joint.
 PLAUSIBLE_RAD = np.deg2rad(-40.0), np.deg2rad(160.0)
 OUTSIDE_S = 0.5
@@ -50,7 +50,7 @@ class WalkingEstimator:
     Attributes
     ----------
     calibrated
-        The joints with a calibration whose two sensors are worn and received.
+        The joints with a calibration whose two sensors are worn and send samples.
     on_value
         Called by the estimator's thread whenever `state` has a new value of a stride, so that nobody has to look.
     test
@@ -302,7 +302,7 @@ class _Foot:
         return LiveLane(spans, silent)
 
     def _begin(self, phase: Phase, at_s: float) -> None:
-        """An event reported since when the foot is in a phase: what was shown after that instant was premature."""
+        """An event gave since when the foot is in a phase: what was shown after that instant was premature."""
         while self._phases and self._phases[-1][1] >= at_s:
             self._phases.pop()
         if not self._phases or self._phases[-1][0] is not phase:
@@ -320,7 +320,7 @@ class _Foot:
 def _by_sample(
     events: tuple[LiveEvent, ...], changes: tuple[PhaseChange, ...]
 ) -> list[tuple[list[LiveEvent], PhaseChange]]:
-    """Events and the change that one sample reported; every event comes with a change."""
+    """Events and the change that came from one sample; every event comes with a change."""
     return [([event for event in events if event.reported_s == change.reported_s], change) for change in changes]
 
 

@@ -53,7 +53,7 @@ class LabelChooser(Themed):
         return [option for option in self._options if option.focusPolicy() is Qt.FocusPolicy.TabFocus]
 
     def show_labels(self, labels: tuple[str, ...], choice: str) -> None:
-        """Offer `labels`; a choice that is none of them is in the field."""
+        """Offer `labels`; a choice that is none of them is shown in the field."""
         while len(self._options) > len(labels):
             self._options.pop().deleteLater()
         while len(self._options) < len(labels):

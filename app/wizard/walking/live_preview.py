@@ -1,4 +1,4 @@
-"""What is live while somebody walks: the estimator with all that is known, reported amid a walk what that walk adds.
+"""What is live while somebody walks: the estimator with all that is known, given amid a walk what that walk adds.
 
 Free motion alone leaves the ankles' axes unsure, and may not have shown the hips. So the walk that goes on is looked at
 twice, once each foot has made enough strides and once a turn has come by, together with what was recorded before; what
@@ -42,7 +42,7 @@ class LivePreview(QObject):
         super().__init__(parent)
         self._visit = visit
         self._estimator: WalkingEstimator | None = None
-        self._seen: WalkingReadout | None = None  # as the estimator has reported `shown`
+        self._seen: WalkingReadout | None = None  # as the estimator gave `shown`
         self.shown: WalkingReadout | None = None
         self._counted_before: dict[Side, int] = {}  # by estimators before this one, amid this walk
         self._is_ankle_asked = self._are_hips_asked = False
@@ -68,7 +68,7 @@ class LivePreview(QObject):
             self._estimator.count_from(began_s)
 
     def look(self) -> "WalkingReadout | None":
-        """What the estimator reports now, time going on also while no sensor is received; None where none works."""
+        """What the estimator gives now, with time going on also while nothing is received; None where none works."""
         if self._estimator is None:
             return None
         view, sensors = self._estimator.state, self._visit.sensors
@@ -77,7 +77,7 @@ class LivePreview(QObject):
         return view
 
     def follow(self, view: "WalkingReadout") -> bool:
-        """Take what is reported amid a walk; whether it is something new to be shown."""
+        """Take what the estimator gives amid a walk; return whether it is something new to be shown."""
         if view is self._seen or math.isnan(view.now_s):
             return False
         self._seen = view

@@ -33,8 +33,8 @@ KEPT_S = 15.0  # more than any width shows
 ROOM = 8192  # rows: twenty seconds at 400 Hz; a faster sensor's take more
 DEG_PER_RAD = 180 / np.pi
 BREAK_S = 0.1  # without a sample for longer, the line ends; a radio's bursts lie closer
-MISSING_S = 0.5  # without a sample for longer, it is stated in words
-FIRST_ANGLE_S = 5.0  # the filters may look for the vertical for so long before they report a first angle
+MISSING_S = 0.5  # without a sample for longer, it is shown in words
+FIRST_ANGLE_S = 5.0  # the filters may look for the vertical for so long before they give a first angle
 LEAST_BETWEEN_TICKS = 18  # figures of 12 px
 
 

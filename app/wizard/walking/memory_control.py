@@ -1,4 +1,4 @@
-"""Walks in the sensors' own memories: made ready before them, informed of while they last, fetched after them."""
+"""Walks in the sensors' own memories: made ready before them, shown while they last, fetched after them."""
 
 from typing import TYPE_CHECKING
 
@@ -27,7 +27,7 @@ class MemoryControl(QObject):
     lives
         The sensors send again what they measure, as was asked.
     done
-        No further walk is required.
+        No further walk is to follow.
     """
 
     changed = Signal()
@@ -65,7 +65,7 @@ class MemoryControl(QObject):
 
     @property
     def shown(self) -> ProgressShown | None:
-        """What is in the place of the curves; None: they do."""
+        """What is shown in the place of the curves; None: they are."""
         sensors, recordings = self._visit.sensors, self._visit.recordings
         if self.is_synchronising:
             return progress_of(sensors.sync, sensors.acquisition.sensors if sensors.acquisition is not None else ())

@@ -40,7 +40,7 @@ from core.timed.protocols import TimedProtocol
 
 MARGIN, BETWEEN = 24, 12
 MARGIN_COMPACT, BETWEEN_COMPACT = 8, 8
-NOTICE = 64  # reserved above the charts while a walk is recorded, so that nothing jumps when something is to be stated
+NOTICE = 64  # reserved above the charts while a walk is recorded, so that nothing jumps when a message appears
 SIDE_WIDTH, SIDE_WIDTH_WIDE = 244, 320
 FIGURE_WIDE, FIGURE_COMPACT = 72, 36
 NARROW_BELOW = 660  # of the page: a question is above its answers, a word above its figure
@@ -48,7 +48,7 @@ WIDE_FROM = 1400  # of the page
 MOST_WIDTH = 1600
 HIPS_FROM = 680  # of the page
 SECONDS, SECONDS_WIDE = 8.0, 12.0
-DESCRIBED_EVERY_S = 1.0  # who listens is not reported every frame
+DESCRIBED_EVERY_S = 1.0  # screen readers are not notified every frame
 ANY_WIDTH = 16777215  # what Qt calls no limit
 
 
@@ -212,8 +212,7 @@ class WalkingPage(Themed):
         return not self.is_recording and self.next.chooser.choose_digit(digit)
 
     def show_message(self, what: str, then: str = "", *, is_caution: bool = True) -> None:
-        """Say what happened and what to do or what follows; nothing takes it back. No caution: it is as was
-        reported."""
+        """Show what happened and what to do or what follows; nothing takes it back. No caution: it is as was asked."""
         if (what, then) == self._message:
             return
         self._message = what, then

@@ -1,7 +1,7 @@
-"""Joins the patient's screen to a walk: values of the live estimator go to its bar and tone as soon as they are
-reported.
+"""Joins the patient's screen to a walk: values of the live estimator go to its bar and tone as soon as they
+are given.
 
-A value does not wait for the next of the thirty looks a second at the estimator: its thread states that there is one,
+A value does not wait for the next of the thirty looks a second at the estimator: its thread signals it,
 and the screen's thread takes it. What was reached is counted while a walk is recorded, for each target that was set.
 """
 

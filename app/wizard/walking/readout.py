@@ -62,10 +62,10 @@ class WalkingReadout:
     implausible
         Knees and ankles whose angle left what a joint can do within the last seconds, so that they are not in `joints`.
     stride_values, values_reported
-        The values of the last strides in the order of telling, for a target; and how many there were of them so far,
+        The values of the last strides in the order reported, for a target; and how many there were of them so far,
         those that are no longer among them included.
     test
-        How the timed test is that the walk is; None of other walks.
+        The state of the timed test that the walk is; None of other walks.
     """
 
     now_s: float = math.nan
@@ -95,8 +95,7 @@ class WalkingReadout:
         return {joint.side: trace for joint, trace in self.joints.items() if joint.is_hip}
 
     def while_silent(self, now_s: float, sites: Collection[Site]) -> "WalkingReadout":
-        """The same at `now_s` while no sensor is received: time goes on, what came last ends there, nothing is made
-        up."""
+        """The same at `now_s` while nothing is received: time goes on, what came last ends there, none is made up."""
         if math.isnan(self.now_s) or now_s <= self.now_s:
             return self
         lanes = {side: _silent_since(lane, self.now_s) for side, lane in self.lanes.items()}

@@ -319,7 +319,7 @@ class WalkingStep(Step):
             self.offered.emit(tr("{walk} excluded.").format(walk=called))
         self._show()
 
-    # what is to be stated
+    # what is to be shown
 
     @property
     def _are_sensors(self) -> tuple[bool, bool, bool]:
@@ -422,7 +422,7 @@ class WalkingStep(Step):
 
     @Slot()
     def _on_troubled(self) -> None:
-        self._notice.is_troubled = True  # the words change with what the counters report
+        self._notice.is_troubled = True  # the words change with what the counters give
 
     @Slot(str)
     def _on_label_chosen(self, label: str) -> None:
@@ -432,7 +432,7 @@ class WalkingStep(Step):
 
     @Slot()
     def _on_change_reported(self) -> None:
-        """Show what was given of the next change, without drawing anything else again."""
+        """Show what was entered for the next change, without drawing anything else again."""
         self.page.bench.show_entry(self.bench.next_title)
         self.changed.emit()
 

@@ -17,7 +17,7 @@ DOWN = (Qt.Key.Key_Minus, Qt.Key.Key_Underscore, Qt.Key.Key_Down, Qt.Key.Key_Lef
 
 
 class Stepper(QWidget):
-    """`stepped` states in which direction, 1 or -1; who listens states what is shown then."""
+    """`stepped` gives the direction, 1 or -1; whoever receives it sets what is shown then."""
 
     accessible_role = QAccessible.Role.SpinBox
 

@@ -57,7 +57,7 @@ class TimedControl(QObject):
 
     @property
     def planned(self) -> PlannedTest | None:
-        """What the next walk is, as its recording states it."""
+        """What the next walk is, as its recording names it."""
         return None if self.protocol is None else PlannedTest(self.protocol)
 
     @property
@@ -66,7 +66,7 @@ class TimedControl(QObject):
 
     @property
     def readout(self) -> LiveReadout | None:
-        """How the test that is recorded is; None where none is."""
+        """The state of the test that is recorded; None where none is."""
         return None if self._live is None else self._live.state
 
     @property
@@ -109,7 +109,7 @@ class TimedControl(QObject):
             estimator.test = self._live
 
     def press(self) -> bool:
-        """Take a key; whether the test required it. One that it does not want stops the recording."""
+        """Take a key; return whether the test has a use for it. A key for which it has none stops the recording."""
         live = self._live
         if live is None or not self._visit.recordings.has_begun or math.isfinite(self._pressed_end_s):
             return False
@@ -124,7 +124,7 @@ class TimedControl(QObject):
         return True
 
     def tick(self) -> bool:
-        """Let start and end be received; whether the test is over and its run-out too."""
+        """Play the sounds of start and end; return whether the test is over and its run-out too."""
         live = self._live
         if live is None:
             return False
@@ -142,7 +142,7 @@ class TimedControl(QObject):
 
     @property
     def end_s(self) -> float:
-        """When the clock stopped; NaN while it runs. A set time passes whether or not a sensor is received."""
+        """When the clock stopped; NaN while it runs. A set time passes whether or not a sensor sends samples."""
         live = self._live
         if live is None:
             return math.nan
@@ -153,7 +153,7 @@ class TimedControl(QObject):
         return due_s if self.now_s >= due_s else math.nan
 
     def end(self) -> bool:
-        """The recording has ended; whether it was received that the test was over."""
+        """The recording has ended; return whether the sound of the test's end was played."""
         self._live = None
         self.watch(self._estimator)
         return self._is_over

@@ -72,7 +72,7 @@ def status_words(state: TimedViewState) -> str:
 
 
 def distance_words(state: TimedViewState) -> tuple[str, str]:
-    """The distance and, where it cannot be reported, why."""
+    """The distance and, where it is not known, why."""
     found = state.readout
     if not found.has_begun:
         return figure_text(0.0, ".1f"), ""
@@ -129,7 +129,7 @@ class TimedView(Themed):
         self._say(state, metres, why)
 
     def _say(self, state: TimedViewState, metres: str, why: str) -> None:
-        """Report who listens, once a second and with the last figure."""
+        """Notify screen readers, once a second and with the last figure."""
         elapsed_s = state.elapsed_s
         whole = time_text(elapsed_s) if math.isfinite(state.end_s) else str(int(elapsed_s))
         if not math.isfinite(state.end_s) or elapsed_s < LONG_S:

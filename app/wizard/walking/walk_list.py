@@ -33,7 +33,7 @@ from app.wording.translation import tr, tr_n
 BADGE = 28
 ROW, BETWEEN = 56, 4
 LEAST_WIDTH = 180
-LEAST_ROWS = 1.5  # in sight: half a row states that there are more
+LEAST_ROWS = 1.5  # in sight: half a row shows that there are more
 
 
 class WalkState(StrEnum):

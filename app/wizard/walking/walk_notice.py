@@ -1,4 +1,4 @@
-"""What is stated above the walks: of silent sensors, of the journal, of straps that slip, of too few strides."""
+"""The messages above the walks: of silent sensors, of the journal, of straps that slip, of too few strides."""
 
 from typing import TYPE_CHECKING
 
@@ -42,7 +42,7 @@ class WalkNotice:
         return tuple(self._losses.update(silent_s, sensors.acquisition.now_s))
 
     def message(self, view: "WalkingReadout | None") -> Message:
-        """What is to be stated now; `view`: what the walk that goes on has reported last."""
+        """The message to be shown now; `view`: what the walk that goes on gave last."""
         recordings, sensors = self._visit.recordings, self._visit.sensors
         now_s = sensors.acquisition.now_s if sensors.acquisition is not None else 0.0
         lost = self._losses.message(recordings.has_begun, [*sensors.joints, *sensors.hips], now_s)

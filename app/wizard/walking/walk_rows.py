@@ -1,4 +1,4 @@
-"""The walks of a session as the list on the page shows them, and what is stated about the one that is asked about."""
+"""The walks of a session as the list on the page shows them, and what is shown about the one that is asked about."""
 
 import math
 from typing import TYPE_CHECKING

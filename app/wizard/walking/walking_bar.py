@@ -1,4 +1,4 @@
-"""What can be done on the Walking step, as the bar below it states: while a walk is recorded, and between two walks."""
+"""What can be done on the Walking step, as the bar below it shows: while a walk is recorded, and between two walks."""
 
 import math
 from collections.abc import Iterator

@@ -1,1 +1,1 @@
-"""What an optical system states of the same walk: joint angles, events and strides, read from its files."""
+"""What an optical system gives for the same walk: joint angles, events and strides, read from its files."""

@@ -1,4 +1,4 @@
-"""What the limited process states of a reference file, and how it is checked before anything is made of it."""
+"""What the limited process finds in a reference file, and how it is checked before anything is made of it."""
 
 from collections.abc import Sequence
 

@@ -82,7 +82,7 @@ def read_c3d(path: Path) -> ReferenceFile:
 
 
 def _refuse_cut(path: Path) -> None:
-    """Refuse a file shorter than its own header states: the library reads beyond its end for ever.
+    """Refuse a file shorter than its own header requires: the library reads beyond its end for ever.
 
     Of the other two processors that the format knows, whose numbers stand otherwise, the deadline alone is the guard.
     """
@@ -116,7 +116,7 @@ def _labels(group: Mapping[str, Any]) -> list[str]:
 
 
 def _seen(point: FloatArray, residual: FloatArray) -> FloatArray:
-    """(n, 3) of a point (3, n); NaN where it was not seen, which some programs report by three zeros alone."""
+    """(n, 3) of a point (3, n); NaN where it was not seen, which some programs mark by three zeros alone."""
     is_seen = (residual >= 0) & np.any(point != 0, axis=0)
     return np.where(is_seen, point, np.nan).T
 

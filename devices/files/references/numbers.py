@@ -70,7 +70,7 @@ def numbers_below(
 
 
 def check_ascending(time_s: FloatArray, where: str) -> None:
-    """Refuse a clock that is still or steps back.
+    """Refuse a clock that stops or steps back.
 
     Parameters
     ----------

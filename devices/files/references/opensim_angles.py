@@ -37,7 +37,7 @@ def read_opensim(path: Path) -> ReferenceFile:
     Raises
     ------
     FileRefusedError
-        None of them, no time, or a table that is not what it states it is.
+        None of them, no time, or a table that is not what it claims to be.
     """
     lines = lines_of(path)
     end = next((k for k, line in enumerate(lines) if line.strip().lower() == END), None)

@@ -39,7 +39,7 @@ def read_plain_csv(path: Path) -> ReferenceFile:
     Raises
     ------
     FileRefusedError
-        None of them, or a table that is not what it states it is.
+        None of them, or a table that is not what it claims to be.
     """
     _, names = header_of(path, path.name, comment=COMMENT, delimiters=DELIMITERS)
     joints = {joint: name for joint in Joint for name in (str(joint), f"{joint}_deg") if name in names}
@@ -103,7 +103,7 @@ def _table(path: Path, numeric: list[str] | tuple[str, ...]) -> Table:
 
 
 def _trials(table: Table) -> list[tuple[str, NDArray[np.intp]]]:
-    """Names of the trials, in their order, and their rows; one without a name where no column reports."""
+    """Names of the trials, in their order, and their rows; one without a name where no column names them."""
     if RECORDING not in table.texts:
         return [("", np.arange(table.rows))]
     names = np.array([str(name).strip() for name in table.texts[RECORDING]])

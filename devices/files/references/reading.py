@@ -1,4 +1,4 @@
-"""The kinds of reference files, each reported by what is in it, never by its name."""
+"""The kinds of reference files, each recognised by what is in it, never by its name."""
 
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
@@ -37,7 +37,7 @@ def read_reference(path: Path) -> ReferenceFile:
     Raises
     ------
     FileRefusedError
-        It is none of them, or not what it states it is.
+        It is none of them, or not what it claims to be.
     OSError
         It cannot be read.
     """

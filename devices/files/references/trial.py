@@ -19,7 +19,7 @@ class ReferenceTrial:
     Attributes
     ----------
     name
-        A recording's, where the file reports one.
+        A recording's, where the file gives one.
     angles : joint -> (time_s (n,), angle_rad (n,))
         NaN in gaps; either sign, any zero.
     events : side -> event of EVENTS -> (k,)

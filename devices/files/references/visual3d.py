@@ -38,7 +38,7 @@ def read_visual3d(path: Path) -> ReferenceFile:
     Raises
     ------
     FileRefusedError
-        No angle of them, no TIME, or a table that is not what it states it is.
+        No angle of them, no TIME, or a table that is not what it claims to be.
     """
     lines = lines_of(path)
     header = [[cell.strip() for cell in line.split("\t")] for line in lines[:HEADER_LINES]]

@@ -1,4 +1,4 @@
-"""What the wizard is reported and no session folder has: feet without an ankle, who cannot stand, who judged what."""
+"""What the wizard asks for and no session folder has: feet without an ankle, who cannot stand, who judged what."""
 
 import sqlalchemy as sa
 from alembic import op

@@ -1,4 +1,4 @@
-"""In which order corrections were made, whatever the clock stated; and which walks wait to be kept or discarded."""
+"""In which order corrections were made, whatever the clock showed; and which walks wait to be kept or discarded."""
 
 import sqlalchemy as sa
 from alembic import op
