@@ -1,4 +1,4 @@
-"""Findings: what was noticed about the data, as data; `app.wording.translation` turns them into sentences."""
+"""Findings: what was noticed about the data, as data; `app.wording.findings` turns them into sentences."""
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field

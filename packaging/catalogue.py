@@ -88,12 +88,12 @@ def gathered() -> Catalog:
     for file in sorted((ROOT / "devices").rglob("*.py")):
         for message in (stated for _, both in refused(file) for stated in both):
             catalogue.add(message, locations=[(file.relative_to(ROOT).as_posix(), 0)])
-    from app.wording.translation import NAMES, SENTENCES
+    from app.wording.findings import NAMES, SENTENCES
     from devices.catalogue import DRIVERS
 
     words = [word for names in NAMES.values() for word in names.values()]
     for message in (*SENTENCES.values(), *words):
-        catalogue.add(message, locations=[("app/wording/translation.py", 0)])
+        catalogue.add(message, locations=[("app/wording/findings.py", 0)])
     for driver in DRIVERS:
         catalogue.add(driver.name, locations=[("devices/catalogue.py", 0)])
     return catalogue

@@ -256,7 +256,7 @@ def sentences_of_screen() -> dict[str, str]:
     """Give every sentence of the screen as the code has it; a finding's by its key, too."""
     if str(ROOT) not in sys.path:
         sys.path.insert(0, str(ROOT))  # a script sees its own folder only
-    from app.wording.translation import SENTENCES
+    from app.wording.findings import SENTENCES
 
     template = TEMPLATE.read_text(encoding="utf-8")  # which tests/app/test_translation.py keeps current
     every: list[str] = [ast.literal_eval(f"({quoted})") for quoted in MESSAGE.findall(template)]

@@ -4,8 +4,9 @@ from collections.abc import Iterable
 
 import numpy as np
 
+from app.wording.body import name_of
 from app.wording.numbers import MINUS
-from app.wording.translation import capitalised, figure_text, later, name_of, tr
+from app.wording.translation import capitalised, figure_text, later, tr
 from core.body import JointKind, Side
 from core.samples import FloatArray
 

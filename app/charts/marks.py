@@ -6,7 +6,8 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from app.charts.cycles import Band
-from app.wording.translation import capitalised, name_of, tr
+from app.wording.body import name_of
+from app.wording.translation import capitalised, tr
 from core.body import Joint, JointKind
 from core.samples import FloatArray
 

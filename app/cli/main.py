@@ -358,7 +358,7 @@ def _choices(args: argparse.Namespace) -> "AnalysisChoices":
 
 def _show_message(analysis: "Analysis", out: Path) -> None:
     """Say where the results are and what needs a look."""
-    from app.wording.translation import name_of
+    from app.wording.body import name_of
 
     joints = [joint for span in analysis.calibrations for joint in span.joints]
     names = ", ".join(name_of(joint) for joint in dict.fromkeys(joints)) or "no joint"

@@ -40,7 +40,7 @@ class Progress:
     def __call__(self, share: float, what: str) -> None:
         if self._is_interrupted:
             raise KeyboardInterrupt
-        from app.wording.translation import place
+        from app.wording.findings import place
         from devices.files.refusal import one_line
 
         percent = min(100, round(100 * share))
@@ -54,7 +54,7 @@ class Progress:
 
 def finding_lines(findings: "Sequence[Finding]", lowest: str) -> Iterator[str]:
     """Give those that are at least as grave as `lowest`, each in a line."""
-    from app.wording.translation import sentence
+    from app.wording.findings import sentence
     from core.findings import Severity
     from devices.files.refusal import one_line
 

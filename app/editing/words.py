@@ -9,11 +9,12 @@ import numpy as np
 from app.storage.edited_fields import ALIGNMENT, GOALS, KEPT, PLACEMENT, TEST
 from app.storage.three_way import OtherChange, Value
 from app.wording.alignment import since_in_words
+from app.wording.body import name_of, side_name
 from app.wording.measures import goal_in_words, measure_name, whose_name
 from app.wording.numbers import MINUS
 from app.wording.patients import when
 from app.wording.timed_tests import planned_words
-from app.wording.translation import capitalised, figure_text, name_of, short_figure, side_name, tr, tr_n
+from app.wording.translation import capitalised, figure_text, short_figure, tr, tr_n
 from core.alignment import alignment_of_text
 from core.body import Joint, Side, Site
 from core.goals import GoalOf, goals_of_text, held

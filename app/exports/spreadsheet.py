@@ -26,7 +26,8 @@ from app.summary.condition_figures import condition_figures
 from app.summary.conditions import conditions_of
 from app.summary.status import NOT_REPORTED, all_that_is_stated, why
 from app.wording.alignment import since_in_words
-from app.wording.translation import PURPOSE, sentence
+from app.wording.findings import sentence
+from app.wording.translation import PURPOSE
 from core.body import Side, hip_of
 from core.results import Analysis, RecordingAnalysis
 from core.samples import Session

@@ -17,7 +17,7 @@ from app.summary.comparison import compare_legs, first_and_second
 from app.summary.condition_figures import summarise_conditions
 from app.summary.conditions import Part
 from app.summary.reference_bands import reference_curves
-from app.wording.translation import sentence
+from app.wording.findings import sentence
 from app.wording.verdicts import gate_sentence
 from core.alignment import alignment_table
 from core.body import Joint, Side, hip_of

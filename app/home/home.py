@@ -34,7 +34,8 @@ from app.widgets.start_pages import WorkingPage
 from app.widgets.step_rail import StepRail, home_below
 from app.widgets.themed import Themed
 from app.widgets.toast import Toast
-from app.wording.translation import place, tr
+from app.wording.findings import place
+from app.wording.translation import tr
 from app.workers.library_controller import LibraryController
 from app.workers.library_state import OpenedState
 

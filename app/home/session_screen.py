@@ -29,7 +29,9 @@ from app.widgets.page_stack import PageStack
 from app.widgets.start_pages import EmptyPage, WorkingPage
 from app.widgets.text import Text
 from app.widgets.themed import Themed
-from app.wording.translation import PURPOSE, filled, later, place, side_name, tr
+from app.wording.body import side_name
+from app.wording.findings import place
+from app.wording.translation import PURPOSE, filled, later, tr
 from app.workers.background import Background, Work
 from app.workers.opening import opening_demonstration, opening_folder
 from core.body import Side

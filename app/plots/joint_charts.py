@@ -25,8 +25,9 @@ from app.widgets.chip import SideKey
 from app.widgets.icons import IconMark
 from app.widgets.text import MEDIUM, SEMIBOLD, Text
 from app.widgets.themed import Themed
+from app.wording.body import name_of
 from app.wording.numbers import MINUS
-from app.wording.translation import figure_text, later, name_of, tr
+from app.wording.translation import figure_text, later, tr
 from core.body import Joint, JointKind, Side
 from core.results import SideGait
 from core.samples import FloatArray, IntArray

@@ -18,7 +18,8 @@ from app.widgets.limb import limb_outline
 from app.widgets.segmented import Segmented
 from app.widgets.text import MEDIUM, SEMIBOLD, Text
 from app.widgets.themed import Themed
-from app.wording.translation import later, side_name, tr
+from app.wording.body import side_name
+from app.wording.translation import later, tr
 from core.body import Side
 
 LEAST_SIZE = (300, 136)

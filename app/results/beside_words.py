@@ -22,7 +22,8 @@ from app.widgets.fact_strip import KeyFigure
 from app.widgets.table import TableColumn, TableRow
 from app.widgets.table_cells import CENTRE, EMPTY, RIGHT, ErrorStrip, TableCell, TextCell
 from app.widgets.text import REGULAR, SEMIBOLD
-from app.wording.translation import side_name, tr
+from app.wording.body import side_name
+from app.wording.translation import tr
 from core.verdicts.measurement_error import Judgement
 
 LONGEST_TITLE, LONGEST_HEAD = 28, 20  # letters of a walk's name, over the measures and over its figures

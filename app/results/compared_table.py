@@ -17,8 +17,9 @@ from app.widgets.table import TableColumn, TableRow
 from app.widgets.table_cells import EMPTY, RIGHT, TextCell
 from app.widgets.text import REGULAR, SEMIBOLD
 from app.widgets.trend_cell import TrendCell
+from app.wording.body import side_name
 from app.wording.numbers import MINUS
-from app.wording.translation import figure_text, side_name, tr
+from app.wording.translation import figure_text, tr
 from app.wording.verdicts import verdict_word
 from core.body import Side
 from core.gait.spatiotemporal import MeanAndSd

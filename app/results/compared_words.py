@@ -9,10 +9,11 @@ from app.summary.measure_sentences import Reported, change_sentence, legs_senten
 from app.summary.measures import Measure
 from app.summary.numbers_in_words import DAGGER, NOTHING, fixed, signed
 from app.summary.walk_figures import reason_in_words
+from app.wording.body import side_name
 from app.wording.dates import day_in_words
 from app.wording.measures import name_in_sentence
 from app.wording.recordings import name_in_words
-from app.wording.translation import later, side_name, tr
+from app.wording.translation import later, tr
 from app.wording.verdicts import verdict_word
 from core.body import Joint, Side
 from core.verdicts.measurement_error import Difference, Judgement

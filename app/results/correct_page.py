@@ -15,7 +15,8 @@ from app.widgets.field import Field
 from app.widgets.text import SEMIBOLD, Text
 from app.widgets.themed import Themed
 from app.widgets.toggle import Toggle
-from app.wording.translation import capitalised, name_of, tr
+from app.wording.body import name_of
+from app.wording.translation import capitalised, tr
 from core.body import Joint
 
 

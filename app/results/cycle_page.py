@@ -25,7 +25,8 @@ from app.widgets.card import Card
 from app.widgets.figures_table import CARE_MARK, figure_columns, figure_rows
 from app.widgets.table import CellTable
 from app.widgets.text import MEDIUM, SEMIBOLD, Text
-from app.wording.translation import capitalised, joined, later, name_of, side_name, tr
+from app.wording.body import name_of, side_name
+from app.wording.translation import capitalised, joined, later, tr
 from core.body import Joint, Side
 from core.gait.cycles import POINTS
 from core.results import RecordingAnalysis

@@ -17,7 +17,8 @@ from app.widgets.figures_table import CARE_MARK
 from app.widgets.table import CellTable, TableColumn, TableRow
 from app.widgets.table_cells import CENTRE, RIGHT, ErrorStrip, TableCell, TextCell
 from app.widgets.text import REGULAR, SEMIBOLD
-from app.wording.translation import side_name, tr
+from app.wording.body import side_name
+from app.wording.translation import tr
 from core.body import Side
 from core.verdicts.measurement_error import Judgement
 from core.verdicts.model import Verdict

@@ -36,8 +36,9 @@ from app.widgets.segmented import Segmented
 from app.widgets.sentence_page import SentencePage
 from app.widgets.text import MEDIUM, SEMIBOLD, Text
 from app.widgets.themed import Themed
-from app.wording.body import segment_name
-from app.wording.translation import capitalised, figure_text, joined, name_of, sentence, tr
+from app.wording.body import name_of, segment_name
+from app.wording.findings import sentence
+from app.wording.translation import capitalised, figure_text, joined, tr
 from core.body import Joint, Side
 from core.findings import Finding
 from core.results import Method

@@ -23,7 +23,8 @@ from app.widgets.table import CellTable
 from app.widgets.text import SEMIBOLD, Text
 from app.widgets.themed import Themed
 from app.widgets.toggle import Toggle
-from app.wording.translation import name_of, tr
+from app.wording.body import name_of
+from app.wording.translation import tr
 from app.wording.verdicts import verdict_alone, verdict_word
 from core.body import Joint, Side, Site
 from core.findings import Finding

@@ -13,7 +13,8 @@ from app.widgets.button import Button, ButtonKind
 from app.widgets.card import Card
 from app.widgets.stride_list import StrideLine, StrideList
 from app.widgets.text import SEMIBOLD, Text
-from app.wording.translation import NAMES, tr
+from app.wording.findings import NAMES
+from app.wording.translation import tr
 from core.body import Joint, JointKind, Side
 from core.gait.strides import Reason
 from core.results import RecordingAnalysis

@@ -7,7 +7,8 @@ from app.summary.facts import Facts
 from app.summary.request import AnalysedVisit
 from app.summary.status import WITH_HEIGHT, joint_status, why
 from app.summary.walk_figures import MAY_BE_MIRRORED, doubt_in, reason_in_words, verdict_of
-from app.wording.translation import capitalised, later, name_of, side_name, tr
+from app.wording.body import name_of, side_name
+from app.wording.translation import capitalised, later, tr
 from app.wording.verdicts import verdict_word
 from core.body import Joint, Side
 from core.results import Analysis, RecordingAnalysis

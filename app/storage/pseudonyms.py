@@ -21,7 +21,7 @@ from string import Formatter
 from uuid import UUID
 
 from app.storage.unit_of_work import DEMO
-from app.wording.translation import SENTENCES
+from app.wording.findings import SENTENCES
 from core.alignment import FIGURES, AlignmentChange, PartChange
 from core.body import Site
 from core.findings import Finding, Severity

@@ -18,8 +18,9 @@ from app.charts.stride_chart import StrideCurve
 from app.summary.alignments import alignments_of
 from app.summary.measures import Measure
 from app.summary.pooled_walks import Pool, pool_letters, pools_of
+from app.wording.body import side_name
 from app.wording.recordings import LETTERS
-from app.wording.translation import side_name, tr
+from app.wording.translation import tr
 from core.alignment import AlignmentChange
 from core.body import Joint, Side
 from core.gait.chosen_strides import left_out_by_hand

@@ -11,9 +11,10 @@ from app.summary.goals import GoalFigure, beyond_in_words, in_course, standing_i
 from app.summary.goals import value_in_words as value_in_words_of_goal
 from app.summary.numbers_in_words import DAGGER, dagger_note, fixed, signed
 from app.summary.visits import condition_in_words
+from app.wording.body import name_of, side_name
 from app.wording.dates import day_in_words, short_date
 from app.wording.measures import decimals, goal_in_words, short_unit, spoken_name, spoken_value
-from app.wording.translation import capitalised, joined, name_of, side_name, tr, tr_n
+from app.wording.translation import capitalised, joined, tr, tr_n
 from core.body import Joint
 from core.verdicts.measurement_error import Difference, ErrorSource, Judgement
 

@@ -6,8 +6,10 @@ from app.summary import quality
 from app.summary.facts import Facts
 from app.summary.quality import Cause
 from app.summary.request import AnalysedVisit
+from app.wording.body import name_of, side_name
+from app.wording.findings import place, sentence
 from app.wording.recordings import with_shown_names
-from app.wording.translation import capitalised, joined, later, name_of, place, sentence, side_name, tr
+from app.wording.translation import capitalised, joined, later, tr
 from core.body import Joint, Side
 from core.findings import Finding, Severity
 from core.gait.clocks import ClockTie

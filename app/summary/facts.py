@@ -17,7 +17,8 @@ from app.summary.numbers_in_words import Band
 from app.summary.reference_bands import age_and_height, bands_of, sides_with_band
 from app.summary.request import AnalysedVisit
 from app.summary.walk_figures import Figure, band_of_peak, peak_place, side_cycle, time_distance_figures
-from app.wording.translation import side_name, tr
+from app.wording.body import side_name
+from app.wording.translation import tr
 from core.body import Joint, JointKind, Side
 from core.gait.cycles import POINTS
 from core.gait.spatiotemporal import MeanAndSd, mean_and_sd

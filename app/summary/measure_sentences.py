@@ -5,8 +5,9 @@ from typing import NamedTuple
 
 from app.summary.facts import Facts, role
 from app.summary.numbers_in_words import fixed, signed
+from app.wording.body import name_of, side_name
 from app.wording.measures import decimals, name_in_sentence, short_unit, unit_symbol
-from app.wording.translation import capitalised, later, name_of, side_name, tr
+from app.wording.translation import capitalised, later, tr
 from core import parameters
 from core.body import Joint, JointKind, Side
 from core.parameters import Unit, unit_of

@@ -17,7 +17,8 @@ from app.summary.facts import KINDS, Facts, joint_of
 from app.summary.numbers_in_words import fixed
 from app.summary.reference_bands import OTHER_AGES, WHY_NO_BAND
 from app.theme.colours import PAPER
-from app.wording.translation import capitalised, joined, name_of, side_name, tr, within_sentence
+from app.wording.body import name_of, side_name
+from app.wording.translation import capitalised, joined, tr, within_sentence
 from core.body import Joint, JointKind, Side
 from core.verdicts.model import Verdict
 from core.verdicts.norms import NoBand

@@ -10,7 +10,9 @@ from dataclasses import dataclass
 
 from app.summary.facts import Facts
 from app.summary.numbers_in_words import NOTHING, fixed
-from app.wording.translation import NAMES, capitalised, joined, name_of, side_name, tr, tr_n, within_sentence
+from app.wording.body import name_of, side_name
+from app.wording.findings import NAMES
+from app.wording.translation import capitalised, joined, tr, tr_n, within_sentence
 from app.wording.verdicts import GateWords, gate_words
 from core.body import Joint, Side, Site, hip_of
 from core.findings import Finding

@@ -13,7 +13,9 @@ import numpy as np
 
 from app.charts.cycles import SideCycle, is_mean_enough, is_spread_enough
 from app.summary.conditions import Part
-from app.wording.translation import NAMES, capitalised, joined, later, side_name, tr, tr_n
+from app.wording.body import side_name
+from app.wording.findings import NAMES
+from app.wording.translation import capitalised, joined, later, tr, tr_n
 from app.wording.verdicts import GateWords, gate_words
 from core.body import Joint, JointKind, Side
 from core.gait.cycles import find_peak, mean_cycle

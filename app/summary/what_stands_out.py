@@ -22,9 +22,10 @@ from app.summary.numbers_in_words import band_in_figures, fixed, signed
 from app.summary.panels import HEIGHTS, peak_name
 from app.summary.plain_text import CONDITION_LENGTH, typed
 from app.summary.trend_lines import TrendLine, trend_columns, trend_lines, walked_visits
+from app.wording.body import name_of
 from app.wording.dates import date
 from app.wording.measures import name_in_sentence
-from app.wording.translation import capitalised, later, name_of, tr
+from app.wording.translation import capitalised, later, tr
 from core.body import Joint, Side
 from core.parameters import (
     ANKLE_RANGE,

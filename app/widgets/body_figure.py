@@ -14,7 +14,8 @@ from app.theme.notifier import ThemeNotifier
 from app.theme.theme import Theme
 from app.widgets.body_shapes import BARE_LEGS, LEGS, WHOLE, body_shapes
 from app.widgets.text import SEMIBOLD
-from app.wording.translation import name_of, tr
+from app.wording.body import name_of
+from app.wording.translation import tr
 from core.body import LEG_JOINTS, LEG_SITES, Joint, Side, Site
 
 MIDDLE = WHOLE.center().x()

@@ -10,9 +10,9 @@ from app.theme.icons import Icon
 from app.widgets.table import TableColumn, TableRow
 from app.widgets.table_cells import RIGHT, TextCell
 from app.widgets.text import MEDIUM, REGULAR, SEMIBOLD
-from app.wording.body import joint_name
+from app.wording.body import joint_name, name_of
 from app.wording.numbers import MINUS
-from app.wording.translation import figure_text, later, name_of, tr
+from app.wording.translation import figure_text, later, tr
 from core.body import Joint
 from core.hip.results import HipAngle, HipIdentification
 from core.results import AxisSource, JointCalibration, ZeroKind

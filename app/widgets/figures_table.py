@@ -8,8 +8,9 @@ from app.summary.walk_figures import Figure
 from app.widgets.table import TableColumn, TableRow
 from app.widgets.table_cells import CENTRE, EMPTY, RIGHT, TextCell
 from app.widgets.text import SEMIBOLD
+from app.wording.body import side_name
 from app.wording.numbers import MINUS
-from app.wording.translation import capitalised, figure_text, later, side_name, tr, tr_n, within_sentence
+from app.wording.translation import capitalised, figure_text, later, tr, tr_n, within_sentence
 from app.wording.verdicts import verdict_word
 from core.body import Side
 from core.gait.spatiotemporal import MeanAndSd

@@ -10,7 +10,8 @@ from app.theme.icons import SEVERITY_ICONS, Icon
 from app.theme.notifier import ThemeNotifier
 from app.widgets.icons import IconMark
 from app.widgets.text import SEMIBOLD, Text
-from app.wording.translation import later, sentence, tr
+from app.wording.findings import sentence
+from app.wording.translation import later, tr
 from core.findings import Finding, Severity
 
 ORDER = (Severity.GRAVE, Severity.WARNING, Severity.INFO)

@@ -16,8 +16,8 @@ from app.theme.notifier import ThemeNotifier
 from app.theme.theme import CARD_RADIUS
 from app.widgets.chip import paint_chip
 from app.widgets.text import MEDIUM, REGULAR, SEMIBOLD
-from app.wording.body import joint_name
-from app.wording.translation import capitalised, figure_text, name_of, tr
+from app.wording.body import joint_name, name_of
+from app.wording.translation import capitalised, figure_text, tr
 from core.body import Joint, Side
 from core.calibration.certainty import AXIS_FLOOR_HUMAN_RAD
 from core.live.excitation import ExcitationState, Required

@@ -17,8 +17,8 @@ from app.widgets.chip import paint_chip
 from app.widgets.gauge import DASH, DASHES, UNKNOWN, GaugeMeasure, gauge_measure
 from app.widgets.painted_text import RIGHT, PaintedText, height_for
 from app.widgets.text import MEDIUM, SEMIBOLD
-from app.wording.body import joint_name
-from app.wording.translation import capitalised, name_of, tr
+from app.wording.body import joint_name, name_of
+from app.wording.translation import capitalised, tr
 from core.body import Joint, Side
 from core.hip.measure import MAX_3D_SD_RAD
 from core.live.hip_heading import HipHeadingState

@@ -6,7 +6,8 @@ from enum import Enum, auto
 
 from app.widgets.battery import LOW
 from app.widgets.body_figure import SensorMark
-from app.wording.translation import capitalised, name_of, tr
+from app.wording.body import name_of
+from app.wording.translation import capitalised, tr
 from core.body import Site
 from devices.quiet import Quiet
 

@@ -15,7 +15,8 @@ from app.widgets.chip import CHIP, paint_chip
 from app.widgets.table import CellTable, TableColumn, TableRow
 from app.widgets.table_cells import EMPTY, LEFT, RIGHT, TableCell, TextCell
 from app.widgets.text import MEDIUM
-from app.wording.translation import capitalised, figure_text, later, side_name, tr
+from app.wording.body import side_name
+from app.wording.translation import capitalised, figure_text, later, tr
 from core.body import JointKind, Side
 from core.samples import FloatArray
 

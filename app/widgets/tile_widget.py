@@ -13,8 +13,8 @@ from app.widgets.chip import CHIP, paint_chip
 from app.widgets.painted_text import PaintedText, height_for
 from app.widgets.sensor_tile import SensorTile, TileState, rate_and_loss
 from app.widgets.text import MEDIUM, SEMIBOLD
-from app.wording.body import segment_name
-from app.wording.translation import capitalised, name_of, tr
+from app.wording.body import name_of, segment_name
+from app.wording.translation import capitalised, tr
 from core.body import Site
 
 PADDING = 10

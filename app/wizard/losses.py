@@ -6,7 +6,8 @@ The words are shown while a walk goes on and in between.
 import math
 from collections.abc import Mapping, Sequence
 
-from app.wording.translation import capitalised, name_of, tr, tr_n
+from app.wording.body import name_of
+from app.wording.translation import capitalised, tr, tr_n
 from core.body import Joint, Segment, Side, Site
 
 REPORTED_AFTER_S = 2.0

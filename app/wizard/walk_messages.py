@@ -4,8 +4,9 @@ from collections.abc import Collection, Mapping, Sequence
 from typing import TYPE_CHECKING
 
 from app.wizard.losses import NOTHING, Message
+from app.wording.body import name_of
 from app.wording.numbers import clock
-from app.wording.translation import capitalised, name_of, tr
+from app.wording.translation import capitalised, tr
 from core.body import Joint, Segment, Side, Site
 from core.calibration.strap import Slip
 from core.live.bias import BiasCorrection

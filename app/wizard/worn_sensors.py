@@ -13,7 +13,8 @@ from app.storage.stored import PlacedSensor
 from app.system.progress import Report
 from app.widgets.sensor_tile import SILENT_FROM_S
 from app.wizard.sensor_sync import SensorSync
-from app.wording.translation import capitalised, filled, joined, later, name_of, tr
+from app.wording.body import name_of
+from app.wording.translation import capitalised, filled, joined, later, tr
 from app.workers.background import Background, Work
 from core.body import LEG_JOINTS, LEG_SITES, Joint, Side, Site, hip_of
 from core.placement.labels import groups_of

@@ -3,8 +3,9 @@
 Each has its name, its unit, and how it is written.
 """
 
+from app.wording.body import side_name
 from app.wording.timed_tests import name_of_test
-from app.wording.translation import figure_text, later, side_name, tr, within_sentence
+from app.wording.translation import figure_text, later, tr, within_sentence
 from core.goals import Goal, GoalOf
 from core.parameters import Unit, unit_of
 from core.timed.measures import PROTOCOLS

@@ -7,8 +7,9 @@ one.
 
 import math
 
+from app.wording.body import name_of
 from app.wording.numbers import clock
-from app.wording.translation import figure_text, joined, later, name_of, tr, tr_n
+from app.wording.translation import figure_text, joined, later, tr, tr_n
 from core.timed.found import NotMeasured, TimedTest
 from core.timed.protocols import DEFINITIONS, KnownError, PlannedTest, TimedProtocol
 

@@ -5,7 +5,8 @@ There is one for each gate of `core.verdicts.gates`.
 
 from typing import NamedTuple
 
-from app.wording.translation import capitalised, figure_text, joined, later, name_of, tr
+from app.wording.body import name_of
+from app.wording.translation import capitalised, figure_text, joined, later, tr
 from core.verdicts.model import GateReason, Verdict
 
 VERDICTS = {

@@ -16,13 +16,12 @@ from babel.messages.pofile import read_po
 from app.results.compared_words import unit_behind
 from app.summary.measures import MEASURES
 from app.summary.numbers_in_words import fixed, signed
+from app.wording.body import name_of
+from app.wording.findings import SENTENCES, sentence
 from app.wording.translation import (
-    SENTENCES,
     capitalised,
     figure_text,
     languages,
-    name_of,
-    sentence,
     spoken_in,
     spoken_language,
     tr,

@@ -10,8 +10,10 @@ from string import Formatter
 
 import pytest
 
+from app.wording.body import name_of
+from app.wording.findings import SENTENCES, sentence
 from app.wording.pseudo_language import lengthened
-from app.wording.translation import SENTENCES, later, name_of, sentence, tr, tr_n, use_language
+from app.wording.translation import later, tr, tr_n, use_language
 from core.body import Joint
 from core.findings import Finding, Severity
 

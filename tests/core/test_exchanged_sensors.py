@@ -8,7 +8,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from app.wording.translation import sentence
+from app.wording.findings import sentence
 from core.analysis import analyse
 from core.body import Joint, Side, Site
 from core.findings import Finding

@@ -11,7 +11,7 @@ import numpy as np
 import pytest
 from scipy.spatial.transform import Rotation
 
-from app.wording.translation import sentence
+from app.wording.findings import sentence
 from core.analysis import analyse
 from core.body import LEG_JOINTS, LEG_SITES, Segment, Side, Site
 from core.findings import Severity

@@ -8,7 +8,7 @@ from types import ModuleType
 import pytest
 from babel.messages.pofile import read_po
 
-from app.wording.translation import SENTENCES
+from app.wording.findings import SENTENCES
 
 PACKAGING = Path(__file__).parents[2] / "packaging"
 

@@ -5,7 +5,8 @@ from collections.abc import Callable, Iterator
 
 from app.reports.agreement.study import AgreementStudy, AngleKind, ComparedWalk
 from app.reports.agreement.tables import events_together, lengths_together
-from app.wording.translation import capitalised, joined, later, name_of, tr
+from app.wording.body import name_of
+from app.wording.translation import capitalised, joined, later, tr
 from core.agreement.figures import Agreement, AgreementOverWalks
 from core.body import Joint, JointKind, Side
 from core.samples import Patient

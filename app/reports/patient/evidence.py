@@ -9,7 +9,8 @@ from app.reports.blocks import Block, Cell, Column, Row, heading, note, table
 from app.summary.facts import Facts, joint_of
 from app.summary.numbers_in_words import DAGGER, NOTHING, dagger_note, fixed, signed, signed_error
 from app.summary.quality import slipped_straps
-from app.wording.translation import capitalised, name_of, side_name, tr
+from app.wording.body import name_of, side_name
+from app.wording.translation import capitalised, tr
 from app.wording.verdicts import verdict_alone
 from core.body import Joint, JointKind, Side, hip_of
 from core.calibration.clinical_sign import MIN_MARGIN

@@ -19,7 +19,8 @@ from app.summary.plain_text import CONDITION_LENGTH, typed
 from app.summary.report_dates import moment
 from app.summary.request import ReportRequest
 from app.summary.what_stands_out import MAX_AWAY_SD, caveat, nothing_found, printed_findings
-from app.wording.translation import capitalised, figure_text, joined, name_of, side_name, tr, tr_n
+from app.wording.body import name_of, side_name
+from app.wording.translation import capitalised, figure_text, joined, tr, tr_n
 from app.wording.verdicts import verdict_alone
 from core.body import Joint, JointKind, Side
 from core.parameters import KNEE

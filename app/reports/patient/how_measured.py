@@ -13,7 +13,8 @@ from collections import Counter
 from app.summary.facts import Facts
 from app.summary.numbers_in_words import fixed, signed_error
 from app.summary.plain_text import breakable, isolated, plain, shortened
-from app.wording.translation import WHOLE_SESSION, joined, tr
+from app.wording.findings import WHOLE_SESSION
+from app.wording.translation import joined, tr
 from core.body import JointKind, Segment, Side, Site
 from core.calibration.certainty import AXIS_FLOOR_HUMAN_RAD, AXIS_FLOOR_WALKING_RAD
 from core.findings import Finding

@@ -6,7 +6,7 @@ from app.charts.drawing import COLOURS, MM, Picture, box, line, marker, picture
 from app.summary.numbers_in_words import fixed
 from app.summary.what_differs import LegsRow
 from app.theme.colours import PAPER
-from app.wording.translation import side_name
+from app.wording.body import side_name
 from core.body import Side
 
 STRIP_WIDTH, STRIP_HEIGHT = 46 * MM, 8.4 * MM

@@ -14,8 +14,9 @@ from app.summary.numbers_in_words import fixed
 from app.summary.panels import why_no_band
 from app.summary.plain_text import plain, plain_lines
 from app.summary.request import ReportRequest
+from app.wording.findings import sentence
 from app.wording.recordings import with_shown_names
-from app.wording.translation import sentence, tr
+from app.wording.translation import tr
 from core.findings import Finding, Severity
 from core.verdicts.norms import PUBLISHED
 

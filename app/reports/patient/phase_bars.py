@@ -11,7 +11,8 @@ from app.charts.drawing import COLOURS, MM, Picture, badge, box, line, picture, 
 from app.summary.facts import Facts
 from app.summary.numbers_in_words import fixed
 from app.theme.colours import PAPER
-from app.wording.translation import capitalised, side_name, tr
+from app.wording.body import side_name
+from app.wording.translation import capitalised, tr
 from core.body import Side
 
 WIDTH, LEFT_EDGE, BAR, ROW, TOP = 175 * MM, 16.0, 15.0, 23.0, 12.0

@@ -9,7 +9,9 @@ from app.charts.drawing import COLOURS, DASHES, MM, Picture, badge, box, line, m
 from app.summary.facts import Facts, joint_of
 from app.summary.numbers_in_words import fixed
 from app.theme.colours import PAPER
-from app.wording.translation import NAMES, capitalised, side_name, tr
+from app.wording.body import side_name
+from app.wording.findings import NAMES
+from app.wording.translation import capitalised, tr
 from core.body import Side
 from core.gait.strides import Reason
 from core.verdicts.quantities import values_of

@@ -11,8 +11,9 @@ from app.charts.drawing import COLOURS, DASHES, MM, Picture, badge, line, pictur
 from app.summary.numbers_in_words import fixed
 from app.summary.trend_lines import TrendValue
 from app.theme.colours import PAPER
+from app.wording.body import side_name
 from app.wording.dates import short_date
-from app.wording.translation import capitalised, side_name, tr
+from app.wording.translation import capitalised, tr
 from core.body import Side
 
 WIDTH, HEIGHT = 85.5 * MM, 60 * MM

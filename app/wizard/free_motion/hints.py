@@ -7,7 +7,8 @@ from dataclasses import dataclass, replace
 from app.theme.icons import Icon
 from app.widgets.gauge import AXIS_FROM_DEG, CENTRE_FROM_MM, CLOSED, GaugeState, gauge_face, two_digits
 from app.widgets.hint import Hint
-from app.wording.translation import capitalised, name_of, tr, tr_n
+from app.wording.body import name_of
+from app.wording.translation import capitalised, tr, tr_n
 from core.body import Joint, Segment, Side, Site
 from core.live.excitation import HUMAN, PROSTHESIS, ExcitationState, Missing, Movement, Required
 from core.live.free_motion import FreeMotionState

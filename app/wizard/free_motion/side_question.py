@@ -5,7 +5,8 @@ It is asked once; the answer is shown, can be undone, and is held to.
 
 from collections.abc import Mapping
 
-from app.wording.translation import side_name, tr
+from app.wording.body import side_name
+from app.wording.translation import tr
 from core.body import Side
 from core.placement.chains import Chains
 

@@ -13,8 +13,9 @@ from app.widgets.rail_row import StepState
 from app.wizard.patient.cards import LastVisit
 from app.wizard.patient.page import PatientDraft, PatientPage
 from app.wizard.step import Step, StepId
+from app.wording.body import name_of
 from app.wording.dates import date
-from app.wording.translation import name_of, tr
+from app.wording.translation import tr
 from core.body import LEG_JOINTS, Side
 from core.samples import Patient, RecordingKind, Session
 

@@ -27,8 +27,10 @@ from app.wizard.keys import Intent, KeyAction
 from app.wizard.results.stride_choice import StrideChoice
 from app.wizard.resuming import course_to, courses_before
 from app.wizard.step import Step, StepId
+from app.wording.body import name_of
+from app.wording.findings import place
 from app.wording.recordings import shown_names, where_shown
-from app.wording.translation import capitalised, name_of, place, tr
+from app.wording.translation import capitalised, tr
 from core.body import LEG_JOINTS, Joint
 from core.samples import RecordingKind
 

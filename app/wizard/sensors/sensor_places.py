@@ -28,8 +28,8 @@ from app.widgets.painted_text import RIGHT, PaintedText
 from app.widgets.text import MEDIUM, SEMIBOLD
 from app.widgets.themed import Themed
 from app.wizard.sensors.sensor_drag import DRAGGED, DraggedButton, sensor_in
-from app.wording.body import segment_name
-from app.wording.translation import name_of, tr
+from app.wording.body import name_of, segment_name
+from app.wording.translation import tr
 from core.body import LEG_SEGMENTS, Segment, Side, Site
 
 TILE = (112, 50)

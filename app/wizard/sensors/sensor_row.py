@@ -30,8 +30,8 @@ from app.widgets.text import MEDIUM, REGULAR, SEMIBOLD
 from app.wizard.sensors.sensor_drag import DraggedButton
 from app.wizard.sensors.sensor_places import number_of
 from app.wizard.sensors.sensor_trace import Trace
-from app.wording.body import segment_name
-from app.wording.translation import capitalised, figure_text, name_of, tr
+from app.wording.body import name_of, segment_name
+from app.wording.translation import capitalised, figure_text, tr
 from core.body import LEG_SITES, Site
 from devices.quiet import Quiet
 

@@ -4,7 +4,8 @@ from collections.abc import Collection, Mapping, Sequence
 
 from app.theme.icons import Icon
 from app.wizard.sensors.sensor_row import SensorRow
-from app.wording.translation import capitalised, figure_text, name_of, tr
+from app.wording.body import name_of
+from app.wording.translation import capitalised, figure_text, tr
 from core.body import LEG_SITES, Segment, Side, Site
 
 NEARLY_EMPTY = 0.05  # of a battery: minutes

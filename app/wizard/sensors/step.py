@@ -23,7 +23,8 @@ from app.wizard.sensors.stored_replay import StoredReplay
 from app.wizard.sensors.trace_values import TRACE_S, TraceValues
 from app.wizard.step import Step, StepId
 from app.wizard.worn_sensors import SourceChoice
-from app.wording.translation import name_of, tr
+from app.wording.body import name_of
+from app.wording.translation import tr
 from core.body import LEG_JOINTS, LEG_SITES, Site
 
 if TYPE_CHECKING:

@@ -22,7 +22,8 @@ from app.widgets.notice import Notice
 from app.widgets.stillness import INSET, STEPS, CountRing, MovementBars, RingFace
 from app.widgets.text import MEDIUM, SEMIBOLD, Text
 from app.widgets.themed import Themed
-from app.wording.translation import capitalised, name_of, tr, tr_n
+from app.wording.body import name_of
+from app.wording.translation import capitalised, tr, tr_n
 from core.body import LEG_JOINTS, Joint, Side, Site
 from core.calibration.rest import MAX_SPREAD_RAD_S
 from core.live.standing import REQUIRED_S

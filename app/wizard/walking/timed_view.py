@@ -16,9 +16,10 @@ from app.widgets.icons import IconMark
 from app.widgets.painted_text import CENTRE, LEFT, RIGHT, PaintedText
 from app.widgets.text import MEDIUM, SEMIBOLD, Text
 from app.widgets.themed import Themed
+from app.wording.body import name_of
 from app.wording.numbers import clock
 from app.wording.timed_tests import end_words, name_of_test, reason_words, start_words
-from app.wording.translation import capitalised, figure_text, joined, name_of, tr
+from app.wording.translation import capitalised, figure_text, joined, tr
 from core.body import Side
 from core.timed.live import LiveReadout
 from core.timed.protocols import DEFINITIONS, TimedProtocol

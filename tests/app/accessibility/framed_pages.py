@@ -31,7 +31,8 @@ from app.wizard.walking.page import WalkingPage
 from app.wizard.walking.timed_result import TimedAttempt, TimedResult
 from app.wizard.walking.timed_view import TimedViewState
 from app.wizard.walking.walk_list import WalkRow, WalkState
-from app.wording.translation import name_of, tr
+from app.wording.body import name_of
+from app.wording.translation import tr
 from core.analysis import analyse
 from core.body import LEG_SITES, Joint, Side
 from core.results import Analysis

@@ -20,7 +20,7 @@ from app.cli import report as report_command
 from app.cli.main import main
 from app.exports import result_folder
 from app.summary import request
-from app.wording.translation import SENTENCES
+from app.wording.findings import SENTENCES
 from core.body import Site
 from core.published.angles import DEFAULT_TAU_S
 from core.results import Method

@@ -5,7 +5,7 @@ from pytestqt.qtbot import QtBot
 
 from app.storage.stored import Limits
 from app.wizard.visit import Visit
-from app.wording.translation import sentence
+from app.wording.findings import sentence
 from app.workers.library_controller import LibraryController
 from core.body import Side, Site
 from core.samples import RecordingKind

@@ -11,7 +11,8 @@ from string import Formatter
 
 import pytest
 
-from app.wording.translation import NAMES, SENTENCES, name_of, place, sentence
+from app.wording.body import name_of
+from app.wording.findings import NAMES, SENTENCES, place, sentence
 from core.body import LEG_JOINTS, LEG_SITES, Side
 from core.findings import Finding, Severity
 from core.gait.strides import Reason
