@@ -170,7 +170,7 @@ class KeySlots:
                 )
             secret = _checked(passphrase, (code, *known))
             if self.is_given(code) and slots[_normal(code)].opened(secret) is not None:
-                raise KeyRefusedError("Another person chose this passphrase", "Choose another session")
+                raise KeyRefusedError("Another person chose this passphrase", "Choose another passphrase")
             own = Slot.wrapping(data_key, _normal(code), secret, self._cost)
             self._write({**slots, own.code: own}, given=self._given() - {own.code})
 
