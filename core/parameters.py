@@ -65,6 +65,7 @@ class QuantityKind(StrEnum):
     SEGMENT_SHAPE = "segment_shape"
     SEGMENT_HEIGHT = "segment_height"
     FOOT_PITCH = "foot_pitch"
+    HEEL_RISE = "heel_rise"
     FOOT_FLAT = "foot_flat"
     KNEE_TIMING = "knee_timing"
 
@@ -247,7 +248,7 @@ REGISTRY = (
     _fitting("knee_extended_before_contact_percent", _C.PEAK_TIME, _E.KNEE_TIMING),
     _fitting("foot_flat_percent", _C.TIMING, _E.FOOT_FLAT),
     _fitting("foot_pitch_at_contact_deg", _C.DISTANCE, _E.FOOT_PITCH),  # by the motion of the foot, as its length is
-    _fitting("foot_heel_rise_deg", _C.DISTANCE, _E.FOOT_PITCH),
+    _fitting("foot_heel_rise_deg", _C.DISTANCE, _E.HEEL_RISE),
     _fitting("shank_heel_rocker_deg", _C.EXCURSION, _E.SEGMENT_SHAPE),
     _fitting("shank_over_flat_foot_deg", _C.EXCURSION, _E.SEGMENT_SHAPE),
     _fitting("shank_forefoot_rocker_deg", _C.EXCURSION, _E.SEGMENT_SHAPE),

@@ -13,8 +13,9 @@ from core.body import Side
 from core.results import RecordingAnalysis
 from core.samples import FloatArray
 from core.verdicts.fitting import MEASURES, FittingMeasure
-from core.verdicts.measurement_error import ComparisonKind, sigma_of, whisker
+from core.verdicts.measurement_error import whisker
 from core.verdicts.quantities import FITTING, assessment_of, joint_of, values_of
+from core.verdicts.sigmas import ComparisonKind, sigma_of
 from core.verdicts.stride_means import mean_of_strides
 
 PER_STRIDE, MEANS = "fitting.csv", "fitting_means.csv"

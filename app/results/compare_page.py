@@ -41,8 +41,8 @@ from app.wording.translation import later, tr
 from core.body import JointKind, Side
 from core.gait.cycles import POINTS
 from core.results import Analysis
-from core.verdicts.measurement_error import ComparisonKind
 from core.verdicts.norms import AgeAndHeight, ReferenceCurves
+from core.verdicts.sigmas import ComparisonKind
 
 CURVES, PLOT, TABLE = "curves", "plot", "table"
 MOST_WITH_STRIDES = 3  # visits whose strides are counted beside their day

@@ -8,7 +8,7 @@ import numpy as np
 from core.body import Side
 from core.gait.chosen_strides import left_out_by_hand
 from core.results import RecordingAnalysis
-from core.verdicts.measurement_error import ComparisonKind, whisker
+from core.verdicts.measurement_error import whisker
 from core.verdicts.model import Assessment
 from core.verdicts.quantities import (
     OF_BOTH,
@@ -19,6 +19,7 @@ from core.verdicts.quantities import (
     side_mean,
     values_of,
 )
+from core.verdicts.sigmas import ComparisonKind
 from core.verdicts.stride_means import mean_of_strides
 
 

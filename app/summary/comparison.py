@@ -14,9 +14,10 @@ from core.body import Joint, Side
 from core.gait.spatiotemporal import MeanAndSd
 from core.gait.symmetry import symmetry_index_percent
 from core.results import ZeroKind
-from core.verdicts.measurement_error import ComparisonKind, Difference, compare
+from core.verdicts.measurement_error import Difference, compare
 from core.verdicts.model import Assessment, Verdict
 from core.verdicts.norms import MIN_STRIDES_FOR_MEAN
+from core.verdicts.sigmas import ComparisonKind
 
 
 class Contrast(StrEnum):
@@ -182,7 +183,7 @@ class Comparison:
             other.value(side, column),
             compare(
                 *(column, kind, means[0], means[1], assessments),
-                speed_apart_m_s=_speed_apart_m_s(part, other),
+                speeds_m_s=(part.speed_m_s, other.speed_m_s),
                 is_chosen_before=part.agreed.is_chosen(column, (side,)),
             ),
             self._reservation(measure, side, pair, assessments),
@@ -197,7 +198,8 @@ class Comparison:
         if any(found.verdict is Verdict.NOT_REPORTED for found in assessments):
             reservation = Reservation.NOT_REPORTED
         is_chosen = part.agreed.is_chosen(column, Side)
-        difference = compare(column, kind, one, other, assessments, is_chosen_before=is_chosen)
+        speeds = part.speed_m_s, against.speed_m_s
+        difference = compare(column, kind, one, other, assessments, speeds_m_s=speeds, is_chosen_before=is_chosen)
         values = (part.figure(measure, side)[0], against.figure(measure, side)[0])
         return Compared(measure, side, part, against, *values, difference, reservation)
 
@@ -212,12 +214,6 @@ class Comparison:
         if not all(found.is_reported for found in assessments):
             return Reservation.NOT_REPORTED
         return Reservation.NONE if all(one.value(side, measure.column).n for one in pair) else Reservation.NOT_MEASURED
-
-
-def _speed_apart_m_s(one: Part, other: Part) -> float:
-    """By how much the walks' speeds differ; 0 where one is not known."""
-    speeds = [part.of_both("speed_m_s") for part in (one, other)]
-    return abs(speeds[0] - speeds[1]) if all(map(math.isfinite, speeds)) else 0.0
 
 
 @dataclass(frozen=True, slots=True)
@@ -266,4 +262,5 @@ def compare_legs(part: Part, column: str, sides: tuple[Side, Side]) -> Differenc
     one, other = (part.mean(side, column, ComparisonKind.LEGS) for side in sides)
     assessments = tuple(part.assessment(side, column) for side in sides)
     is_chosen = part.agreed.is_chosen(column, sides)
-    return compare(column, ComparisonKind.LEGS, one, other, assessments, is_chosen_before=is_chosen)
+    speeds = part.speed_m_s, part.speed_m_s
+    return compare(column, ComparisonKind.LEGS, one, other, assessments, speeds_m_s=speeds, is_chosen_before=is_chosen)

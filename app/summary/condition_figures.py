@@ -12,8 +12,9 @@ from core.gait.spatiotemporal import MeanAndSd
 from core.goals import NO_GOALS, AgreedGoals
 from core.results import Analysis
 from core.samples import Recording
-from core.verdicts.measurement_error import ComparisonKind, whisker
+from core.verdicts.measurement_error import whisker
 from core.verdicts.model import Verdict
+from core.verdicts.sigmas import ComparisonKind
 
 
 @dataclass(frozen=True, slots=True)

@@ -28,10 +28,10 @@ from core.gait.cycles import POINTS, MeanCycle, mean_cycle
 from core.gait.spatiotemporal import BothFeet, MeanAndSd, mean_and_sd
 from core.gait.strides import Reason
 from core.goals import NO_GOALS, AgreedGoals
-from core.parameters import CADENCE
+from core.parameters import CADENCE, SPEED
 from core.results import Analysis, JointCalibration, RecordingAnalysis, ZeroKind
 from core.samples import FloatArray, Recording, RecordingKind
-from core.verdicts.measurement_error import ANGLE_PER_LAG_DEG_S, ComparisonKind
+from core.verdicts.measurement_error import ANGLE_PER_LAG_DEG_S
 from core.verdicts.model import Assessment, Verdict, Verdicts, pooled, together
 from core.verdicts.norms import MIN_STRIDES_FOR_MEAN
 from core.verdicts.quantities import (
@@ -44,6 +44,7 @@ from core.verdicts.quantities import (
     raw_values,
     used_cycles,
 )
+from core.verdicts.sigmas import ComparisonKind
 from core.verdicts.stride_means import MeanOfStrides, mean_of_strides
 
 
@@ -182,6 +183,11 @@ class Part:
             return math.nan
         known = [value for walk in self._both_of_walks if math.isfinite(value := getattr(walk, name))]
         return fmean(known) if known else math.nan
+
+    @property
+    def speed_m_s(self) -> float:
+        """Walking speed, mean of the walks; NaN where it is not reported."""
+        return self.of_both(SPEED)
 
     @cached_property
     def _both_of_walks(self) -> tuple[BothFeet, ...]:

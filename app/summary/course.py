@@ -17,10 +17,11 @@ from core.results import Analysis, RecordingAnalysis
 from core.samples import Recording
 from core.timed.measures import COLUMNS, PROTOCOLS, MeanOfAttempts, figure_of, mean_of_attempts, rests_on_feet
 from core.verdicts.attempts import compare_attempts, error_between_visits
-from core.verdicts.measurement_error import ComparisonKind, Difference, compare, whisker
+from core.verdicts.measurement_error import Difference, compare, whisker
 from core.verdicts.model import Assessment, GateReason, Verdict, together, worst
 from core.verdicts.norms import MIN_STRIDES_FOR_MEAN
 from core.verdicts.quantities import OF_HIPS
+from core.verdicts.sigmas import ComparisonKind
 from core.verdicts.stride_means import MeanOfStrides
 
 FORMAT = "gaitwright-course/4"
@@ -95,12 +96,19 @@ class CourseCondition:
     def figure(self, column: str, side: Side | None = None) -> CourseFigure | None:
         return next((one for one in self.figures if (one.column, one.side) == (column, side)), None)
 
+    @property
+    def speed_m_s(self) -> float:
+        """NaN where it is not reported."""
+        found = self.figure(SPEED)
+        return found.found.mean if found is not None and found.is_reported else math.nan
+
     def between_legs(self, column: str) -> Difference | None:
         """A figure of the left leg less that of the right, in the column's unit; None where one has none."""
         left, right = (self.figure(column, side) for side in Side)
         if left is None or right is None or Verdict.NOT_MEASURED in (left.verdict, right.verdict):
             return None
-        return compare(column, ComparisonKind.LEGS, left.found, right.found, (left.assessment, right.assessment))
+        assessments, speeds = (left.assessment, right.assessment), (self.speed_m_s, self.speed_m_s)
+        return compare(column, ComparisonKind.LEGS, left.found, right.found, assessments, speeds_m_s=speeds)
 
 
 @dataclass(frozen=True, slots=True)
@@ -195,16 +203,13 @@ def change(
     pair = one.figure(column, side), first.figure(column, side)
     if pair[0] is None or pair[1] is None:
         return None
-    speeds = [
-        found.found.mean for part in (one, first) if (found := part.figure(SPEED)) is not None and found.is_reported
-    ]
     return compare(
         column,
         ComparisonKind.VISITS,
         pair[0].found,
         pair[1].found,
         (pair[0].assessment, pair[1].assessment),
-        speed_apart_m_s=abs(speeds[0] - speeds[1]) if len(speeds) == 2 else 0.0,
+        speeds_m_s=(one.speed_m_s, first.speed_m_s),
         is_chosen_before=is_chosen_before,
     )
 

@@ -16,7 +16,7 @@ from app.wording.dates import day_in_words, short_date
 from app.wording.measures import decimals, goal_in_words, short_unit, spoken_name, spoken_value
 from app.wording.translation import capitalised, joined, tr, tr_n
 from core.body import Joint
-from core.verdicts.measurement_error import Difference, ErrorSource, Judgement
+from core.verdicts.measurement_error import Difference, Judgement
 
 LONG_AGO = datetime.timedelta(weeks=8)
 
@@ -73,8 +73,6 @@ def judged_in_words(found: Difference, kind: LaneKind) -> str:
     if not found.error > 0:
         return _verdict(found)
     error = fixed(found.error, max(1, decimals(kind.column))) + (f" {DAGGER}" if found.is_unverified else "")
-    if ErrorSource.SPEED in found.sources:
-        return tr("{verdict} ({error}; different speed)").format(verdict=_verdict(found), error=error)
     return tr("{verdict} ({error})").format(verdict=_verdict(found), error=error)
 
 

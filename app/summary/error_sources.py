@@ -9,7 +9,7 @@ ERROR_SOURCES = {
     ErrorSource.CHANCE: later("variation between strides"),
     ErrorSource.DRIFT: later("drift within a walk"),
     ErrorSource.CLOCK: later("sensor synchronisation"),
-    ErrorSource.SPEED: later("different walking speed"),
+    ErrorSource.AXIS: later("the joint axis"),
     ErrorSource.WALKS: later("variation between walks"),
     ErrorSource.STRAPS: later("sensor attachment"),
     ErrorSource.DAYS: later("variation between days"),

@@ -16,9 +16,10 @@ from core.parameters import QuantityKind
 from core.timed.measures import PROTOCOLS
 from core.verdicts.attempts import error_between_visits
 from core.verdicts.goals import GoalStanding, beyond, error_of_visit, standing
-from core.verdicts.measurement_error import KINDS, ComparisonKind, Difference
+from core.verdicts.measurement_error import Difference
 from core.verdicts.model import Assessment, Verdict
 from core.verdicts.norms import MIN_STRIDES_FOR_MEAN
+from core.verdicts.sigmas import KINDS, ComparisonKind
 from core.verdicts.stride_means import MeanOfStrides
 
 

@@ -7,9 +7,11 @@ from app.wording.numbers import MINUS
 from app.wording.translation import figure_text, tr
 from core.body import Side
 from core.gait.spatiotemporal import MeanAndSd
-from core.verdicts.measurement_error import Z95, Difference, Judgement, Sigma
+from core.parameters import ANKLE_RANGE, KNEE_RANGE, STANCE
+from core.verdicts.measurement_error import Difference, Judgement, least_error
 from core.verdicts.model import Verdict
 from core.verdicts.norms import MIN_STRIDES_FOR_MEAN, MIN_STRIDES_FOR_SD
+from core.verdicts.sigmas import ComparisonKind
 
 NOTHING = "–"
 DAGGER = "\u2020"
@@ -112,6 +114,10 @@ def dagger_note() -> str:
     return tr("{dagger}: error based on a figure whose source could not be verified.").format(dagger=DAGGER)
 
 
-def signed_error(sigma: Sigma | None) -> str:
-    """What a spread between walks or strappings alone makes of the error of a difference."""
-    return NOTHING if sigma is None else fixed(Z95 * math.sqrt(2) * sigma.value, 1)
+USUAL = {KNEE_RANGE: 60.0, ANKLE_RANGE: 28.0, STANCE: 61.0}  # means for which tables give an error
+
+
+def least_error_in_words(column: str, kind: ComparisonKind) -> str:
+    """What a difference of a usual size has to exceed at least, with its dagger; a dash where no error is known."""
+    error, is_verified = least_error(column, kind, USUAL[column])
+    return fixed(error, 1) + ("" if is_verified or not math.isfinite(error) else DAGGER)

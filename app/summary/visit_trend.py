@@ -8,8 +8,9 @@ from itertools import pairwise
 from app.charts.cycles import is_mean_enough
 from app.summary.comparison import Compared, Comparison
 from app.summary.conditions import Part
-from core.verdicts.measurement_error import Z95, ComparisonKind, sigma_of
+from core.verdicts.measurement_error import least_error
 from core.verdicts.model import Verdict
+from core.verdicts.sigmas import ComparisonKind
 
 
 @dataclass(frozen=True, slots=True)
@@ -69,7 +70,5 @@ def _places(parts: Sequence[Part]) -> tuple[float, ...]:
 
 def _usual_error(column: str, values: Sequence[float]) -> float:
     """What strapping and another day alone make of the error of a change."""
-    sigma = sigma_of(column, ComparisonKind.VISITS)
-    if sigma is None or not values:
-        return 0.0
-    return Z95 * math.sqrt(2) * sigma.value * (0.01 * abs(values[-1]) if sigma.is_relative else 1.0)
+    error = least_error(column, ComparisonKind.VISITS, values[-1])[0] if values else math.nan
+    return error if math.isfinite(error) else 0.0

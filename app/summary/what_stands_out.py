@@ -40,9 +40,10 @@ from core.parameters import (
 )
 from core.results import ZeroKind
 from core.timed.measures import COLUMNS, PROTOCOLS
-from core.verdicts.measurement_error import Z95, ComparisonKind, Difference, sigma_of
+from core.verdicts.measurement_error import Difference, least_error
 from core.verdicts.model import Verdict
 from core.verdicts.quantities import joint_of as joint_of_column
+from core.verdicts.sigmas import ComparisonKind
 
 MAX_FINDINGS = 3
 BANDS_ON_PAPER = later("reference [1]"), later("reference [2]")  # with the numbers of the sources on its last page
@@ -176,7 +177,7 @@ def _similar_legs(facts: Facts) -> list[str]:
     if len(facts.gait) < len(Side):
         return []
     found = {column: compare_legs(facts.part, column, facts.first_and_second) for column in BETWEEN_LEGS}
-    column = max(found, key=lambda one: (found[one].ratio > 0, not found[one].is_borrowed, found[one].ratio))
+    column = max(found, key=lambda one: (found[one].ratio > 0, not found[one].is_unverified, found[one].ratio))
     if not found[column].ratio:
         return []
     unit, decimals = unit_and_decimals(column)
@@ -352,10 +353,8 @@ def _speeds_apart(comparison: Comparison | None) -> str:
 
 def _speed_error(kind: ComparisonKind, mean_m_s: float) -> float:
     """What lies between two walks makes of the error of their speeds' difference."""
-    sigma = sigma_of("speed_m_s", kind)
-    if sigma is None:
-        return math.inf
-    return Z95 * math.sqrt(2) * sigma.value * (0.01 * mean_m_s if sigma.is_relative else 1.0)
+    error = least_error(SPEED, kind, mean_m_s)[0]
+    return error if math.isfinite(error) else math.inf
 
 
 def _changed(facts: Facts, comparison: Comparison | None, row: Compared) -> str:

@@ -11,17 +11,9 @@ from collections.abc import Mapping
 from core.parameters import QuantityKind
 from core.timed.measures import COLUMNS, MeanOfAttempts
 from core.timed.protocols import TimedProtocol
-from core.verdicts.measurement_error import (
-    SENTENCE_FACTOR,
-    SIGMAS,
-    Z95,
-    ComparisonKind,
-    Difference,
-    ErrorSource,
-    Judgement,
-    Sigma,
-)
+from core.verdicts.measurement_error import SENTENCE_FACTOR, Z95, Difference, ErrorSource, Judgement, Mark
 from core.verdicts.model import Assessment
+from core.verdicts.sigmas import SIGMAS, ComparisonKind, Sigma
 
 BETWEEN_VISITS: Mapping[str, Sigma] = {
     COLUMNS[TimedProtocol.TEN_METRES]: SIGMAS[ComparisonKind.VISITS][QuantityKind.SPEED]
@@ -37,7 +29,7 @@ def error_between_visits(column: str) -> float:
         In the unit of the column.
     """
     sigma = BETWEEN_VISITS.get(column)
-    return Z95 * math.sqrt(2) * sigma.value if sigma is not None else math.nan
+    return Z95 * math.sqrt(2) * sigma.constant if sigma is not None else math.nan
 
 
 def compare_attempts(
@@ -68,12 +60,13 @@ def compare_attempts(
     error = error_between_visits(column)
     if not math.isfinite(error):
         return Difference(difference, math.nan, Judgement.NO_PUBLISHED_FIGURE)
-    factor = 1.0 if is_chosen_before or BETWEEN_VISITS[column].is_published_error else SENTENCE_FACTOR
+    factor, exceeds = 1.0 if is_chosen_before else SENTENCE_FACTOR, abs(difference) > error
     return Difference(
         difference,
         error,
-        Judgement.EXCEEDS_ERROR if abs(difference) > error else Judgement.INSIDE_ERROR,
+        Judgement.EXCEEDS_ERROR if exceeds else Judgement.INSIDE_ERROR,
         (ErrorSource.CHANCE, ErrorSource.DAYS),
+        mark=Mark.ERROR if exceeds else Mark.NONE,
         is_worth_a_sentence=abs(difference) > factor * error,
         is_unverified=not BETWEEN_VISITS[column].is_verified,
     )

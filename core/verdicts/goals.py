@@ -9,7 +9,8 @@ import math
 from enum import StrEnum
 
 from core.goals import Goal, GoalOf
-from core.verdicts.measurement_error import ComparisonKind, whisker
+from core.verdicts.measurement_error import whisker
+from core.verdicts.sigmas import ComparisonKind
 from core.verdicts.stride_means import MeanOfStrides
 
 
@@ -68,7 +69,7 @@ def standing(goal: Goal, value: float, error: float) -> GoalStanding:
     return GoalStanding.REACHED_INSIDE if more >= 0 else GoalStanding.SHORT_INSIDE
 
 
-def error_of_visit(column: str, found: MeanOfStrides) -> float:
+def error_of_visit(column: str, found: MeanOfStrides, speed_m_s: float = math.nan) -> float:
     """What a change between visits has to exceed from a mean as sure as this one; NaN where no error is known.
 
     Returns
@@ -76,4 +77,4 @@ def error_of_visit(column: str, found: MeanOfStrides) -> float:
     float
         In the unit of the column.
     """
-    return 2.0 * whisker(column, ComparisonKind.VISITS, found)
+    return 2.0 * whisker(column, ComparisonKind.VISITS, found, speed_m_s)

@@ -1,7 +1,7 @@
-"""The mean of a measure over strides, and how sure it is: chance with the strides' correlation, drift, clocks.
+"""The mean of a measure over strides, and how sure it is: chance with the strides' correlation, drift, clocks, axes.
 
-u^2 = se^2 + d^2 + c^2: its standard error, half of what the walk's halves or thirds differ by, and what the lag's
-uncertainty makes of it.
+u^2 = se^2 + d^2 + c^2 + a^2: its standard error, half of what the walk's halves or thirds differ by, what the lag's
+uncertainty makes of it, and what the joint's axis does that its data leave open.
 """
 
 import math
@@ -27,6 +27,8 @@ class MeanOfStrides:
         Half of what the halves, or the thirds that lie farthest apart, differ by beyond chance.
     clock_error
         What the uncertainty of the lag between the joint's sensors makes of it.
+    axis_error
+        What the joint's axis makes of it, by two parts of the data that identify it each alone.
     """
 
     mean: float
@@ -35,14 +37,15 @@ class MeanOfStrides:
     standard_error: float
     drift: float
     clock_error: float = 0.0
+    axis_error: float = 0.0
 
     @property
     def uncertainty(self) -> float:
         """One standard deviation of the mean, u."""
-        return math.sqrt(self.standard_error**2 + self.drift**2 + self.clock_error**2)
+        return math.hypot(self.standard_error, self.drift, self.clock_error, self.axis_error)
 
 
-def mean_of_strides(values: FloatArray, clock_error: float = 0.0) -> MeanOfStrides:
+def mean_of_strides(values: FloatArray, clock_error: float = 0.0, axis_error: float = 0.0) -> MeanOfStrides:
     """The mean of the finite values among (k,), in order of time, and its uncertainty.
 
     Parameters
@@ -51,6 +54,8 @@ def mean_of_strides(values: FloatArray, clock_error: float = 0.0) -> MeanOfStrid
         In any unit, NaN where not known.
     clock_error
         What the uncertainty of the lag makes of the mean, in that unit.
+    axis_error
+        What the joint's axis leaves open of it, in that unit.
 
     Returns
     -------
@@ -72,6 +77,7 @@ def mean_of_strides(values: FloatArray, clock_error: float = 0.0) -> MeanOfStrid
         standard_error=standard_error,
         drift=_drift(known, math.sqrt(sd / math.sqrt(n) * standard_error)),
         clock_error=clock_error,
+        axis_error=axis_error,
     )
 
 

@@ -20,8 +20,9 @@ from app.summary.differences import comparisons_of, rows_of
 from core.analysis import analyse
 from core.body import Side
 from core.samples import FloatArray
-from core.verdicts.measurement_error import ComparisonKind, Judgement, compare, sigma_of
+from core.verdicts.measurement_error import Judgement, compare
 from core.verdicts.model import READ
+from core.verdicts.sigmas import ComparisonKind, sigma_of
 from core.verdicts.stride_means import mean_of_strides
 from devices.simulation.walker import PEOPLE, FreeMotion, Standing, Tissue, Walk, WalkerSettings, simulate
 from devices.simulation.walker_body import GaitChange

@@ -32,8 +32,8 @@ from core.goals import (
 )
 from core.parameters import BY_COLUMN, QuantityClass
 from core.verdicts.goals import GoalStanding, error_of_visit, standing
-from core.verdicts.measurement_error import ComparisonKind, sigma_of
 from core.verdicts.quantities import OF_HIPS
+from core.verdicts.sigmas import ComparisonKind, sigma_of
 from core.verdicts.stride_means import MeanOfStrides
 
 KNEE, SPEED, STANCE = "knee_stance_to_swing_deg", "speed_m_s", "stance_percent"

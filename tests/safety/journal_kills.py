@@ -33,7 +33,7 @@ NOTE = "noted"
 
 @dataclass(slots=True)
 class Kills:
-    """`loss_ms` of every kill; `faults` in words, of those whose journal was not whole up to its last complete record."""
+    """`loss_ms` of every kill; `faults` in words: of journals not whole up to their last complete record."""
 
     loss_ms: list[float] = field(default_factory=list)
     faults: list[str] = field(default_factory=list)

@@ -23,8 +23,9 @@ from core.analysis import analyse
 from core.body import Side
 from core.results import RecordingAnalysis
 from core.verdicts.fitting import BY_COLUMN
-from core.verdicts.measurement_error import KINDS, ComparisonKind, Difference, Judgement, compare
+from core.verdicts.measurement_error import Difference, Judgement, compare
 from core.verdicts.quantities import assessment_of, values_of
+from core.verdicts.sigmas import KINDS, ComparisonKind
 from core.verdicts.stride_means import mean_of_strides
 from devices.simulation.walker import (
     NO_CHANGE,

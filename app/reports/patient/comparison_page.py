@@ -36,8 +36,8 @@ from app.wording.translation import capitalised, joined, tr
 from app.wording.verdicts import verdict_alone, verdict_word
 from core.body import JointKind, Side
 from core.parameters import KNEE_RANGE, STANCE
-from core.verdicts.measurement_error import ComparisonKind, sigma_of
 from core.verdicts.model import Verdict, worst
+from core.verdicts.sigmas import ComparisonKind, sigma_of
 
 CHANGES_LENGTH = 300  # letters: three lines of the table
 PLOT_WIDTH = 53 * MM  # with the table of three parts, or a line more of words, this fills a Letter page

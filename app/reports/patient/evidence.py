@@ -20,9 +20,9 @@ from core.parameters import ANKLE_RANGE, KNEE_RANGE, STANCE
 from core.results import JointCalibration, ZeroKind
 from core.samples import FloatArray
 from core.verdicts.gates import LIMITS, MIN_STRIDES_TO_SPLIT
-from core.verdicts.measurement_error import ComparisonKind, sigma_of
 from core.verdicts.model import NOT_MEASURED, GateReason, JointVerdicts
 from core.verdicts.quantities import assessment_of, raw_values
+from core.verdicts.sigmas import ComparisonKind, sigma_of
 
 JOINT_WIDTH = "23mm"  # takes a verdict; a joint's longer name, as German has them, breaks before its side
 MARGIN_BEYOND = 100.0  # from here on, how many times better adds nothing

@@ -23,8 +23,8 @@ from core.results import AxisSource, Method
 from core.samples import ImuBlock, RateKind, SensorInfo
 from core.signal.orientation import accelerometer_time_constant_s
 from core.signal.tracks import MAX_REPORTED_GAP_S, nominal_step_s
-from core.verdicts.measurement_error import ComparisonKind, sigma_of
 from core.verdicts.norms import KNEE_OVERREAD
+from core.verdicts.sigmas import ComparisonKind, sigma_of
 
 MOST_MODELS = 2  # for more, their number is given
 MODEL_LENGTH = 32

@@ -29,10 +29,10 @@ from app.wording.translation import capitalised, later, tr
 from app.wording.verdicts import verdict_word
 from core.body import JointKind, Side
 from core.parameters import KNEE_RANGE, MOVEMENTS
-from core.verdicts.measurement_error import ComparisonKind, sigma_of
 from core.verdicts.model import Verdict
 from core.verdicts.norms import KNEE_OVERREAD
 from core.verdicts.quantities import ABDUCTION, EXCURSIONS_BY_COLUMN, WINDOWS
+from core.verdicts.sigmas import ComparisonKind, sigma_of
 
 TIMES = {"hip": (), "knee": ("knee_swing_peak_percent",), "ankle": ()}
 HOW_FAR = {

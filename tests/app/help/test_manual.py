@@ -19,7 +19,8 @@ from app.wording.translation import use_language
 from core.parameters import QuantityKind
 from core.signal.tracks import MAX_REPORTED_GAP_S
 from core.verdicts.gates import LIMITS
-from core.verdicts.measurement_error import SIGMAS, Z95, ComparisonKind
+from core.verdicts.measurement_error import Z95
+from core.verdicts.sigmas import SIGMAS, ComparisonKind
 from devices.catalogue import DRIVERS
 
 ROOT = Path(__file__).parents[3]

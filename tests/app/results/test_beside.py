@@ -20,7 +20,8 @@ from core.analysis import analyse
 from core.body import Joint, Side
 from core.results import Analysis, ZeroKind
 from core.samples import Session
-from core.verdicts.measurement_error import ComparisonKind, Judgement
+from core.verdicts.measurement_error import Judgement
+from core.verdicts.sigmas import ComparisonKind
 from devices.simulation.walker import DEMONSTRATION, FreeMotion, Standing, Walk, simulate
 from devices.simulation.walker_body import Tissue
 from tests.app.changed_analysis import recalibrated

@@ -42,7 +42,8 @@ from core.body import Joint, JointKind, Side
 from core.results import Analysis, ZeroKind
 from core.samples import Session
 from core.verdicts.gates import judged
-from core.verdicts.measurement_error import ComparisonKind, ErrorSource, Judgement
+from core.verdicts.measurement_error import ErrorSource, Judgement
+from core.verdicts.sigmas import ComparisonKind
 from devices.simulation.walker import DEMONSTRATION, FreeMotion, Standing, Walk, simulate
 from devices.simulation.walker_body import Tissue
 from tests.app.changed_analysis import recalibrated, with_few_strides

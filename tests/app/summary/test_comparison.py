@@ -6,7 +6,8 @@ from app.summary.comparison import Comparison, Contrast
 from app.summary.conditions import Part
 from app.summary.measures import MEASURES
 from core.body import Joint, Side
-from core.verdicts.measurement_error import ComparisonKind, compare
+from core.verdicts.measurement_error import compare
+from core.verdicts.sigmas import ComparisonKind
 from tests.app.course_material import analysis, unsure, walked
 
 KNEE = next(measure for measure in MEASURES if measure.column == "knee_stance_to_swing_deg")

@@ -5,9 +5,9 @@ import pytest
 from core.body import LEG_JOINTS, Joint, Side
 from core.parameters import ParameterFile, columns_of
 from core.verdicts.fitting import BY_COLUMN, MEASURES
-from core.verdicts.measurement_error import KINDS, ComparisonKind, sigma_of
 from core.verdicts.model import READ, Assessment, JointVerdicts, LegVerdicts, Verdict, Verdicts
 from core.verdicts.quantities import FITTING, assessment_of
+from core.verdicts.sigmas import KINDS, ComparisonKind, sigma_of
 
 BAD = Assessment(Verdict.NOT_REPORTED)
 INSTANTS = ("initial_contact", "mid_stance", "toe_off")

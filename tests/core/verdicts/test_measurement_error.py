@@ -6,8 +6,9 @@ import numpy as np
 import pytest
 
 from core.parameters import BY_COLUMN
-from core.verdicts.measurement_error import ComparisonKind, Difference, Judgement, compare, sigma_of, whisker
+from core.verdicts.measurement_error import Difference, Judgement, compare, whisker
 from core.verdicts.model import NOT_MEASURED, READ, Assessment, GateReason, Verdict, assess
+from core.verdicts.sigmas import ComparisonKind, sigma_of
 from core.verdicts.stride_means import MeanOfStrides, mean_of_strides
 
 ATTACHED, LEGS = ComparisonKind.ATTACHED, ComparisonKind.LEGS
