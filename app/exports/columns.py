@@ -109,6 +109,15 @@ JUDGED = {
     "status": _word("the worse of what may be said of the two means"),
     "verdict": _word("exceeds_error, inside_error, withheld, too_few_strides (under 10) or no_published_figure"),
 }
+LIKELY = {
+    "low": ColumnMeaning("least of what the true difference is likely to be, at 95 %", AS_PARAMETER, AS_ROW, AS_ROW),
+    "high": ColumnMeaning("most of what the true difference is likely to be, at 95 %", AS_PARAMETER, AS_ROW, AS_ROW),
+    "beyond_speed": ColumnMeaning("the difference less what another walking speed makes", AS_PARAMETER, AS_ROW, AS_ROW),
+    "beyond_speed_low": ColumnMeaning("least of what that is likely to be, at 95 %", AS_PARAMETER, AS_ROW, AS_ROW),
+    "beyond_speed_high": ColumnMeaning("most of what that is likely to be, at 95 %", AS_PARAMETER, AS_ROW, AS_ROW),
+    "mark": _word("beyond_healthy (of legs: beyond error and healthy_limit), beyond_error, or empty"),
+    "healthy_limit": ColumnMeaning("what 95 of 100 healthy people's legs differ by less", AS_PARAMETER, "", AS_ROW),
+}
 PERCENT = {"percent": ColumnMeaning("of the stride, from initial contact to the next")}
 
 
@@ -191,6 +200,7 @@ DIFFERENCES = {
     **JUDGED,
     **BY_HAND,
     "chosen_before": _word("true where a goal of the parameter had been agreed before the session's day"),
+    **LIKELY,
 }
 KNOWN: Mapping[str, Mapping[str, ColumnMeaning]] = {
     "angles.csv": {
@@ -272,6 +282,7 @@ KNOWN: Mapping[str, Mapping[str, ColumnMeaning]] = {
         **{name: one for side in Side for name, one in _prefixed(f"{side}_", {**MEAN, **BY_HAND}, "").items()},
         **JUDGED,
         "symmetry_index_percent": ColumnMeaning("difference by the mean of both legs", AS_PARAMETER),
+        **LIKELY,
     },
     "goals.csv": {
         "recording": _word("its folder"),

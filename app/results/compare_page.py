@@ -42,7 +42,6 @@ from core.body import JointKind, Side
 from core.gait.cycles import POINTS
 from core.results import Analysis
 from core.verdicts.norms import AgeAndHeight, ReferenceCurves
-from core.verdicts.sigmas import ComparisonKind
 
 CURVES, PLOT, TABLE = "curves", "plot", "table"
 MOST_WITH_STRIDES = 3  # visits whose strides are counted beside their day
@@ -418,9 +417,7 @@ class ComparePage(Themed):
         condition = "" if visits is None else condition_in_words(visits.condition)
         title = pattern.format(letter=found.against.letter, condition=condition)
         reported = [row for row in found.changes if row.is_reported]
-        is_borrowed = any(found.error_kind(part) is not ComparisonKind.ATTACHED for part in found.others)
-        is_borrowed &= any(joint.kind is JointKind.ANKLE for joint in found.joints)
-        self.error.setText(error_in_words([row.difference for row in reported], is_borrowed=is_borrowed))
+        self.error.setText(error_in_words([row.difference for row in reported]))
         worth = [sentence(row) for row in sorted(reported, key=weight_in(found)) if row.difference.is_worth_a_sentence]
         latest = found.latest if self.kind is Contrast.VISITS else None
         stated = conclusion(worth, reported, latest) if found.others else []
@@ -446,9 +443,7 @@ class ComparePage(Themed):
         self._fit_side_charts()
         reported = [row for row in self.side_rows if row.is_reported]
         differences = [row.difference for row in reported]
-        self.error.setText(
-            error_in_words(differences, is_borrowed=any(joint.kind is JointKind.ANKLE for joint in part.joints))
-        )
+        self.error.setText(error_in_words(differences))
         worth = [row for row in sorted(reported, key=side_weight) if row.difference.is_worth_a_sentence]
         stated = conclusion([side_sentence(row, first, second) for row in worth], reported)
         self._say(stated, parts[:1], is_marked=bool(worth))

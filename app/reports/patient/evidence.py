@@ -7,7 +7,7 @@ import numpy as np
 
 from app.reports.blocks import Block, Cell, Column, Row, heading, note, table
 from app.summary.facts import Facts, joint_of
-from app.summary.numbers_in_words import DAGGER, NOTHING, dagger_note, fixed, signed, signed_error
+from app.summary.numbers_in_words import NOTHING, dagger_note, fixed, least_error_in_words, signed
 from app.summary.quality import slipped_straps
 from app.wording.body import name_of, side_name
 from app.wording.translation import capitalised, tr
@@ -22,7 +22,7 @@ from core.samples import FloatArray
 from core.verdicts.gates import LIMITS, MIN_STRIDES_TO_SPLIT
 from core.verdicts.model import NOT_MEASURED, GateReason, JointVerdicts
 from core.verdicts.quantities import assessment_of, raw_values
-from core.verdicts.sigmas import ComparisonKind, sigma_of
+from core.verdicts.sigmas import ComparisonKind
 
 JOINT_WIDTH = "23mm"  # takes a verdict; a joint's longer name, as German has them, breaks before its side
 MARGIN_BEYOND = 100.0  # from here on, how many times better adds nothing
@@ -249,15 +249,12 @@ def error_table() -> list[Block]:
     )
     rows: list[Row] = []
     for kind, name, contains in reported:
-        cells = []
-        for column in (KNEE_RANGE, ANKLE_RANGE, STANCE):
-            sigma = sigma_of(column, kind)
-            cells.append(signed_error(sigma) + (DAGGER if sigma is not None and not sigma.is_verified else ""))
-        rows.append([name, contains, *cells])
+        least = (least_error_in_words(column, kind) for column in (KNEE_RANGE, ANKLE_RANGE, STANCE))
+        rows.append([name, contains, *least])
     stated = tr(
-        "Minimum values: variation between strides is added (1.96 standard deviations of the "
-        "difference). A sentence on page 1 needs 1.5 times as much, unless the error is a published "
-        "upper limit."
+        "Minimum values at usual means: variation between strides is added (1.96 standard deviations of the "
+        "difference). A change on page 1 needs 1.2 times as much, one with a goal as much; legs need more than "
+        "95 of 100 healthy people differ by."
     )
     return [
         heading(tr("Measurement error by comparison")),

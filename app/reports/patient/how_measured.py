@@ -11,7 +11,7 @@ import math
 from collections import Counter
 
 from app.summary.facts import Facts
-from app.summary.numbers_in_words import fixed, signed_error
+from app.summary.numbers_in_words import fixed, least_error_in_words
 from app.summary.plain_text import breakable, isolated, plain, shortened
 from app.wording.findings import WHOLE_SESSION
 from app.wording.translation import joined, tr
@@ -24,7 +24,7 @@ from core.samples import ImuBlock, RateKind, SensorInfo
 from core.signal.orientation import accelerometer_time_constant_s
 from core.signal.tracks import MAX_REPORTED_GAP_S, nominal_step_s
 from core.verdicts.norms import KNEE_OVERREAD
-from core.verdicts.sigmas import ComparisonKind, sigma_of
+from core.verdicts.sigmas import ComparisonKind
 
 MOST_MODELS = 2  # for more, their number is given
 MODEL_LENGTH = 32
@@ -214,15 +214,14 @@ def _accuracy() -> str:
 def _words() -> str:
     return tr(
         "Reference: mean ± 1 and 2 SD of other, healthy people, measured with optical markers; not a "
-        "target. Error: measurement alone gives a smaller difference in 95 of 100 repeats. For knee "
-        "range of motion between legs and visits it is at least {knee_error}° (upper end of 3.4–9.2° "
-        "published, 15 volunteers; also used for the ankle). Beyond: larger than the error. This "
-        "shows how large a difference is, not whether it is good. Certainty of a joint axis is never "
+        "target. Likely between: 95 of 100 such measurements contain the true difference. For a knee range of "
+        "motion of 60° at two visits the error is at least {knee_error}° (people measured twice and simulated "
+        "strappings). This shows how large a difference is, not whether it is good. Certainty of a joint axis is never "
         "given below {floor}°, from walking alone never below {walking}°. Knees are measured 9 ± 4 % "
         "too flexed; they are judged as measured and divided by {overread}. Not reported: measured, "
         "but not reliable; the cause is named."
     ).format(
-        knee_error=signed_error(sigma_of(KNEE_RANGE, ComparisonKind.VISITS)),
+        knee_error=least_error_in_words(KNEE_RANGE, ComparisonKind.VISITS),
         floor=fixed(math.degrees(AXIS_FLOOR_HUMAN_RAD), 0),
         walking=fixed(math.degrees(AXIS_FLOOR_WALKING_RAD), 0),
         overread=fixed(KNEE_OVERREAD, 2),

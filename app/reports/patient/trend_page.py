@@ -10,8 +10,9 @@ from app.reports.patient.trend_chart import trend_chart
 from app.summary.course_lanes import CourseVisit
 from app.summary.facts import Facts
 from app.summary.goals import goal_mark, goal_sentence, in_course
+from app.summary.interval_words import evidence, interval_in_figures
 from app.summary.measure_sentences import Reported, change_sentence, unit_and_decimals, who_of_role
-from app.summary.numbers_in_words import DAGGER, NOTHING, dagger_note, fixed, in_brief, signed
+from app.summary.numbers_in_words import NOTHING, dagger_note, fixed, in_brief, signed
 from app.summary.plain_text import CONDITION_LENGTH, shortened, typed
 from app.summary.trend_lines import TrendLine, trend_columns, trend_lines, walked_visits
 from app.summary.visits import condition_in_words
@@ -155,19 +156,15 @@ def _sentence(line: TrendLine, facts: Facts, visits: int) -> str:
     changed = change_sentence(
         line.column, who, found.difference, Reported(now, last.value), Reported(before, first.value)
     )
-    error = tr("Error between visits: {error}.").format(error=fixed(found.error, decimals) + unit)
-    wording = f"{changed} {error}"
+    wording = f"{changed} {evidence(line.column, found)}"
     since = line.since_last
     if since is None or line.before == line.first:
         return wording
     if not since.error > 0:
         return wording
-    words = (
-        tr("Since visit {number} {change}: beyond error.")
-        if since.exceeds
-        else tr("Since visit {number} {change}: within error.")
-    )
-    return f"{wording} {words.format(number=line.before + 1, change=signed(since.difference, decimals) + unit)}"
+    words = tr("Since visit {number} {change}, likely {interval}.")
+    change, interval = signed(since.difference, decimals) + unit, interval_in_figures(line.column, since)
+    return f"{wording} {words.format(number=line.before + 1, change=change, interval=interval)}"
 
 
 def _table(lines: Sequence[TrendLine], visits: int) -> Block:
@@ -178,7 +175,7 @@ def _table(lines: Sequence[TrendLine], visits: int) -> Block:
         *(Column(str(visit + 1)) for visit in shown),
         Column(tr("since last")),
         Column(tr("since first")),
-        Column(tr("Error")),
+        Column(tr("likely between")),
         Column(tr("since first is"), is_number=False),
     ]
     rows: list[Row] = []
@@ -195,11 +192,10 @@ def _table(lines: Sequence[TrendLine], visits: int) -> Block:
         if found is None or not is_reported:
             rows.append([*cells, NOTHING, NOTHING, NOTHING])
             continue
-        dagger = DAGGER if found.is_unverified else ""
         cells += [
             Cell(signed(found.difference, decimals), is_bold=found.exceeds),
-            f"{fixed(found.error, decimals)}{dagger}" if found.error > 0 else NOTHING,
-            Cell(in_brief(found.judgement), is_bold=found.exceeds),
+            interval_in_figures(line.column, found),
+            Cell(in_brief(found), is_bold=found.exceeds),
         ]
         rows.append(cells)
     return table(columns, rows, is_dense=True)
