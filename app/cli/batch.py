@@ -100,7 +100,7 @@ def _done(args: argparse.Namespace, workers: "Workers", report: Report) -> "tupl
             work.run(workers, report)
         except ClusterLostError as lost:
             what = "the cluster is out of reach; what was done until then stays in OUT"
-            raise FileRefusedError(args.dask, what, "Start it, then run the same command again") from lost
+            raise FileRefusedError(args.dask, what, "Start the cluster, then run the same command again") from lost
         return work.result, list(sessions.notes())
 
 
@@ -114,11 +114,15 @@ def _check_apart(args: argparse.Namespace) -> None:
     """
     out, library = args.out.resolve(), args.library.resolve()
     if out == library or library in out.parents:
-        raise FileRefusedError(str(out), "this folder is in the library", "Choose a folder outside it for --out")
+        raise FileRefusedError(
+            str(out), "this folder is in the library", "Choose a folder outside the library for --out"
+        )
     address = urlsplit(args.dask or "")
     if args.dask and address.scheme != "tls" and address.hostname not in HERE:
         what = "sessions of a library would be sent to this cluster as they are, for anybody to read on the way"
-        raise FileRefusedError(one_line(args.dask), what, "Use a cluster on this computer, or one with tls://")
+        raise FileRefusedError(
+            one_line(args.dask), what, "Use a cluster on this computer, or one whose address starts with tls://"
+        )
 
 
 @contextmanager

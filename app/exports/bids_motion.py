@@ -83,7 +83,7 @@ def write_bids(session: Session, folder: Path) -> str:
     """
     held = [one for one in session.recordings if one.is_kept and any(len(block) for block in one.imu.values())]
     if not held:
-        return tr("No included recording has samples.")
+        return tr("No included recording contains sensor data.")
     participant = f"sub-{_label(session.patient.code) or 'unknown'}"
     motion = folder / participant / "motion"
     motion.mkdir(parents=True)

@@ -73,7 +73,7 @@ def write_motion(recording: RecordingAnalysis, is_simulated: bool, path: Path) -
     parts = _parts(recording.time_s, columns)
     if not parts:
         reasons = [why_status(recording, joint) for joint in measured if joint not in joints]
-        return " ".join([tr("It has no angle to export as a pose."), *dict.fromkeys(filter(None, reasons))])
+        return " ".join([tr("This recording has no angle to export as a pose."), *dict.fromkeys(filter(None, reasons))])
     header = [
         "",
         *([SIMULATED] if is_simulated else []),

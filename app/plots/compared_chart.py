@@ -98,7 +98,9 @@ class ComparedFrame(Card):
         stated = [tr("Simulated.")] if self.chart.is_simulated else []
         for curve in self.chart.curves:
             mean = curve.angle_deg
-            reported = tr("{letter}: {lowest} at {lowest_percent} % to {highest} at {highest_percent} %.")
+            reported = tr(
+                "{letter}: from {lowest} at {lowest_percent} % to {highest} at {highest_percent} % of the gait cycle."
+            )
             stated.append(
                 reported.format(
                     letter=curve.letter,

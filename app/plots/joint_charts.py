@@ -310,7 +310,7 @@ class ChartFrame(Card):
             for widget in (self._keys[side], self._values[side]):
                 widget.setVisible(side in curves)
         self._set_widened()
-        self.chart.setAccessibleName(tr("{joint} over time").format(joint=title_in_words(self.kind)))
+        self.chart.setAccessibleName(tr("{joint} during the recording").format(joint=title_in_words(self.kind)))
         self.chart.setAccessibleDescription(self.in_words())
 
     def read(self, row: int | None, time_s: float | None) -> None:

@@ -85,8 +85,8 @@ def answer_beside(found: Comparison) -> Answer:
         return Answer(Outcome.OPEN, tr("Nothing can be compared with {walk}.").format(walk=walk), "")
     most = max(reported, key=lambda row: row.difference.ratio)
     if any(row.exceeds for row in reported):
-        first = tr("Some changes from {walk} are beyond measurement error, none clearly.")
-        then = f"{tr('The table marks them.')} {largest_sentence(most)}"
+        first = tr("Some changes from {walk} are beyond measurement error, but none clearly so.")
+        then = f"{tr('The table marks these changes.')} {largest_sentence(most)}"
         return Answer(Outcome.OPEN, first.format(walk=walk), then)
     first = tr("All judged changes from {walk} are within measurement error.").format(walk=walk)
     return Answer(Outcome.NOTHING, first, largest_sentence(most))

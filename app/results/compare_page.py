@@ -48,11 +48,11 @@ MOST_WITH_STRIDES = 3  # visits whose strides are counted beside their day
 KINDS = (200, 360)  # px: the narrowest and the widest that the box becomes
 OTHER_ZERO = later(
     "No common standing reference: compare range of motion and curve shape, not absolute angles. "
-    "0° is the mean of the gait cycle."
+    "Here, 0° is the mean angle over the gait cycle."
 )
 NO_COMMON_CONDITION = later(
-    "This visit shares no condition with an earlier visit, so they are not compared. {walked} "
-    "“Any visits and conditions” compares any two you choose."
+    "This visit shares no condition with an earlier visit, so the visits are not compared. "
+    "{walked} To compare any two visits or conditions, choose “Any visits and conditions”."
 )
 NOTHING = {
     Contrast.CONDITIONS: later("Only one walk has strides. Record a second walk to compare."),
@@ -422,7 +422,7 @@ class ComparePage(Themed):
         latest = found.latest if self.kind is Contrast.VISITS else None
         stated = conclusion(worth, reported, latest) if found.others else []
         if visits is not None and visits.without:
-            without = tr("Not compared, no walk in this condition: {visits}.")
+            without = tr("Not compared, as they have no walk in this condition: {visits}.")
             stated.append(without.format(visits=", ".join(visits.without)))
         self._say(stated, chosen, is_marked=bool(worth))
         self.card.show_comparison(found, title, self.conclusion.text())

@@ -25,7 +25,7 @@ JUDGED = (Judgement.EXCEEDS_ERROR, Judgement.INSIDE_ERROR)
 MOST_STATED = 3  # sentences about differences; the table has all of them
 
 ERROR = later("Grey: measurement error. It includes {sources}.")
-UNVERIFIED = later("† based on a figure whose source could not be verified.")
+UNVERIFIED = later("† based on a value whose source could not be verified.")
 
 
 def part_in_words(part: Part, name: str) -> str:
@@ -127,20 +127,25 @@ def conclusion(worth: Sequence[str], reported: Sequence[Compared | SideRow], lat
         The visit that all of them lead to; None: they are those of any parts.
     """
     if len(worth) > MOST_STATED:
-        return [*worth[:MOST_STATED], tr("The table shows all of them.")]
+        return [*worth[:MOST_STATED], tr("The table shows all differences.")]
     if worth:
         return list(worth)
     judged = [row for row in reported if is_judged(row)]
     most = max(judged, key=lambda row: row.difference.ratio, default=None)
     if most is None:
         none = tr("The differences could not be judged.")
-        of_visit = tr("The changes to visit {visit} could not be judged.")
+        of_visit = tr("The changes up to visit {visit} could not be judged.")
     elif not any(row.exceeds for row in judged):
         none = tr("All judged differences are within measurement error.")
-        of_visit = tr("All judged changes to visit {visit} are within measurement error.")
+        of_visit = tr("All judged changes up to visit {visit} are within measurement error.")
     else:
-        none = tr("Some differences are beyond measurement error, none clearly. The table marks them.")
-        of_visit = tr("Some changes to visit {visit} are beyond measurement error, none clearly. The table marks them.")
+        none = tr(
+            "Some differences are beyond measurement error, but none clearly so. The table marks these differences."
+        )
+        of_visit = tr(
+            "Some changes up to visit {visit} are beyond measurement error, but none clearly so. The "
+            "table marks these changes."
+        )
     stated = none if latest is None else of_visit.format(visit=latest.letter)
     return [stated] if most is None else [stated, largest_sentence(most)]
 

@@ -20,8 +20,8 @@ from core.samples import RecordingKind, Session
 MOST_DIFFERENCES = 5
 KEY = later(
     "Thick line in the leg's colour: result. Thin lines around it: uncertainty, 2 SD. Thin light "
-    "line: published method. Thin grey line: orientation. Phases below: full, loading response; "
-    "pale, foot flat; narrow, pre-swing; thin grey, swing."
+    "line: published method. Thin grey line: orientation. Bars below show phases. Full colour: "
+    "loading response. Pale: foot flat. Narrow: pre-swing. Thin grey: swing."
 )
 
 
@@ -74,5 +74,8 @@ def _line(recording: RecordingAnalysis, joint: Joint, is_drawn: bool) -> str:
 def _slipped(recording: RecordingAnalysis, side: Side) -> Iterator[str]:
     from_s = recording.slipped_from_s.get(side)
     if from_s is not None and len(recording.time_s) and from_s <= recording.time_s[-1]:
-        stated = tr("Strap moved on the {side} leg. From {time:.1f} s its curves are not reported; the leg is grey.")
+        stated = tr(
+            "Strap moved on the {side} leg. From {time:.1f} s on, the curves of this leg are not "
+            "reported; the leg is grey."
+        )
         yield stated.format(side=side_name(side), time=from_s)

@@ -134,10 +134,10 @@ def standing_in_words(found: GoalFigure) -> str:
     """How a value compares with its goal, after the goal was named."""
     error = fixed(found.error, _places(found.goal.column)) + short_unit(found.goal.column)
     stated = {
-        GoalStanding.SHORT: tr("not reached, beyond measurement error (±{error})"),
-        GoalStanding.SHORT_INSIDE: tr("not reached, but within measurement error (±{error})"),
-        GoalStanding.REACHED_INSIDE: tr("reached, but within measurement error (±{error})"),
-        GoalStanding.REACHED: tr("reached, beyond measurement error (±{error})"),
+        GoalStanding.SHORT: tr("not reached; the difference is beyond measurement error (±{error})"),
+        GoalStanding.SHORT_INSIDE: tr("not reached; the difference is within measurement error (±{error})"),
+        GoalStanding.REACHED_INSIDE: tr("reached; the difference is within measurement error (±{error})"),
+        GoalStanding.REACHED: tr("reached; the difference is beyond measurement error (±{error})"),
         GoalStanding.NOT_JUDGED: tr("not judged: measurement error not known"),
         GoalStanding.UNKNOWN: tr("no value reported"),
     }
@@ -146,16 +146,16 @@ def standing_in_words(found: GoalFigure) -> str:
 
 def beyond_in_words(found: GoalStanding) -> str:
     """Of a goal that is reached, whether that is more than the error."""
-    return tr("beyond error") if found is GoalStanding.REACHED else tr("within error, so not certain")
+    return tr("beyond error") if found is GoalStanding.REACHED else tr("within measurement error, so not certain")
 
 
 def brief_standing(found: GoalStanding) -> str:
     """The same in a few words, where the goal is shown beside it."""
     return {
-        GoalStanding.SHORT: tr("not reached, beyond error"),
+        GoalStanding.SHORT: tr("not reached; the difference is beyond measurement error"),
         GoalStanding.SHORT_INSIDE: tr("not reached; the difference is within measurement error"),
-        GoalStanding.REACHED_INSIDE: tr("reached, but within measurement error"),
-        GoalStanding.REACHED: tr("reached, beyond measurement error"),
+        GoalStanding.REACHED_INSIDE: tr("reached; the difference is within measurement error"),
+        GoalStanding.REACHED: tr("reached; the difference is beyond measurement error"),
         GoalStanding.NOT_JUDGED: tr("goal not judged"),
         GoalStanding.UNKNOWN: tr("goal not judged"),
     }[found]

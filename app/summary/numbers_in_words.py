@@ -121,7 +121,7 @@ def marks_note() -> str:
 
 
 def dagger_note() -> str:
-    return tr("{dagger}: error based on a figure whose source could not be verified.").format(dagger=DAGGER)
+    return tr("{dagger}: measurement error based on a value whose source could not be verified.").format(dagger=DAGGER)
 
 
 USUAL = {KNEE_RANGE: 60.0, ANKLE_RANGE: 28.0, STANCE: 61.0}  # means for which tables give an error

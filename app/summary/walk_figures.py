@@ -56,7 +56,7 @@ PEAKS = (  # name of the column in strides.csv, name for the reader, window of t
     ("loading_peak_deg", later("Peak flexion, loading"), "knee_loading_peak"),
     ("stance_minimum_deg", later("Least flexion, stance"), "knee_stance_minimum"),
     ("swing_peak_deg", later("Peak flexion, swing"), "knee_swing_peak"),
-    ("swing_peak_percent", later("Time of peak flexion, swing, %"), None),
+    ("swing_peak_percent", later("Time of peak flexion in swing, %"), None),
     ("range_deg", later("Range of motion"), None),
     ("stance_dorsiflexion_deg", later("Peak dorsiflexion, stance"), "ankle_stance_dorsiflexion"),
     ("push_off_plantarflexion_deg", later("Peak plantarflexion, push-off"), "ankle_push_off_plantarflexion"),

@@ -159,8 +159,8 @@ def nothing_found(facts: Facts, comparison: Comparison | None) -> list[str]:
     if away and max(away) <= MAX_AWAY_SD:
         stated.append(
             tr(
-                "All judged peaks are within 2\N{NO-BREAK SPACE}SD of the reference, shifted to the level of "
-                "each curve."
+                "All judged peaks are within 2\N{NO-BREAK SPACE}SD of the reference. For this, the reference "
+                "is shifted to the level of each curve."
             )
         )
     return stated or [tr("Nothing could be judged.")]
@@ -303,13 +303,13 @@ def _beyond_band(facts: Facts, bands: tuple[str, str]) -> Iterator[Candidate]:
         offset = facts.offset_deg(side, kind)
         pattern = (
             tr(
-                "{joint} {peak}: {value}°; {group} at the level of the curve {band}°: more than "
-                "2\N{NO-BREAK SPACE}SD below."
+                "{joint} {peak}: {value}°, more than 2\N{NO-BREAK SPACE}SD below the {group} ({band}° at the "
+                "curve's level)."
             )
             if away < 0
             else tr(
-                "{joint} {peak}: {value}°; {group} at the level of the curve {band}°: more than "
-                "2\N{NO-BREAK SPACE}SD above."
+                "{joint} {peak}: {value}°, more than 2\N{NO-BREAK SPACE}SD above the {group} ({band}° at the "
+                "curve's level)."
             )
         )
         stated = pattern.format(
@@ -331,9 +331,9 @@ def _beyond_band(facts: Facts, bands: tuple[str, str]) -> Iterator[Candidate]:
             if abs(away) > MAX_AWAY_SD:
                 unit, decimals = unit_and_decimals(column)
                 pattern = (
-                    tr("{measure}, {side}: {value}; {group} {band}: more than 2\u00a0SD below.")
+                    tr("{measure}, {side}: {value}, more than 2\N{NO-BREAK SPACE}SD below the {group} ({band}).")
                     if away < 0
-                    else tr("{measure}, {side}: {value}; {group} {band}: more than 2\u00a0SD above.")
+                    else tr("{measure}, {side}: {value}, more than 2\N{NO-BREAK SPACE}SD above the {group} ({band}).")
                 )
                 stated = pattern.format(
                     measure=capitalised(name_in_sentence(column)),
@@ -366,7 +366,12 @@ def caveat(facts: Facts, comparison: Comparison | None) -> list[str]:
     if speeds:
         return [tr("Speed {speeds} m/s: part of a difference may be due to speed.").format(speeds=speeds)]
     if any(found.zero is ZeroKind.STANDING for found in facts.calibrated.values()):
-        return [tr("Angles start from the patient's standing posture. That posture shifts the whole curve up or down.")]
+        return [
+            tr(
+                "Angles are measured from the patient's standing posture. That posture shifts the whole curve "
+                "up or down."
+            )
+        ]
     return []
 
 

@@ -269,7 +269,7 @@ async def refuse_while_recording(sensor: DotSensor) -> None:
     if state is DotAnswer.RECORDING:
         raise DotRefusedError(
             "{sensor} is recording to its memory",
-            "Stop that recording in the program that started it, such as Movella's app, and fetch it there",
+            "Stop that recording in the program that started it, such as Movella's app. Fetch the recording there",
             sensor=sensor.name,
         )
     has_memory = sensor.info is not None and sensor.info.can_synchronise  # both came with the same firmware

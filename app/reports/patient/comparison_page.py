@@ -79,7 +79,8 @@ def not_compared_page(request: ReportRequest) -> list[Block]:
     stated = tr("The visit on {day} has no walk that can be compared.")
     if before:
         stated = tr(
-            "The visit on {day} has no walk in this condition ({condition}), so it is not compared. It has: {others}."
+            "The visit on {day} has no walk in this condition ({condition}), so it is not compared. Its "
+            "conditions: {others}."
         )
     words = stated.format(
         day=_day_of(earlier.session.started),
@@ -292,7 +293,7 @@ def _what_else_changed(comparison: Comparison) -> str:
     else:
         stated = [tr("One session, sensors reattached between walks.")]
     if comparison.has_one_zero_throughout:
-        stated.append(tr("Same kind of standing reference in each."))
+        stated.append(tr("The standing reference is of the same kind throughout."))
     else:
         stated.append(
             tr("The standing reference is missing or of another kind: only range of motion and timing are compared.")
@@ -322,7 +323,9 @@ def _how_judged(comparison: Comparison) -> str:
         "{sources}. Differences between walks alone account for {knee}° of knee range of motion and "
         "{stance} percentage points of stance."
     )
-    lines = tr("Vertical lines: toe\u2011off of each. {letters} mark the curves; the first is thin and pale.")
+    lines = tr(
+        "Vertical lines: toe\u2011off of each curve. {letters} name the curves; the first curve is thin and pale."
+    )
     parts = [
         *([stated.format(sources=sources_in_words(reported), knee=knee, stance=stance)] if reported else []),
         *([dagger_note()] if any(found.is_unverified for found in reported) else []),

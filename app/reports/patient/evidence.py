@@ -53,27 +53,27 @@ def evidence_table(facts: Facts) -> list[Block]:
     gates: list[tuple[str, str, Callable[[Joint, JointCalibration], str], str]] = [
         (
             "axis",
-            tr("Joint axis, 1 SD"),
+            tr("Joint axis, ± 1 SD"),
             _axis,
             tr("at most {care}°, caution up to {most}°").format(care=fixed(care, 1), most=fixed(most, 0)),
         ),
         (
             "pairing",
-            tr("Adjacent segments, margin"),
+            tr("Adjacent segments, clarity"),
             _pairing,
             tr("at least {limit}").format(limit=fixed(LIMITS.pairing_margin, 1)),
         ),
         (
             "disagreement",
-            tr("Disagreement at the joint"),
+            tr("Sensor disagreement at joint"),
             lambda _, found: NOTHING if found.disagreement is None else fixed(found.disagreement, 2),
-            tr("under {limit} to {most}, by margin").format(
+            tr("under {limit} to {most}, by clarity").format(
                 limit=fixed(DOUBTFUL_DISAGREEMENT, 2), most=fixed(MAX_DISAGREEMENT, 2)
             ),
         ),
         (
             "sign",
-            tr("Flexion or extension, margin"),
+            tr("Flexion or extension, clarity"),
             _sign,
             tr("at least {limit}, or by hand").format(limit=fixed(MIN_MARGIN, 1)),
         ),
@@ -93,7 +93,7 @@ def evidence_table(facts: Facts) -> list[Block]:
         ),
         (
             "halves",
-            tr("ROM, second half minus first"),
+            tr("ROM, second half of walk minus first"),
             lambda joint, _: _degrees(_farthest(halves_apart, facts, joint), is_signed=True),
             tr("at most {limit}°").format(limit=fixed(LIMITS.halves_deg, 0)),
         ),
@@ -137,7 +137,7 @@ def hips_table(facts: Facts) -> list[Block]:
     gates: list[tuple[str, str, Callable[[Joint, HipIdentification], str], str]] = [
         (
             "pairing",
-            tr("Adjacent segments, margin"),
+            tr("Adjacent segments, clarity"),
             lambda _, found: _margin(found.margin),
             tr("at least {limit}").format(limit=fixed(LIMITS.pairing_margin, 1)),
         ),
@@ -149,13 +149,13 @@ def hips_table(facts: Facts) -> list[Block]:
         ),
         (
             "hip_centre",
-            tr("Hip centre to pelvis, thigh sensor"),
+            tr("Hip centre to pelvis and thigh sensor"),
             lambda _, found: _cm(found.centre_proximal_m) + ", " + _cm(found.centre_distal_m),
             tr("{least} to {most} cm").format(least=fixed(100 * centre[0], 0), most=fixed(100 * centre[1], 0)),
         ),
         (
             "hips_apart",
-            tr("Left hip centre, left of the right by"),
+            tr("Hip centres apart, left from right"),
             lambda _, found: (
                 NOTHING if found.centres_apart_m is None else f"{fixed(100 * found.centres_apart_m, 0)} cm"
             ),
@@ -163,7 +163,7 @@ def hips_table(facts: Facts) -> list[Block]:
         ),
         (
             "hip_heading",
-            tr("Pelvis–thigh heading, 1 SD"),
+            tr("Pelvis–thigh heading, ± 1 SD"),
             lambda _, found: _degrees(math.degrees(found.heading_sd_rad)),
             tr("at most {limit}°, for abduction only").format(limit=fixed(LIMITS.hip_heading_sd_deg, 0)),
         ),
@@ -175,7 +175,7 @@ def hips_table(facts: Facts) -> list[Block]:
         ),
         (
             "halves",
-            tr("ROM, second half minus first"),
+            tr("ROM, second half of walk minus first"),
             lambda joint, _: _degrees(_farthest(halves_apart, facts, joint), is_signed=True),
             tr("at most {limit}°").format(limit=fixed(LIMITS.halves_deg, 0)),
         ),
@@ -210,18 +210,19 @@ def clocks_in_words(facts: Facts) -> str:
     if clock is None:
         return ""
     if clock.status is ClockStatus.PROVEN:
-        return tr("Left and right sensors: synchronised, confirmed.")
+        return tr("Left and right sensors: synchronisation confirmed.")
     if clock.status is ClockStatus.NOT_REPORTED:
-        return tr("Left and right sensors: hip movement does not show their time offset.")
+        return tr("Left and right sensors: their time offset cannot be found from hip movement.")
     side = Side.RIGHT if clock.offset_s > 0 else Side.LEFT
     pattern = (
         tr(
-            "Left and right sensors: offset found from hip movement. The {side} leg was {late} ms late, 1 "
-            "SD {sd} ms; corrected."
+            "Left and right sensors: time offset found from hip movement. The {side} leg was {late} ± "
+            "{sd} ms late (1 SD). This was corrected."
         )
         if clock.applied_s
         else tr(
-            "Left and right sensors: offset found from hip movement. The {side} leg was {late} ms late, 1 SD {sd} ms."
+            "Left and right sensors: time offset found from hip movement. The {side} leg was {late} ± "
+            "{sd} ms late (1 SD)."
         )
     )
     late, sd = fixed(1000 * abs(clock.offset_s), 0), fixed(1000 * clock.sd_s, 0)
@@ -240,12 +241,12 @@ def error_table() -> list[Block]:
     reported = (
         (
             ComparisonKind.ATTACHED,
-            tr("Two walks, same attachment"),
-            tr("strides, drift, synchronisation; walk to walk"),
+            tr("Two walks, sensors left in place"),
+            tr("variation of strides and walks, drift, synchronisation"),
         ),
-        (ComparisonKind.LEGS, tr("Left vs right"), tr("the same; attachment per leg, event bias")),
-        (ComparisonKind.STRAPPINGS, tr("Sensors reattached"), tr("the same; attachment")),
-        (ComparisonKind.VISITS, tr("Two visits"), tr("the same; attachment, another day")),
+        (ComparisonKind.LEGS, tr("Left vs right"), tr("as first row, plus attachment per leg, event bias")),
+        (ComparisonKind.STRAPPINGS, tr("Sensors reattached"), tr("as first row, plus attachment")),
+        (ComparisonKind.VISITS, tr("Two visits"), tr("as first row, plus attachment, another day")),
     )
     rows: list[Row] = []
     for kind, name, contains in reported:
@@ -257,7 +258,7 @@ def error_table() -> list[Block]:
         "95 of 100 healthy people differ by."
     )
     return [
-        heading(tr("Measurement error by comparison")),
+        heading(tr("Measurement error by type of comparison")),
         table(columns, rows, is_dense=True),
         note(f"{stated} {dagger_note()}"),
     ]
@@ -333,7 +334,7 @@ def _lag(_: Joint, found: JointCalibration) -> str:
     if found.is_clock_shared:
         return tr("same clock")
     if found.lag_sd_s is None:
-        return tr("not resolvable")
+        return tr("not determinable")
     return f"{fixed(1000 * found.lag_s, 1)} ± {fixed(1000 * found.lag_sd_s, 1)} ms"
 
 

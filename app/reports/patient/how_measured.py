@@ -171,8 +171,9 @@ def _hips() -> str:
     return tr(
         "The sacrum and thigh sensors show how each thigh turns relative to the pelvis, starting from "
         "standing. In four people, hip angles were compared with optical markers. With the mean "
-        "removed, they were off by 1 to 4° in walking and by 6° in deep squats. The constants were "
-        "set on the same four people. Absolute angles were about 5° too high. Abduction: 2.5° (1 SD)."
+        "removed, the hip angles were off by 1 to 4° in walking and by 6° in deep squats. The "
+        "constants of the method were set on the same four people. Absolute angles were about 5° too "
+        "high. Abduction was off by 2.5° (1 SD)."
     )
 
 
@@ -186,28 +187,28 @@ def _kind(facts: Facts) -> RateKind | None:
 
 def _strides(facts: Facts) -> str:
     source = (
-        tr("from foot pitch, or from the shank where a foot has no sensor")
+        tr("from the tilt of the foot, or of the shank where a foot has no sensor")
         if _findings(facts, "events_from_shank")
-        else tr("from foot pitch; for feet that hardly roll, from the path of the sole")
+        else tr("from the tilt of the foot; for feet that hardly roll, from the path of the sole")
     )
     return tr(
         "Initial contact and toe\u2011off: {source}. Speed and stride length: integrated from stance "
-        "to stance. Used: steady straight walking. Excluded: slow or short strides at either end, "
-        "turns, pauses, missing samples, uncertain contacts, strides unlike the others and strides "
-        "after a strap moved. Reasons are in the stride file. A peak at the edge of its window is "
-        "shown as “no peak”."
+        "to stance. Used: steady straight walking. Excluded: slow or short strides at the start and "
+        "end of a walk, turns, pauses, missing samples, uncertain contacts, strides unlike the others "
+        "and strides after a strap moved. Reasons are in the stride file. A peak at the edge of its "
+        "search window is shown as “no peak”."
     ).format(source=source)
 
 
 def _accuracy() -> str:
     # the figures of resources/help/accuracy.md; a test compares them
     return tr(
-        "Compared with optical systems (root mean square, mean removed): two mechanical hinges 0.31° "
-        "and 0.25°; walking of one person 4.3° and 3.1° at the knees, 2.1° at the ankles. Absolute "
-        "angles: knees about 5°, ankles 7 to 9° (unpublished recordings). 57 initial contacts and "
-        "toe\u2011offs of a healthy person: SD 7.7 and 7.2 ms, contacts 25 ms later than optical; "
-        "stride length 0.25 % too short, SD 1.5 cm. Not tested on patients, after knee replacement or "
-        "on real prostheses."
+        "Difference from optical systems (root mean square, mean removed): two mechanical hinges "
+        "0.31° and 0.25°; walking of one person 4.3° and 3.1° at the knees, 2.1° at the ankles. "
+        "Absolute angles differed by about 5° at the knees and 7 to 9° at the ankles (unpublished "
+        "recordings). 57 initial contacts and toe\u2011offs of a healthy person: SD 7.7 and 7.2 ms, "
+        "contacts 25 ms later than optical; stride length 0.25 % too short, SD 1.5 cm. Not tested on "
+        "patients, after knee replacement or on real prostheses."
     )
 
 

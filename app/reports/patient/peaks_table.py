@@ -107,7 +107,10 @@ def _notes(facts: Facts, kinds: Sequence[JointKind]) -> list[str]:
         (side, column) for side in facts.gait for kind in facts.kinds for column in (*MOVEMENTS[kind], *HEIGHTS[kind])
     ]
     if any(math.isfinite(facts.away_sd(side, column)) for side, column in shown):
-        judged = tr("Against reference: shifted to the level of each curve; knees as measured and divided by {by}.")
+        judged = tr(
+            "Against reference: the reference is shifted to the level of each curve. Knees are compared "
+            "both as measured and divided by {by}."
+        )
         stated.append(judged.format(by=fixed(KNEE_OVERREAD, 2)))
     if any(_verdict(facts, side, column) is Verdict.CARE for side, column in shown):
         stated.append(care_note())
@@ -131,7 +134,7 @@ def measure(column: str) -> str:
     if column.endswith("_range_deg"):
         return tr("Range of motion")
     if column.endswith("_percent"):
-        return tr("Time of peak flexion, swing, %")
+        return tr("Time of peak flexion in swing, %")
     if column in EXCURSIONS_BY_COLUMN:
         return capitalised(excursion_name(column))
     window = WINDOWS[column]
@@ -148,7 +151,7 @@ def _movements(kinds: Sequence[JointKind]) -> str:
             tr("{movement} ({high} minus {low})").format(movement=excursion_name(column), high=ends[0], low=ends[1])
         )
     stated = tr(
-        "Movement range: highest angle in one part of the gait cycle minus the lowest in another, in %: {each}."
+        "Movement range: highest angle in one part of the gait cycle minus the lowest in another (parts in %): {each}."
     )
     return stated.format(each=", ".join(each))
 

@@ -248,7 +248,7 @@ def _every_stride(facts: Facts) -> list[Block]:
     walk = typed(str(facts.visit.shown_names.get(facts.walk.name, facts.walk.name)), CONDITION_LENGTH)
     stated = [
         tr("Strides of {walk}.").format(walk=walk) if rails and len(facts.part.walks) > 1 else "",
-        tr("In order of time. Lines: means of the first and of the second half of the walk."),
+        tr("Strides are in order of time. Lines show the means of the first and second half of the walk."),
         reasons_in_words(facts),
         by_hand_in_words(*facts.part.walks),
     ]

@@ -53,11 +53,13 @@ def trend_page(visits: Sequence[CourseVisit], condition: str, facts: Facts) -> l
     stated = typed(condition, CONDITION_LENGTH) if condition else condition_in_words("")
     wording = [
         tr("Condition: {condition}. Sensors reattached at each visit.").format(condition=stated),
-        tr("Whisker: half the error of a change. Whiskers that do not overlap show a change beyond error."),
-        tr("Dates to scale. Gap: not reported at that visit."),
+        tr("Error bar: half the measurement error of a change. Bars that do not overlap show a change beyond error."),
+        tr("The time axis is to scale. Gap: value not reported at that visit."),
     ]
     if without := len(visits) - len(walked):
-        wording.append(tr("Visits without a walk in this condition, or not calculated: {count}.").format(count=without))
+        wording.append(
+            tr("Visits not shown (no walk in this condition, or not calculated): {count}.").format(count=without)
+        )
     return [
         heading(title),
         note(" ".join(wording)),
@@ -173,10 +175,10 @@ def _table(lines: Sequence[TrendLine], visits: int) -> Block:
         Column(tr("Measure"), "1fr", is_number=False),
         Column("", is_number=False),
         *(Column(str(visit + 1)) for visit in shown),
-        Column(tr("since last")),
+        Column(tr("since previous")),
         Column(tr("since first")),
         Column(tr("likely between")),
-        Column(tr("since first is"), is_number=False),
+        Column(tr("judged since first"), is_number=False),
     ]
     rows: list[Row] = []
     for line in lines:
@@ -204,8 +206,8 @@ def _table(lines: Sequence[TrendLine], visits: int) -> Block:
 def _below(lines: Sequence[TrendLine]) -> str:
     wording = [
         tr(
-            "Absolute angles are not included: each visit has its own standing reference. First: first "
-            "visit with a reported value."
+            "Absolute angles are not included: each visit has its own standing reference. “First” is the "
+            "first visit with a reported value."
         )
     ]
     if any(line.since_first is not None and line.since_first.is_unverified for line in lines):

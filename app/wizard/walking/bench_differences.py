@@ -56,7 +56,7 @@ class BenchDifferences(Card):
         rows += map(_row, _fitted_beyond_error(found, prosthetic))
         sound = next(side for side in Side if side is not prosthetic)
         if sound in found.sides:
-            rows += [_heading(tr("Sound side response"), sound), *_rows(found, OF_SOUND, sound)]
+            rows += [_heading(tr("Sound-side response"), sound), *_rows(found, OF_SOUND, sound)]
         rows += [_heading(tr("Both legs"), None), *_rows(found, OF_BOTH, None), *_rows(found, (LENGTH,), prosthetic)]
         self.table.show_rows(columns, rows)
 

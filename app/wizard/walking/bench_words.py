@@ -25,8 +25,8 @@ def bench_answer(found: Comparison, prosthetic: Side) -> Answer:
             one=shown.letter, other=other.letter
         )
         then = tr(
-            "Provisional: {letter} has {count} strides on the prosthetic side; {required} are needed for a "
-            "measurement error."
+            "Provisional: {letter} has {count} strides on the prosthetic side; {required} are needed to "
+            "determine measurement error."
         )
         count = few[0].strides(prosthetic)
         then = then.format(letter=few[0].letter, count=count, required=MIN_STRIDES_FOR_SD)
@@ -51,7 +51,7 @@ def speeds_in_words(shown: Part, other: Part) -> str:
     values = [part.of_both(SPEED) for part in (other, shown)]
     if not all(map(math.isfinite, values)):
         return tr("Walking speeds are not known.")
-    return tr("Walking speed {first} and {second} m/s.").format(first=fixed(values[0], 2), second=fixed(values[1], 2))
+    return tr("Walking speeds: {first} and {second} m/s.").format(first=fixed(values[0], 2), second=fixed(values[1], 2))
 
 
 def _is_reported_of(row: Compared) -> bool:
@@ -85,5 +85,5 @@ def _beside(found: Comparison, prosthetic: Side) -> str:
         stated = tr("The sound side also changes beyond measurement error.")
     elif sound:
         stated = tr("The sound side does not change beyond measurement error.")
-    straps = tr("Sensors stayed on.") if found.is_one_attachment else tr("Sensors were reattached in between.")
+    straps = tr("Sensors stayed attached.") if found.is_one_attachment else tr("Sensors were reattached in between.")
     return " ".join([stated, straps, speeds_in_words(found.parts[1], found.against)])
