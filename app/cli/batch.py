@@ -27,9 +27,9 @@ HERE = frozenset(("localhost", "127.0.0.1", "::1"))
 def add_batch_arguments(parser: argparse.ArgumentParser) -> None:
     parser.description = (
         "Analyse every session under a folder, each into a folder of its own in OUT, as analyse does, and write "
-        "OUT/parameters.csv and .parquet: a row for each walk and side, with what may be said of each figure. Given "
+        "OUT/parameters.csv and .parquet: a row for each walk and side, with the data quality of each figure. Given "
         "again, the same command goes on: what is done and has not changed is not done again, what failed is tried "
-        "again. Sessions that fail stand in OUT/failures.csv."
+        "again. Sessions that fail are listed in OUT/failures.csv."
     )
     parser.add_argument(
         "folder",

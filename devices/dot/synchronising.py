@@ -69,10 +69,10 @@ class SyncFailure(StrEnum):
     SKEW_TOO_LARGE = "skew too large"
     START_FAILED = "start failed"
     NOT_STARTED = "not started"
-    UNKNOWN = "it does not tell"
+    UNKNOWN = "it does not answer"
     NOT_BACK = "it did not come back"
     SILENT = "it does not begin to measure"
-    NOT_RECEIVED = "it is not heard"
+    NOT_RECEIVED = "nothing is received from it"
     CUT = "what it sends arrives cut"
     OTHER_CLOCK = "its clock differs"
 

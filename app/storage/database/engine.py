@@ -288,7 +288,7 @@ def _impatient_connection() -> "type[PgConnection[Any]]":
                         received_s = time.monotonic()
                     elif time.monotonic() - received_s > PG_SILENT_S:
                         self.pgconn.finish()
-                        raise psycopg.OperationalError("the connection was closed: the server said nothing")
+                        raise psycopg.OperationalError("the connection was closed: the server sent nothing")
                     asked = gen.send(ready)
             except StopIteration as done:
                 return done.value

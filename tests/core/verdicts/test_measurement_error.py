@@ -135,7 +135,7 @@ def test_walks_of_twenty_strides_with_the_sensors_left_on_show_a_few_degrees_apa
     assert 0.0610 < error("stride_length_m", 1.3, 0.05) < 0.12 * 1.3
 
 
-def test_a_change_is_told_apart_from_what_goes_with_walking_speed() -> None:
+def test_what_goes_with_walking_speed_is_taken_out_of_a_change() -> None:
     """Stance 65 to 61 %, 0.9 to 1.1 m/s: -5 points per m/s make -1.0 of -4; -3.0 are left.
 
     Its error is 1.96 x sqrt(2 x 1.1^2 + (0.3 x 1.0)^2) = 1.96 x sqrt(2.51) = 3.10521; that of all of it is
