@@ -93,6 +93,14 @@ WORDS = {
         later("The calibration has an uncertainty of ±{value} (limit ±{limit})."),
         later("Record free motion, or let the patient move longer and in more directions."),
     ),
+    "axis_halves": GateWords(
+        later("The {joint}'s axis came out {value} apart in the two halves of the walk (limit {limit})."),
+        later("Record free motion."),
+    ),
+    "axis_motions": GateWords(
+        later("The {joint}'s axis came out {value} apart in free motion and in the walk (limit {limit})."),
+        _FREE_MOTION,
+    ),
     "lag": GateWords(later("The two sensors are synchronised only to ±{value} (limit ±{limit})."), _ONE_RECEIVER),
     "plausible": GateWords(
         later("Range of motion is {value} (limit {limit})."), later("Check the curve and the sensors.")
@@ -153,7 +161,25 @@ WORDS = {
     ),
     "clocks": GateWords(later("Left and right sensors may be {value} out of sync (limit {limit})."), _ONE_RECEIVER),
 }
+NOT_REPORTED = {  # gates whose sentence is another where nothing is reported
+    "axis_halves": GateWords(
+        later(
+            "The {joint}'s axis came out {value} apart in the two halves of the walk, so its angles are not compared."
+        ),
+        later("Record free motion."),
+    ),
+    "axis_motions": GateWords(
+        later(
+            "The {joint}'s axis came out {value} apart in free motion and in the walk, so its angles are not compared."
+        ),
+        _FREE_MOTION,
+    ),
+}
 WITHOUT_FIGURES = {
+    "axis_halves": GateWords(
+        later("The joint's axis differs between the two halves of the walk."), later("Record free motion.")
+    ),
+    "axis_motions": GateWords(later("The joint's axis differs between free motion and the walk."), _FREE_MOTION),
     "pairing": GateWords(
         later("Sensor positions could not be confirmed."),
         later("Check the sensor positions, or record free motion."),
@@ -182,11 +208,13 @@ WITHOUT_FIGURES = {
 def gate_words(reason: GateReason) -> GateWords:
     """Why this gate is not passed, and what to do, in the language of the application."""
     is_bare = reason.value is None and not reason.sites and reason.gate in WITHOUT_FIGURES
-    words = (WITHOUT_FIGURES if is_bare else WORDS)[reason.gate]
+    is_grave = reason.verdict is Verdict.NOT_REPORTED and reason.gate in NOT_REPORTED
+    words = (WITHOUT_FIGURES if is_bare else NOT_REPORTED if is_grave else WORDS)[reason.gate]
     is_share = reason.gate in SHARES
     value, limit = (_figure(figure, reason.unit, is_share=is_share) for figure in (reason.value, reason.limit))
     sites = capitalised(joined([name_of(site) for site in reason.sites]))
-    why = tr(words.why).format(value=value, limit=limit, sites=sites)
+    joint = name_of(reason.joint) if reason.joint else ""
+    why = tr(words.why).format(value=value, limit=limit, sites=sites, joint=joint)
     return GateWords(why, tr(words.to_do) if words.to_do else "")
 
 

@@ -1,7 +1,8 @@
 """What each joint's verdict rests on, beside what it needs; and how large a difference has to be."""
 
 import math
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
+from functools import partial
 
 import numpy as np
 
@@ -26,6 +27,8 @@ from core.verdicts.sigmas import ComparisonKind
 
 JOINT_WIDTH = "23mm"  # takes a verdict; a joint's longer name, as German has them, breaks before its side
 MARGIN_BEYOND = 100.0  # from here on, how many times better adds nothing
+Criterion = tuple[str, str, Callable[[Joint, JointCalibration], str], str]
+"""A gate, its name, what a joint has, what is required."""
 
 
 def evidence(facts: Facts) -> list[Block]:
@@ -50,13 +53,14 @@ def evidence_table(facts: Facts) -> list[Block]:
     ]
     care, most = LIMITS.axis_sd_deg
     knee, ankle = LIMITS.knee_range_deg, LIMITS.ankle_range_deg
-    gates: list[tuple[str, str, Callable[[Joint, JointCalibration], str], str]] = [
+    gates: list[Criterion] = [
         (
             "axis",
             tr("Joint axis, ± 1 SD"),
             _axis,
             tr("at most {care}°, caution up to {most}°").format(care=fixed(care, 1), most=fixed(most, 0)),
         ),
+        *_axis_of_parts(facts),
         (
             "pairing",
             tr("Adjacent segments, clarity"),
@@ -304,6 +308,26 @@ def _degrees(value: float, *, is_signed: bool = False) -> str:
 
 def _axis(_: Joint, found: JointCalibration) -> str:
     return _degrees(math.nan if found.axis_sd_rad is None else math.degrees(found.axis_sd_rad))
+
+
+def _axis_of_parts(facts: Facts) -> list[Criterion]:
+    """How far the axes of two parts of the data are apart, a criterion for each way they were parted."""
+    found = facts.walk.axis_halves
+    ways = (
+        ("axis_halves", tr("Joint axis, halves of the walk"), False, LIMITS.axis_halves_deg),
+        ("axis_motions", tr("Joint axis, free motion and walk"), True, LIMITS.axis_motions_deg),
+    )
+    criteria: list[Criterion] = []
+    for gate, label, is_free_motion, (care, most) in ways:
+        apart = {joint: one.apart_rad for joint, one in found.items() if one.is_free_motion is is_free_motion}
+        if apart:
+            required = tr("at most {care}°, caution up to {most}°").format(care=fixed(care, 0), most=fixed(most, 0))
+            criteria.append((gate, label, partial(_apart, apart), required))
+    return criteria
+
+
+def _apart(apart_rad: Mapping[Joint, float], joint: Joint, _: JointCalibration) -> str:
+    return _degrees(math.degrees(apart_rad.get(joint, math.nan)))
 
 
 def _pairing(_: Joint, found: JointCalibration) -> str:
