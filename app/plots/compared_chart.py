@@ -45,7 +45,7 @@ class ComparedFrame(Card):
     def __init__(self, look: ThemeNotifier, chart: ComparedChart, side: Side, kind: JointKind) -> None:
         self._side, self._kind = side, kind
         self.chart = chart
-        self._mark = IconMark(look, Icon.WARNING, size=18)
+        self._mark = IconMark(look, Icon.DIFFERENCE, size=18)
         self._note = Text(look, size=12, weight=MEDIUM, wraps=True)
         super().__init__(look, padding=12, spacing=2)
         self.setSizePolicy(QSizePolicy.Policy.Expanding, QSizePolicy.Policy.Expanding)

@@ -187,7 +187,7 @@ class CycleFrame(Card):
         self.kind = kind
         self.chart = chart
         self.chips = {side: VerdictChip(look, side) for side in Side}
-        self._mark = IconMark(look, Icon.WARNING, size=18)
+        self._mark = IconMark(look, Icon.DIFFERENCE, size=18)
         self._note = Text(look, size=12, weight=MEDIUM, wraps=True)
         self.beside = Text(look, size=12, tone="ink2", wraps=True)
         self._walk: tuple[Mapping[Side, SideCycle], Mapping[Side, JointVerdicts], bool] = ({}, {}, False)

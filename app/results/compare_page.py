@@ -103,7 +103,7 @@ class ComparePage(Themed):
             for side in Side:
                 self.frames[side, kind] = ComparedFrame(look, ComparedChart(look, kind), side, kind)
         self.side_charts = CycleCharts(look, reference_curves())
-        self._mark = IconMark(look, Icon.WARNING, size=20)
+        self._mark = IconMark(look, Icon.DIFFERENCE, size=20)
         self.conclusion = Text(look, size=14, wraps=True)
         self.error = Text(look, size=12, tone="ink2", wraps=True)
         self.card = ComparedCard(look)
