@@ -46,6 +46,15 @@ class Estimate(NamedTuple):
     def times(self, unit: float) -> "Estimate":
         return Estimate(unit * self.value, unit * self.low, unit * self.high, self.people)
 
+    @property
+    def judged_by(self) -> float:
+        """What differences are judged by: never less than half of the upper limit.
+
+        Few people, or few strides, may show no difference beyond chance; that is not to be taken for none. The limits
+        of 20 people leave every figure as it is.
+        """
+        return max(self.value, 0.5 * self.high)
+
     def holds(self, value: float) -> bool:
         return self.low <= value <= self.high
 
@@ -94,7 +103,7 @@ class OwnFigures:
                 kind: {**published, **self._sigmas(kind, published)} if kind in _AGAIN else published
                 for kind, published in SIGMAS.items()
             },
-            {**HEALTHY_BETWEEN_LEGS, **{column: found.value for column, found in self.healthy.items()}},
+            {**HEALTHY_BETWEEN_LEGS, **{column: found.judged_by for column, found in self.healthy.items()}},
             study,
         )
 
@@ -109,12 +118,13 @@ class OwnFigures:
 
 
 def _scaled(published: Sigma, factor: Estimate, least: Sigma) -> Sigma:
-    slower = max(factor.value, 1.0)
+    times = factor.judged_by
+    slower = max(times, 1.0)
     return replace(
         published,
         source=Source("own study", "healthy", factor.people),
-        constant=factor.value * published.constant,
-        share_percent=factor.value * published.share_percent,
+        constant=times * published.constant,
+        share_percent=times * published.share_percent,
         slow=(slower * published.slow[0], slower * published.slow[1]) if published.slow is not None else None,
         least=least,
     )

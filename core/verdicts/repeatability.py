@@ -20,7 +20,7 @@ from typing import NamedTuple
 from scipy.special import gammaincinv
 
 from core.body import Side
-from core.parameters import SPEED, STEP_TIME, QuantityKind
+from core.parameters import CADENCE, SPEED, STEP_TIME, QuantityKind
 from core.verdicts.norms import MIN_STRIDES_FOR_SD
 from core.verdicts.own_figures import MIN_PEOPLE, PUBLISHED_SIGMAS, Between, Estimate, OwnFigures, OwnSigma
 from core.verdicts.sigmas import HEALTHY_BETWEEN_LEGS, KINDS, Sigma
@@ -28,7 +28,7 @@ from core.verdicts.stride_means import MeanOfStrides
 
 Z95 = 1.96
 # by stride time alone, as the published figure is; swing is the rest of stance
-_LEFT_OUT = (SPEED, STEP_TIME, "swing_percent")
+_LEFT_OUT = (SPEED, STEP_TIME, CADENCE, "swing_percent")
 COLUMNS: Mapping[QuantityKind, tuple[str, ...]] = {
     kind: (SPEED,)
     if kind is QuantityKind.SPEED
@@ -182,7 +182,8 @@ def _root(moments: Sequence[_Moment]) -> Estimate:
     square, chance = fmean(one.square for one in moments), fmean(one.chance for one in moments)
     scatter = variance(one.square for one in moments)
     shown = 2 * people * square**2 / scatter if scatter > 0 else math.inf
-    degrees = math.sqrt(people * min(max(shown, people), sum(one.squares for one in moments)))
+    # one less per study, for the chance that is taken off is an estimate too
+    degrees = math.sqrt(people * min(max(shown, people), sum(one.squares for one in moments))) - 1
     low, high = (degrees * square / (2 * float(gammaincinv(degrees / 2, share))) for share in (0.975, 0.025))
     roots = [math.sqrt(max(one - chance, 0.0)) for one in (square, low, high)]
     return Estimate(roots[0], roots[1], roots[2], people)

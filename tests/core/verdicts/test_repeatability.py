@@ -22,7 +22,7 @@ from core.verdicts.own_figures import (
     figures_in_json,
 )
 from core.verdicts.repeatability import Strapping, TooFewPeopleError, repeatability_of
-from core.verdicts.sigmas import PUBLISHED, SIGMAS, ComparisonKind, in_use, sigma_of, using
+from core.verdicts.sigmas import PUBLISHED, SIGMAS, ComparisonKind, healthy_between_legs, in_use, sigma_of, using
 from core.verdicts.stride_means import MeanOfStrides
 from tests.benchmarks.repeatability import coverage, person
 
@@ -157,6 +157,19 @@ def test_a_study_of_one_day_does_not_lower_what_lies_between_visits() -> None:
         assert between(VISITS) == pytest.approx(2.2)
 
 
+def test_a_study_that_shows_nothing_beyond_chance_is_not_taken_for_one_that_shows_nothing() -> None:
+    """Judged by half of the upper limit, where few people leave more open than that; 20 people's figures as they are."""
+    nothing = Estimate(0.0, 0.0, 1.6, 5)
+    few = OwnFigures(5, Between.DAYS, {QuantityKind.STANCE: OwnSigma(nothing, 60.0, 1.1)}, {STANCE: nothing})
+    with using(few.figures):
+        sigma = sigma_of(STANCE, VISITS)
+        assert sigma is not None
+        assert sigma.of(60.0, 1.2) == pytest.approx(0.8 * 1.1)
+        assert healthy_between_legs(STANCE) == pytest.approx(0.8)
+    many = study(20).sigmas[QuantityKind.STANCE].factor
+    assert many.judged_by == many.value
+
+
 def test_attaching_again_never_counts_for_less_than_leaving_on_nor_slow_walks_for_less_than_published() -> None:
     with using(own(0.0, Between.DAYS).figures):
         sigma = sigma_of(STANCE, VISITS)
@@ -210,5 +223,5 @@ def test_a_file_that_is_none_is_refused(path: tuple[str, ...], value: object) ->
     for key in path[:-1]:
         place = place[key]
     place[path[-1]] = value
-    with pytest.raises(ValueError, match="figure|people|Between|gaitwright-repeat"):
+    with pytest.raises(ValueError, match=r"figure|people|Between|gaitwright-repeat"):
         figures_from_json(content)
