@@ -76,17 +76,19 @@ def opened_library(args: argparse.Namespace, *, is_to_be_moved: bool = False) ->
     FileRefusedError
         It does not open, or it refused what was done with it.
     """
+    from app.storage.error_figures import figures_of
     from app.storage.journal.header import JournalRefusedError
     from app.storage.keys import KeyRefusedError
     from app.storage.opened import open_library
     from app.storage.stored import LibraryError
+    from core.verdicts.sigmas import using
 
     folder: Path = args.library
     try:
         passphrase = _passphrase(args.passphrase_file, folder)
         with _counted(folder, args.operator):
             opening = open_library(folder, passphrase, args.operator, is_to_be_moved=is_to_be_moved)
-        with opening as opened:
+        with opening as opened, using(figures_of(opened.library)):
             yield opened
     except (LibraryError, KeyRefusedError) as refusal:
         remedy = f"{refusal.remedy} ({WHO} CODE)" if refusal.remedy == "Enter your user code" else refusal.remedy

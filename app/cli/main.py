@@ -24,6 +24,7 @@ from app.cli.import_files import add_import_arguments, import_files
 from app.cli.library import LibrarySession, add_key_arguments, session_place
 from app.cli.progress import Progress, finding_lines, one_of, positive
 from app.cli.query import add_query_arguments, query
+from app.cli.repeatability import add_repeatability_arguments, repeatability
 from app.cli.report import add_report_arguments, make
 from app.storage.layout import default_folder
 from app.system.logs import log_folder, start_logging, version_of
@@ -41,7 +42,7 @@ DEFAULT_TAU_S = 2.0
 METHODS = ("robust", "published")
 SUBCOMMANDS = (
     *("analyse", "demo", "report", "compare", "agree", "export", "import", "batch", "query"),
-    *("clinic", "recover", "audit", "devices"),
+    *("repeatability", "clinic", "recover", "audit", "devices"),
 )
 OF_LIBRARY = "the folder of the library (your own)"
 
@@ -137,6 +138,7 @@ def _parser() -> argparse.ArgumentParser:
         ("export", "write results for other programs", add_export_arguments, export),
         ("import", "add recordings of another program to a session", add_import_arguments, import_files),
         ("batch", "analyse all sessions of a folder or of the library", add_batch_arguments, batch),
+        ("repeatability", "find your clinic's own error figures", add_repeatability_arguments, repeatability),
     ):
         subcommand = commands.add_parser(name, help=what)
         add_arguments(subcommand)

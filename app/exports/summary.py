@@ -17,6 +17,7 @@ from app.summary.comparison import compare_legs, first_and_second
 from app.summary.condition_figures import summarise_conditions
 from app.summary.conditions import Part
 from app.summary.differences import likely_figures
+from app.summary.error_figures import error_figures_in_json
 from app.summary.reference_bands import reference_curves
 from app.wording.findings import sentence
 from app.wording.verdicts import gate_sentence
@@ -97,6 +98,7 @@ def summarise(
         },
         **({"conditions": summarise_conditions(analysis, recordings, agreed)} if recordings else {}),
         "reference_group": _reference_group(),
+        "error_figures": error_figures_in_json(),
         "findings": [_finding(finding) for finding in analysis.findings],
     }
 

@@ -21,6 +21,8 @@ from app.home.patients.demonstration import FillingDemonstration
 from app.home.patients.home_page import HomePage
 from app.home.patients.notices import LibraryNotices
 from app.home.patients.recovering import Recovering
+from app.home.repeatability.controller import Repeatability
+from app.home.repeatability.repeatability_page import RepeatabilityPage
 from app.home.settings.controller import SettingsController
 from app.home.settings.settings_page import SettingsPage
 from app.system.settings import Scheme, Settings
@@ -66,6 +68,7 @@ class Home(Themed):
         self._questions: Questions | None = None
         self._again: AnalysingAgain | None = None
         self._goals: GoalsOfPatient | None = None
+        self._repeatability: Repeatability | None = None
         self.working = WorkingPage(look)
         self.bar = ActionBar(look)
         self.toast = Toast(look, self)
@@ -112,6 +115,19 @@ class Home(Themed):
             self._fit()
         return self._goals
 
+    @property
+    def repeatability(self) -> Repeatability:
+        """The clinic's own error figures, made when they are first asked for."""
+        if self._repeatability is None:
+            made = self._repeatability = Repeatability(self._look, self._controller, self)
+            self._add_page(made.page)
+            made.changed.connect(self._show)
+            made.working.connect(self._work)
+            made.progressed.connect(self._on_progressed)
+            made.done.connect(self._show_repeatability)
+            made.chosen.connect(self.patients.read)
+        return self._repeatability
+
     def prepare(self) -> bool:
         """Make the next part before somebody asks for it; whether there was one."""
         if self._settings_controller is None:
@@ -145,6 +161,7 @@ class Home(Themed):
         made.changed.connect(self._show)
         made.reported.connect(self.banner.show_message)
         made.again_requested.connect(self._begin_again)
+        made.repeatability_requested.connect(self._begin_repeatability)
         self._fit()
         return made
 
@@ -173,6 +190,8 @@ class Home(Themed):
             self._again.page.forget()
         if self._goals is not None:
             self._goals.forget()
+        if self._repeatability is not None:
+            self._repeatability.forget()
         self.importing.forget()
         self.filling.stop()
         if self._questions is not None:
@@ -203,7 +222,10 @@ class Home(Themed):
 
     def focus(self) -> None:
         page = self.current
-        if isinstance(page, AnalyseAgainPage | GoalsPage | HomePage | ImportPage | SettingsPage | QuestionsPage):
+        if isinstance(
+            page,
+            AnalyseAgainPage | GoalsPage | HomePage | ImportPage | RepeatabilityPage | SettingsPage | QuestionsPage,
+        ):
             page.focus()
 
     def paintEvent(self, _event: QPaintEvent) -> None:
@@ -364,6 +386,8 @@ class Home(Themed):
             return self.again.bar
         if self._has_goals:
             return self.goals.bar
+        if self._has_repeatability:
+            return self.repeatability.bar
         if self.current is not self.page:
             return BarState()
         new = BarAction(tr("New patient"), self._on_new_patient, tr("Ctrl N"), Icon.ADD)
@@ -384,6 +408,10 @@ class Home(Themed):
     @property
     def _has_goals(self) -> bool:
         return self._goals is not None and self.current is self._goals.page
+
+    @property
+    def _has_repeatability(self) -> bool:
+        return self._repeatability is not None and self.current is self._repeatability.page
 
     @property
     def _is_asking(self) -> bool:
@@ -412,6 +440,13 @@ class Home(Themed):
         self.again.begin(self.page.patient_id if self.current is self.page else None)
         self._go_to(self.again.page)
         self.bar.back.setFocus()  # until the sessions are read
+
+    def _begin_repeatability(self) -> None:
+        self.repeatability.begin(is_demonstration=self.state is not None and self.state.is_demonstration)
+        self._show_repeatability()
+
+    def _show_repeatability(self) -> None:
+        self._go_to(self.repeatability.page)
 
     def _begin_goals(self) -> None:
         """Show what was agreed with the patient who is chosen."""
@@ -444,8 +479,12 @@ class Home(Themed):
             self.questions.save()
 
     def _on_help(self) -> None:
-        topic = "questions" if self._is_asking else "goals" if self._has_goals else "home"
-        self.help_requested.emit(topic)
+        topics = (
+            ("questions", self._is_asking),
+            ("goals", self._has_goals),
+            ("repeatability", self._has_repeatability),
+        )
+        self.help_requested.emit(next((topic for topic, is_in_sight in topics if is_in_sight), "home"))
 
     def _on_rail_pressed(self, number: int) -> None:
         if self.current is self.working:
@@ -505,6 +544,8 @@ class Home(Themed):
             self.computing.stop()
         elif self._again is not None and self._again.is_working:
             self._again.stop()
+        elif self._repeatability is not None and self._repeatability.is_working:
+            self._repeatability.stop()
         else:
             self.importing.stop()
 

@@ -2,9 +2,11 @@
 
 from collections.abc import Callable, Sequence
 from dataclasses import replace
+from functools import partial
 from typing import TYPE_CHECKING, NamedTuple
 from uuid import UUID
 
+from app.cohort.repeatability.people import folded
 from app.editing.session_recording import SessionRecording, counted
 from app.storage.analysis_content import FORMAT, unpacked
 from app.storage.exchange import recording_with_samples
@@ -61,6 +63,17 @@ def read_analysed(opened: "OpenedLibrary", session_id: UUID, report: Report) -> 
         known = analyse(bare(reported), progress=report)
         keep_analysis(results, session_id, reported, known)
     return _keep_course(opened, stored, reported, known)
+
+
+def sessions_of_condition(
+    opened: "OpenedLibrary", condition: str
+) -> "list[tuple[str, Callable[[Report], tuple[Session, Analysis]]]]":
+    """The sessions with a walk of a condition, however it is written: what each is called, and what reads it."""
+    return [
+        (line.patient_code, partial(read_analysed, opened, line.id))
+        for line in opened.library.sessions.list()
+        if condition in map(folded, line.conditions)
+    ]
 
 
 def session_to_analyse(opened: "OpenedLibrary", session_id: UUID) -> "tuple[Session, Callable[[bytes], None]] | None":

@@ -18,6 +18,7 @@ from app.storage.clinic.journal_store import PlaceMissingError, PlaceUnconfirmed
 from app.storage.clinic.moving import Moved, bring_back_here, give_up_early, move_to_server
 from app.storage.clinic.station import server_name, station_of, with_password
 from app.storage.data_key import DataKey
+from app.storage.error_figures import figures_of
 from app.storage.key_change import ChangedKey, change_data_key, refuse_change
 from app.storage.keyring_slot import is_there_a_keyring, open_remembered
 from app.storage.keys import KeyRefusedError
@@ -33,6 +34,7 @@ from app.wording.translation import tr
 from app.workers.library_opening import demonstration, let_keyring_remember, tidy
 from app.workers.library_state import Closed, Joined, LibraryPlace, NotOpened, OpenedState, Reopened, Unlocked
 from app.workers.refusals import NothingOpenError, Refusal, nothing_open, refusal_of
+from core.verdicts.sigmas import PUBLISHED, use
 
 Opening = tuple[OpenedLibrary, str]  # and its recovery key, where it was just made
 
@@ -63,6 +65,8 @@ class LibraryHolder:
                 library, recovery_key = opening()
                 ends.enter_context(library)
                 state = replace(_look_through(library, ends), rollback=self._look_back(library))
+                ends.callback(use, PUBLISHED)
+                use(figures_of(library.library))
                 self._library, self._ends = library, ends.pop_all()
         except Exception as error:  # reported where the library was to be opened
             is_away = station is not None and isinstance(error, ServerSilentError) and is_station(station)
@@ -207,6 +211,8 @@ class LibraryHolder:
             # held again: where the disk was mounted again meanwhile, the watch held it, which has ended
             ends.enter_context(held_alone(library.folder))
             begin_station(library)
+            ends.callback(use, PUBLISHED)
+            use(figures_of(library.library))
             self._library, self._ends = library, ends.pop_all()
         if before.data_key is not None and before.data_key is not key:
             before.data_key.wipe()

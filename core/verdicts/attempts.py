@@ -6,18 +6,17 @@ judged.
 """
 
 import math
-from collections.abc import Mapping
 
-from core.parameters import QuantityKind
+from core.parameters import SPEED
 from core.timed.measures import COLUMNS, MeanOfAttempts
 from core.timed.protocols import TimedProtocol
 from core.verdicts.measurement_error import SENTENCE_FACTOR, Z95, Difference, ErrorSource, Judgement, Mark
 from core.verdicts.model import Assessment
-from core.verdicts.sigmas import SIGMAS, ComparisonKind, Sigma
+from core.verdicts.sigmas import ComparisonKind, Sigma, sigma_of
 
-BETWEEN_VISITS: Mapping[str, Sigma] = {
-    COLUMNS[TimedProtocol.TEN_METRES]: SIGMAS[ComparisonKind.VISITS][QuantityKind.SPEED]
-}
+
+def _sigma(column: str) -> Sigma | None:
+    return sigma_of(SPEED, ComparisonKind.VISITS) if column == COLUMNS[TimedProtocol.TEN_METRES] else None
 
 
 def error_between_visits(column: str) -> float:
@@ -28,8 +27,8 @@ def error_between_visits(column: str) -> float:
     float
         In the unit of the column.
     """
-    sigma = BETWEEN_VISITS.get(column)
-    return Z95 * math.sqrt(2) * sigma.constant if sigma is not None else math.nan
+    sigma = _sigma(column)
+    return Z95 * math.sqrt(2) * sigma.of(0.0) if sigma is not None else math.nan  # of a speed it is a constant
 
 
 def compare_attempts(
@@ -57,8 +56,8 @@ def compare_attempts(
     difference = one.mean - other.mean
     if any(not found.is_reported for found in assessments) or not math.isfinite(difference):
         return Difference(math.nan, math.nan, Judgement.NOT_REPORTED)
-    error = error_between_visits(column)
-    if not math.isfinite(error):
+    sigma, error = _sigma(column), error_between_visits(column)
+    if sigma is None:
         return Difference(difference, math.nan, Judgement.NO_PUBLISHED_FIGURE)
     factor, exceeds = 1.0 if is_chosen_before else SENTENCE_FACTOR, abs(difference) > error
     return Difference(
@@ -68,5 +67,5 @@ def compare_attempts(
         (ErrorSource.CHANCE, ErrorSource.DAYS),
         mark=Mark.ERROR if exceeds else Mark.NONE,
         is_worth_a_sentence=abs(difference) > factor * error,
-        is_unverified=not BETWEEN_VISITS[column].is_verified,
+        is_unverified=not sigma.is_verified,
     )

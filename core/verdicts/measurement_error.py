@@ -16,13 +16,14 @@ from core.parameters import QuantityKind
 from core.verdicts.model import Assessment
 from core.verdicts.norms import MIN_STRIDES_FOR_MEAN, MIN_STRIDES_FOR_SD
 from core.verdicts.sigmas import (
-    HEALTHY_BETWEEN_LEGS,
     HEALTHY_SOURCE,
     KINDS,
     SLOPE_SD,
     SLOPES,
     ComparisonKind,
     Sigma,
+    healthy_between_legs,
+    in_use,
     sigma_of,
 )
 from core.verdicts.stride_means import MeanOfStrides
@@ -199,7 +200,7 @@ def compare(
         math.hypot(one.uncertainty, other.uncertainty),
         _between(name, kind, sigma, (one.mean, other.mean), speeds_m_s),
     )
-    limit = HEALTHY_BETWEEN_LEGS.get(name, nothing) if kind is ComparisonKind.LEGS else nothing
+    limit = healthy_between_legs(name) if kind is ComparisonKind.LEGS else nothing
     error, healthy = Z95 * math.hypot(own, between), math.hypot(limit, Z95 * own)
     exceeds = abs(difference) > error
     mark = Mark.HEALTHY if exceeds and abs(difference) > healthy else Mark.ERROR if exceeds else Mark.NONE
@@ -244,7 +245,7 @@ def _between(
     Attachment cannot part a person's legs by more than it does healthy people's, whose natural asymmetry is in theirs.
     """
     found = math.hypot(*(sigma.of(mean, speed) for mean, speed in zip(means, speeds_m_s, strict=True)))
-    limit = HEALTHY_BETWEEN_LEGS.get(name, math.inf) / Z95 if kind is ComparisonKind.LEGS else math.inf
+    limit = healthy_between_legs(name) / Z95 if kind is ComparisonKind.LEGS else math.nan
     return (limit, HEALTHY_SOURCE.is_verified) if limit < found else (found, sigma.is_verified)
 
 
@@ -256,7 +257,7 @@ def _by_speed(
         return None
     of_speed = slope.at(0.5 * sum(speeds)) * change_m_s
     sigmas = [sigma.of(found.mean, speed) for found, speed in zip(means, speeds, strict=True)]
-    if slope.sigma is not None:
+    if slope.sigma is not None and in_use().study is None:  # what an own study found holds no part by speed
         sigmas = [min(one, slope.sigma) for one in sigmas]
     error = Z95 * math.hypot(own, *sigmas, SLOPE_SD * of_speed)
     is_unverified = not (slope.source.is_verified and sigma.is_verified)

@@ -1,11 +1,13 @@
 """The one table of what repeated measurements of the same person differ by, each figure with source, people and n.
 
 A sigma is the standard deviation of one mean, beside what its own strides show of its uncertainty. Slopes are what a
-quantity changes by with walking speed; healthy limits are what 95 of 100 healthy people's legs differ by less.
+quantity changes by with walking speed; healthy limits are what 95 of 100 healthy people's legs differ by less. A clinic
+may judge by figures of its own study instead (`core.verdicts.repeatability`); the published table stays as it is.
 """
 
 import math
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
+from contextlib import contextmanager
 from dataclasses import dataclass
 from enum import StrEnum
 from typing import NamedTuple
@@ -42,13 +44,15 @@ class Source(NamedTuple):
 class Sigma:
     """The standard deviation of one mean: a constant in the quantity's unit, and a share of the mean's size in percent.
 
-    `slow`: both below SLOW_M_S, where they are others. What rests on a source that is not verified prints a dagger.
+    `slow`: both below SLOW_M_S, where they are others. `least`: what it is never below. What rests on a source that is
+    not verified prints a dagger.
     """
 
     source: Source
     constant: float = 0.0
     share_percent: float = 0.0
     slow: tuple[float, float] | None = None
+    least: "Sigma | None" = None
 
     @property
     def is_verified(self) -> bool:
@@ -64,7 +68,8 @@ class Sigma:
         """
         is_slow = self.slow is not None and speed_m_s < SLOW_M_S
         constant, share = self.slow if is_slow and self.slow is not None else (self.constant, self.share_percent)
-        return math.hypot(constant, 0.01 * share * mean)
+        found = math.hypot(constant, 0.01 * share * mean)
+        return found if self.least is None else max(found, self.least.of(mean, speed_m_s))
 
 
 _TWO_VISITS = Source(
@@ -144,7 +149,18 @@ def sigma_of(column: str, kind: ComparisonKind) -> Sigma | None:
         return None
     if kind is ComparisonKind.LEGS and column == STEP_TIME:
         return _STEPS
-    return SIGMAS[kind].get(quantity)
+    return _in_use.sigmas[kind].get(quantity)
+
+
+def healthy_between_legs(column: str) -> float:
+    """What 95 of 100 healthy people's legs differ by less, less what chance makes of it; NaN where not known.
+
+    Returns
+    -------
+    float
+        In the unit of the column.
+    """
+    return _in_use.healthy.get(column, math.nan)
 
 
 @dataclass(frozen=True, slots=True)
@@ -204,3 +220,44 @@ HEALTHY_BETWEEN_LEGS: Mapping[str, float] = {  # in the unit of the column, less
     "ankle_push_off_plantarflexion_deg": 10.4,
     "ankle_swing_dorsiflexion_deg": 10.0,
 }
+
+
+class OwnStudy(NamedTuple):
+    """Whose figures are in use: of how many people, until which day (ISO 8601, empty: not known)."""
+
+    people: int
+    day: str = ""
+
+
+@dataclass(frozen=True, slots=True)
+class ErrorFigures:
+    """What differences are judged by. `study`: the clinic's own that they are of; None: as published."""
+
+    sigmas: Mapping[ComparisonKind, Mapping[QuantityKind, Sigma]]
+    healthy: Mapping[str, float]
+    study: OwnStudy | None = None
+
+
+PUBLISHED = ErrorFigures(SIGMAS, HEALTHY_BETWEEN_LEGS)
+_in_use = PUBLISHED
+
+
+def use(figures: ErrorFigures) -> None:
+    """Judge by these from now on, in all threads of this process: those of the library that is open."""
+    global _in_use
+    _in_use = figures
+
+
+def in_use() -> ErrorFigures:
+    return _in_use
+
+
+@contextmanager
+def using(figures: ErrorFigures) -> Iterator[None]:
+    """Judge by these for as long as is needed, then as before."""
+    before = in_use()
+    use(figures)
+    try:
+        yield
+    finally:
+        use(before)

@@ -17,6 +17,7 @@ from app.cohort.batch.table import write_tables
 from app.cohort.batch.task import BatchTask, SessionOutcome, analyse_task, key_of, making_of, summary_digest
 from app.system.progress import Report
 from app.system.tables import typed_cell, write_table
+from core.verdicts.sigmas import in_use
 from devices.files.refusal import FileRefusedError, one_line
 
 FAILURES = "failures.csv"
@@ -48,7 +49,8 @@ class Batch:
     ) -> None:
         self._sessions, self._folder, self._choices, self._work = sessions, folder, choices, work
         self._software = software()
-        self._making = making_of(choices, self._software)
+        self._figures = in_use()
+        self._making = making_of(choices, self._software, self._figures)
         self.result = BatchResult(len(sessions.names))
 
     def run(self, workers: Workers, report: Report) -> None:
@@ -88,7 +90,7 @@ class Batch:
             except FileRefusedError as refusal:
                 self._take(name, SessionOutcome(name, failure=str(refusal)))
                 continue
-            yield BatchTask(name, source, self._folder, self._choices, self._software, known)
+            yield BatchTask(name, source, self._folder, self._choices, self._software, known, self._figures)
 
     def _take(self, name: str, outcome: SessionOutcome | Exception) -> None:
         """Keep what came of a session.

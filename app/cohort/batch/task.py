@@ -23,6 +23,7 @@ from app.exports.result_folder import SUMMARY, check_place, written_beside
 from app.importing.untrusted_files import read_foreign_session
 from app.system.logs import pseudonymised
 from core.samples import Session
+from core.verdicts.sigmas import PUBLISHED, ErrorFigures, using
 from devices.files.limited_reader import MOST_FILE_BYTES
 from devices.files.refusal import FileRefusedError, one_line
 
@@ -41,7 +42,10 @@ class GivenSession:
 
 @dataclass(frozen=True, slots=True)
 class BatchTask:
-    """What it takes to do one session. `known`: what was made of it before, if anything."""
+    """What it takes to do one session.
+
+    `known`: what was made of it before, if anything; `figures`: what differences are judged by.
+    """
 
     name: str
     source: Path | GivenSession
@@ -49,6 +53,7 @@ class BatchTask:
     choices: AnalysisChoices
     software: str
     known: tuple[str, str] | None = None
+    figures: ErrorFigures = PUBLISHED
 
 
 @dataclass(frozen=True, slots=True)
@@ -74,7 +79,8 @@ def analyse_task(task: BatchTask) -> SessionOutcome:
         There is no room, or OUT cannot be written at all.
     """
     try:
-        return _analysed(task)
+        with using(task.figures):  # which of a library only the process has that opened it
+            return _analysed(task)
     except FileRefusedError as refusal:
         return SessionOutcome(task.name, failure=str(refusal))
     except OSError as problem:
@@ -98,7 +104,7 @@ def _analysed(task: BatchTask) -> SessionOutcome:
     _check_worker(task)
     source, results = task.source, task.batch.results(task.name)
     content = source.content if isinstance(source, GivenSession) else content_of(source)
-    making = making_of(task.choices, task.software)
+    making = making_of(task.choices, task.software, task.figures)
     key = key_of(content, making)
     if task.known == (key, summary_digest(results)):
         return SessionOutcome(task.name, is_as_before=True)
@@ -135,9 +141,11 @@ def _check_worker(task: BatchTask) -> None:
         raise FileRefusedError(here, "the worker here cannot access the session folder", remedy)
 
 
-def making_of(choices: AnalysisChoices, with_software: str) -> str:
+def making_of(choices: AnalysisChoices, with_software: str, figures: ErrorFigures = PUBLISHED) -> str:
     """What results are made with, in one word: the software and every choice that changes them."""
     reported = {one.name: getattr(choices, one.name) for one in fields(choices)}
+    if figures.study is not None:
+        reported["figures"] = repr(figures)
     return hashlib.sha256(json.dumps([reported, with_software], sort_keys=True).encode()).hexdigest()
 
 

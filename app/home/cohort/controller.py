@@ -49,10 +49,13 @@ class Questions(QObject):
         What came of it, and what to do.
     again_requested
         Sessions are to be analysed again.
+    repeatability_requested
+        The clinic's own error figures are asked for.
     """
 
     changed = Signal()
     again_requested = Signal()
+    repeatability_requested = Signal()
     reported = Signal(str, str)
 
     def __init__(self, look: ThemeNotifier, settings: Settings, parent: QObject) -> None:
@@ -73,7 +76,10 @@ class Questions(QObject):
     @property
     def bar(self) -> BarState:
         """What can be done with what is shown."""
-        again = (BarAction(tr("Analyse sessions again"), self.again_requested.emit, icon=Icon.PLAY),)
+        again = (
+            BarAction(tr("Analyse sessions again"), self.again_requested.emit, icon=Icon.PLAY),
+            BarAction(tr("Repeatability"), self.repeatability_requested.emit, icon=Icon.GROUPS),
+        )
         if self.page.found is None:
             return BarState(quiet=again)
         save = BarAction(tr("Save as CSV"), self.save, tr("Ctrl S"), Icon.IMPORT, is_requested=False)

@@ -10,6 +10,7 @@ What no sensor and no file reports is stated to be unknown, never filled in.
 import math
 from collections import Counter
 
+from app.summary.error_figures import error_figures_in_words
 from app.summary.facts import Facts
 from app.summary.numbers_in_words import fixed, least_error_in_words
 from app.summary.plain_text import breakable, isolated, plain, shortened
@@ -24,7 +25,7 @@ from core.samples import ImuBlock, RateKind, SensorInfo
 from core.signal.orientation import accelerometer_time_constant_s
 from core.signal.tracks import MAX_REPORTED_GAP_S, nominal_step_s
 from core.verdicts.norms import KNEE_OVERREAD
-from core.verdicts.sigmas import ComparisonKind
+from core.verdicts.sigmas import ComparisonKind, in_use
 
 MOST_MODELS = 2  # for more, their number is given
 MODEL_LENGTH = 32
@@ -45,6 +46,7 @@ def how_measured(facts: Facts, software_version: str) -> tuple[list[Titled], lis
         (tr("Accuracy"), _accuracy()),
         *([(tr("Hips and pelvis"), _hips())] if facts.has_joint(JointKind.HIP) else []),
         (tr("Terms"), _words()),
+        *([(tr("Error figures"), error_figures_in_words())] if in_use().study is not None else []),
         (tr("Software"), _software(facts, software_version)),
     ]
     return done, stated

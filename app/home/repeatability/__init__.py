@@ -1,0 +1,1 @@
+"""The page of the clinic's own error figures, and its controller."""
