@@ -1,18 +1,19 @@
 """Whether a joint's axes come out alike in two parts of the data, and what it would change of the walk if not.
 
-An ankle that hardly moves turns about several axes, and what its axes are said to be then depends on which strides are
+An ankle that hardly moves turns about several axes, and which of them are found then depends on the strides that are
 looked at. Its formal standard deviation does not show that, for each part is sure of its own answer. So either part is
 identified by itself, never starting with what was found of both.
 """
 
 from collections.abc import Mapping
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 
 from core.angles.hinge_angle import hinge_angle
 from core.angles.measure import Geometry, is_anchored, pairs_of
 from core.angles.twist import twist
+from core.body import Joint, Side, knee_of
 from core.calibration import certainty
 from core.calibration.calibrated import standing_twist_of
 from core.calibration.heading import heading_over, residual_scales
@@ -26,10 +27,11 @@ from core.calibration.identify import (
     moving_data,
 )
 from core.calibration.joint_axis import polish
+from core.calibration.validity import Basis
 from core.gait.cycles import POINTS, cycles_of
 from core.gait.strides import Strides
 from core.gait.walking import joint_parameters
-from core.results import AxisHalves
+from core.results import AxisHalves, JointCalibration, SideGait
 from core.samples import FloatArray, Recording
 from core.signal.datasets import Datasets
 from core.signal.pair import Pair
@@ -50,31 +52,80 @@ class AxesOfPart:
 
 
 Parts = tuple[AxesOfPart, AxesOfPart]
+Bases = Mapping[tuple[str, Joint], Basis]
+"""What calibrates each joint in each recording, by the recording's name."""
+Slipped = dict[tuple[str, Side], float]
+"""From when on a side's straps are not to be trusted, by the walk's name, on its clock."""
 
 
-def axes_of_parts(
+@dataclass(slots=True)
+class AxesOfParts:
+    """The axes of each joint of a span in two parts of its data, found once for all walks that they hold for.
+
+    `lags_s` are added to the distal sensor's stamps, by recording and joint.
+    """
+
+    tracks: SensorTracks
+    bases: Bases
+    identified: Mapping[Basis, Identified]
+    lags_s: Mapping[tuple[str, Joint], float]
+    slipped: Slipped
+    _known: dict[Basis, Parts | None] = field(default_factory=dict)
+
+    def of(self, name: str, joint: Joint) -> Parts | None:
+        """Of a joint in the recording of that name; None where a part holds too little movement."""
+        basis = self.bases[name, joint]
+        if basis not in self._known:
+            knee = self.bases.get((name, knee_of(joint.side)))
+            lags_s = {other: lag_s for (other, of), lag_s in self.lags_s.items() if of is joint}
+            until_s = {other: from_s for (other, side), from_s in self.slipped.items() if side is joint.side}
+            helping = self.identified.get(knee) if knee else None
+            self._known[basis] = _axes_of_parts(self.tracks, self.identified[basis], helping, lags_s, until_s)
+        return self._known[basis]
+
+
+def axis_halves_in(
+    parts: AxesOfParts,
+    walk: Recording,
+    gait: Mapping[Side, SideGait],
+    calibrated: Mapping[Joint, JointCalibration],
+    offsets_s: Mapping[Joint, float],
+) -> dict[Joint, AxisHalves]:
+    """How far apart the axes of two parts are, of the joints of one walk, and what that changes of its means.
+
+    Parameters
+    ----------
+    offsets_s
+        What brings the clock of each joint's proximal sensor to the recording's.
+
+    Returns
+    -------
+    dict
+        Without the joints of which a part holds too little movement.
+    """
+    halves = {}
+    for joint, calibration in calibrated.items():
+        axes = parts.of(walk.name, joint)
+        if axes is None:
+            continue
+        basis, spread = parts.bases[walk.name, joint], dict[str, float]()
+        if joint.side in gait:
+            found, strides, lag_s = parts.identified[basis], gait[joint.side].strides, parts.lags_s[walk.name, joint]
+            sign, offset_s = calibration.clinical_sign, offsets_s[joint]
+            spread = _spread(parts.tracks, walk, found, axes, strides, sign, lag_s, offset_s)
+        sd_rad = float(np.sqrt(np.mean([part.sd_rad**2 for part in axes])))
+        halves[joint] = AxisHalves(_apart_rad(axes), sd_rad, basis.free_motion is not None, spread)
+    return halves
+
+
+def _axes_of_parts(
     tracks: SensorTracks,
     found: Identified,
     knee: Identified | None,
     lags_s: Mapping[str, float],
     until_s: Mapping[str, float],
 ) -> Parts | None:
-    """The axes of a joint in the halves of its walks; with a free motion, in that and in the walks.
-
-    Parameters
-    ----------
-    knee
-        Of an ankle, the knee above.
-    lags_s
-        What is added to the distal sensor's stamps, by the recording's name.
-    until_s
-        When to stop, on the clock of the recording of that name, where it is not to be used to its end.
-
-    Returns
-    -------
-    Parts or None
-        None where a part holds too little movement.
-    """
+    """Of the halves of the walks; with a free motion, of that and of the walks. None where one holds too little."""
     basis = found.basis
     walked = _moving(tracks, found, basis.walks, lags_s, until_s)
     if walked is None:
@@ -132,14 +183,14 @@ def _axes(
     return AxesOfPart(*axes, certainty.axis_sd_rad(covariance, 0.0))
 
 
-def apart_rad(parts: Parts) -> float:
+def _apart_rad(parts: Parts) -> float:
     """The angle between the lines of both parts' axes, of the sensor at which it is larger."""
     one, two = parts
     apart = [angle_between(*pair) for pair in ((one.axis_1, two.axis_1), (one.axis_2, two.axis_2))]
     return max(min(angle, np.pi - angle) for angle in apart)
 
 
-def spread_of(
+def _spread(
     tracks: SensorTracks,
     recording: Recording,
     found: Identified,
@@ -149,18 +200,9 @@ def spread_of(
     lag_s: float,
     offset_s: float,
 ) -> dict[str, float]:
-    """By how much a walk's means depend on which part's axes they are measured with, beyond chance, by name.
+    """Half of what a walk's means differ by with either part's axes, beyond chance, rad, by the parameter's name.
 
-    Half of the difference, for the axes in use lie between those of both parts. Of angles, rad, each less its own zero.
-
-    Parameters
-    ----------
-    strides
-        Of the joint's side, on the recording's clock.
-    lag_s
-        What is added to the distal sensor's stamps.
-    offset_s
-        What brings the proximal sensor's clock to the recording's.
+    Half, for the axes in use lie between those of both parts. Each angle counts from its own zero.
     """
     pairs = pairs_of(tracks, recording, found.basis.joint, tracks.blocks(recording)[0], lag_s)
     pairs = [pair for pair in pairs if is_anchored(pair)]
@@ -228,9 +270,3 @@ def _angle(pair: Pair, geometry: Geometry, within_s: tuple[FloatArray, FloatArra
     heading = heading_over(pair, one, two, geometry.unknowns)
     some = replace(pair, earth_from_1=pair.earth_from_1[near], earth_from_2=pair.earth_from_2[near])
     return pair.time_s[near], twist(some, one, two, heading[near])
-
-
-def halves_of(parts: Parts, spread: Mapping[str, float], is_free_motion: bool) -> AxisHalves:
-    """As a recording's analysis holds it."""
-    sd_rad = float(np.sqrt(np.mean([part.sd_rad**2 for part in parts])))
-    return AxisHalves(apart_rad(parts), sd_rad, is_free_motion, spread)

@@ -125,7 +125,13 @@ def _is_clock_shared(session: Session, joint: Joint) -> bool:
 
 
 def standing_twist_of(tracks: SensorTracks, basis: Basis, geometry: Geometry) -> float | None:
-    """What a joint reads in its standing, rad, bare twist; None without one."""
+    """What a joint reads in its standing; None without one.
+
+    Returns
+    -------
+    float or None
+        rad, bare twist.
+    """
     joint = basis.joint
     for recording in tracks.span:
         if recording.name == basis.standing:

@@ -149,8 +149,9 @@ def test_axes_that_come_out_apart_in_two_parts_hit_their_own_joint_alone(
     gate = "axis_motions" if is_free_motion else "axis_halves"
     closed = hits(verdict, gate, ANKLE, *SHAPE_HEIGHT) if verdict else {}
     assert not_read(gates_of(walk(axis_halves=halves))) == closed
-    empty = TimedTest(TimedProtocol.TWO_MINUTES, 0.0, 120.0, False, False, *[100.0] * 3, *[()] * 8)
-    assert not_read(gates_of(walk(axis_halves=halves, timed=empty))) == closed
+    nothing: tuple[Any, ...] = ((),) * 8
+    timed = TimedTest(TimedProtocol.TWO_MINUTES, 0.0, 120.0, False, False, 100.0, 100.0, 100.0, *nothing)
+    assert not_read(gates_of(walk(axis_halves=halves, timed=timed))) == closed
 
 
 def test_a_foot_sensor_that_may_be_on_another_foot_puts_its_legs_strides_in_doubt() -> None:
