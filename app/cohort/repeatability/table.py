@@ -47,8 +47,8 @@ class RepeatabilityRow:
         return tr("{measure} (at {size}°)").format(measure=self.name, size=size)  # angles alone grow
 
     def number(self, value: float) -> str:
-        """With one decimal more than the quantity itself has."""
-        return figure_text(value, f".{decimals(self.column) + 1}f")
+        """With one decimal more than the quantity itself has, and times to the millisecond."""
+        return figure_text(value, f".{3 if self.column.endswith('_s') else decimals(self.column) + 1}f")
 
     @property
     def limits(self) -> str:
