@@ -32,7 +32,7 @@ class RepeatabilityPage(Themed):
         self._title = Text(look, tr("Repeatability"), size=26, weight=SEMIBOLD)
         lead = tr(
             "Healthy people measured twice show the measurement error of your own clinic. Record each of them twice, "
-            "with the condition “{condition}”. At least {least} people, better 20."
+            "with the condition “{condition}”. At least {least} people, 20 are recommended."
         )
         self._lead = Text(look, lead.format(condition=CONDITION, least=MIN_PEOPLE), tone="ink2", wraps=True)
         self.used = Text(look, weight=MEDIUM, wraps=True)
