@@ -84,7 +84,7 @@ class PartChange:
         if len(self.text) > MOST_TEXT:
             raise ValueError(f"text has {len(self.text)} letters, expected {MOST_TEXT} at most")
         if not self.text.strip() and not any(getattr(self, name) for name in FIGURES):
-            raise ValueError(f"nothing is said of {self.part}")
+            raise ValueError(f"nothing is stated of {self.part}")
 
 
 @dataclass(frozen=True, slots=True)

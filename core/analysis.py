@@ -11,6 +11,7 @@ import numpy as np
 from core.angles.measure import Twist, measure
 from core.body import LEG_JOINTS, Joint, Segment, Side, Site, ankle_of, knee_of
 from core.calibration import certainty
+from core.calibration.axis_halves import Parts, axes_of_parts, halves_of, spread_of
 from core.calibration.calibrated import Bases, calibrate
 from core.calibration.clinical_sign import range_of
 from core.calibration.identified import Identified, clock_moved_s, identify
@@ -28,6 +29,7 @@ from core.placement.labels import doubted_labels
 from core.published.angles import DEFAULT_TAU_S
 from core.results import (
     Analysis,
+    AxisHalves,
     Calibration,
     JointAngle,
     JointCalibration,
@@ -144,6 +146,7 @@ def _analyse_span(
     slipped, noticed = _slipped(tracks, by_walk, lags)
     findings += noticed
     recordings: list[RecordingAnalysis] = []
+    parts = _Parts(tracks, bases, identified, lags, slipped)
     for recording in _moving(span):
         found = _angles(tracks, recording, bases, calibrated, measured, lags, hips)
         found = _before_slips(found, slipped)
@@ -154,6 +157,7 @@ def _analyse_span(
         found = replace(found, clocks=clocks_in(tracks, recording, found.gait, _lags_in(recording, lags)))
         found = replace(found, drifting_percent={s: p for (name, s), p in drifts.items() if name == recording.name})
         found = replace(found, doubted_sites=doubted.sites)
+        found = replace(found, axis_halves=_axis_halves(parts, recording, found, calibrated, hips))
         here = {joint: calibrated[bases[recording.name, joint]] for joint in found.joints}
         found = with_hips(found, tracks, recording, hips, here)
         found = replace(found, verdicts=verdicts_of(found, here, stiff_sides))
@@ -257,10 +261,7 @@ def _measure(
             if basis is None or basis not in identified:
                 continue
             steps.tick(recording.name)
-            # an ankle is measured on its shank's clock, which the knee brings to the thigh's
-            knee = (recording.name, knee_of(joint.side))
-            offset_s = lags.get(knee, 0.0) if joint.proximal.segment is Segment.SHANK else 0.0
-            offset_s += hips.offset_s(recording, joint.side)
+            offset_s = _offset_of_s(recording, joint.proximal, lags) + hips.offset_s(recording, joint.side)
             geometry = replace(identified[basis].geometry, lag_s=lags[recording.name, joint])
             measured[recording.name, joint] = measure(tracks, recording, joint, geometry, time_s, offset_s)
     return measured
@@ -385,6 +386,64 @@ def _before_slips(recording: RecordingAnalysis, slipped: Slipped) -> RecordingAn
         for side, found in recording.gait.items()
     }
     return replace(recording, gait=gait, slipped_from_s=from_s)
+
+
+class _Parts:
+    """The axes of each joint in two parts of its data, found once for all walks that they hold for."""
+
+    def __init__(
+        self,
+        tracks: SensorTracks,
+        bases: Bases,
+        identified: dict[Basis, Identified],
+        lags: dict[tuple[str, Joint], float],
+        slipped: Slipped,
+    ) -> None:
+        self.tracks, self.bases, self.identified, self.lags = tracks, bases, identified, lags
+        self._slipped = slipped
+        self._known: dict[Basis, Parts | None] = {}
+
+    def of(self, name: str, joint: Joint) -> Parts | None:
+        basis = self.bases[name, joint]
+        if basis not in self._known:
+            knee = self.bases.get((name, knee_of(joint.side)))
+            lags_s = {name: lag_s for (name, of), lag_s in self.lags.items() if of is joint}
+            until_s = {name: from_s for (name, side), from_s in self._slipped.items() if side is joint.side}
+            self._known[basis] = axes_of_parts(
+                self.tracks, self.identified[basis], self.identified.get(knee) if knee else None, lags_s, until_s
+            )
+        return self._known[basis]
+
+
+def _axis_halves(
+    parts: _Parts,
+    recording: Recording,
+    analysed: RecordingAnalysis,
+    calibrated: dict[Basis, JointCalibration],
+    hips: HipsOfSpan,
+) -> dict[Joint, AxisHalves]:
+    """Of the joints of one walk: how far apart the axes of two parts are, and what that does to its means."""
+    halves = {}
+    for joint in analysed.joints if recording.kind is RecordingKind.WALKING else ():
+        basis = parts.bases[recording.name, joint]
+        axes = parts.of(recording.name, joint)
+        if axes is None:
+            continue
+        gait, spread = analysed.gait.get(joint.side), dict[str, float]()
+        if gait is not None:
+            offset_s = _offset_of_s(recording, joint.proximal, parts.lags) + hips.offset_s(recording, joint.side)
+            spread = spread_of(
+                parts.tracks,
+                recording,
+                parts.identified[basis],
+                axes,
+                gait.strides,
+                calibrated[basis].clinical_sign,
+                parts.lags[recording.name, joint],
+                offset_s,
+            )
+        halves[joint] = halves_of(axes, spread, basis.free_motion is not None)
+    return halves
 
 
 def _lags_in(recording: Recording, lags: dict[tuple[str, Joint], float]) -> dict[Joint, float]:

@@ -140,6 +140,29 @@ class SideGait:
 
 
 @dataclass(frozen=True, slots=True)
+class AxisHalves:
+    """How far a joint's axes are apart as two parts of the data show them, each by itself.
+
+    Attributes
+    ----------
+    apart_rad
+        Between the lines of the axes, of the sensor at which it is more.
+    sd_rad
+        Formal standard deviation of a part's axes, of both parts root mean square.
+    is_free_motion
+        The parts are a free motion and the walks; else both halves of the walks.
+    spread
+        By the name of a stride's parameter, rad: half of what its mean over the walk differs by with the axes of either
+        part, beyond chance.
+    """
+
+    apart_rad: float
+    sd_rad: float
+    is_free_motion: bool
+    spread: Mapping[str, float]
+
+
+@dataclass(frozen=True, slots=True)
 class RecordingAnalysis:
     """Angles of one recording, all on the clock `time_s` (n,); gait of the sides that walked with a foot sensor.
 
@@ -153,6 +176,8 @@ class RecordingAnalysis:
         How much faster than its leg's clock that of a site runs, where it does.
     doubted_sites
         Whose sensors the motion wants exchanged: what they show is of another segment.
+    axis_halves
+        Of a walk's knees and ankles; a joint is missing where two parts of the data hold too little movement.
     clocks
         What ties the clocks of both legs; None where not both were measured.
     hips, pelvis, turns, leg_clock
@@ -174,6 +199,7 @@ class RecordingAnalysis:
     slipped_from_s: Mapping[Side, float] = field(default_factory=dict)
     drifting_percent: Mapping[Site, float] = field(default_factory=dict)
     doubted_sites: frozenset[Site] = frozenset()
+    axis_halves: Mapping[Joint, AxisHalves] = field(default_factory=dict)
     clocks: LegClocks | None = None
     hips: Mapping[Joint, HipAngle] = field(default_factory=dict)
     pelvis: PelvisAngles | None = None

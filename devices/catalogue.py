@@ -82,7 +82,7 @@ DRIVERS = (
         CSV,
         "text lines (CSV) over a serial port",
         "By damaged streams; six emulated ones on pseudo-terminals led to right results. What the columns mean has to "
-        "be told.",
+        "be stated.",
         lambda: Decoder(CsvSerial()),
     ),
     Driver(

@@ -97,9 +97,9 @@ def columns_page() -> str:
     from app.exports.columns import KNOWN
 
     head = (
-        "# What every column means\n\nAs `columns.csv` says it beside the tables. A column that begins with `left_` "
+        "# What every column means\n\nAs `columns.csv` has it beside the tables. A column that begins with `left_` "
         "has a twin `right_`. Needs: `zero`, `sign` of the joint, `both_clocks` of the two legs; `parameter`: as the "
-        "figure that the row tells of.\n"
+        "figure of the row.\n"
     )
     return head + "".join(_table(file) for file in KNOWN)
 

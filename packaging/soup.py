@@ -49,7 +49,7 @@ def faults() -> Iterator[str]:
     development = reported()["development"]["names"]
     both = [*named, *development]
     yield from (f"{name} is there twice" for name in sorted({name for name in both if both.count(name) > 1}))
-    yield from (f"{name} is locked, and nothing says why" for name in sorted(locked().keys() - set(both)))
+    yield from (f"{name} is locked, and nothing states why" for name in sorted(locked().keys() - set(both)))
     yield from (f"{name} is not in the lock" for name in sorted(set(both) - locked().keys()))
 
 

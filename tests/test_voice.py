@@ -1,6 +1,7 @@
 """The words that the voice of Gaitwright does not use: in sentences, docstrings and names."""
 
 import ast
+import inspect
 import re
 from collections.abc import Iterator
 from pathlib import Path
@@ -18,6 +19,8 @@ BANNED = {
 ALLOWED_NAMES = frozenset({"withheld", "tell"})
 # of people, who may stand and tell
 ALLOWED_SENTENCES = re.compile(r"The patient stands near this computer meanwhile")
+# people and feet, and the words of files' columns
+ALLOWED_TEXTS = re.compile(r"patient stands|foot as it stands|\bwithheld\b")
 WORD = re.compile(r"[A-Z]?[a-z]+|[A-Z]+(?![a-z])")
 CODE = re.compile(r"`[^`]*`|\"[^\"]*\"|{\w*[^{}]*}")
 
@@ -80,6 +83,26 @@ def test_sentences_use_the_words_of_the_clinic() -> None:
     found = [text for text in texts if banned_in_text(ALLOWED_SENTENCES.sub("", text))]
     assert found == []
     assert [text for text in texts if text.endswith("!") or re.search(r"\bplease\b", text, re.IGNORECASE)] == []
+
+
+def texts_of(tree: ast.AST) -> Iterator[tuple[str, int]]:
+    """What is written out as it is: the command line's help, definitions of columns, refusals."""
+    docstrings = {text for text, _ in docstrings_of(tree)}
+    for node in ast.walk(tree):
+        match node:
+            case ast.Constant(value=str(text)) if " " in text and inspect.cleandoc(text) not in docstrings:
+                yield text, node.lineno
+
+
+@pytest.mark.parametrize("folder", ["app", "core", "devices", "packaging"])
+def test_what_is_printed_uses_the_words_of_the_field(folder: str) -> None:
+    found = []
+    for file in sorted((ROOT / folder).rglob("*.py")):
+        tree, place = ast.parse(file.read_text(encoding="utf-8")), file.relative_to(ROOT).as_posix()
+        for text, line in texts_of(tree):
+            if words := banned_in_text(ALLOWED_TEXTS.sub("", text)):
+                found.append(f"{place}:{line} {sorted(words)} {text}")
+    assert found == []
 
 
 @pytest.mark.parametrize(

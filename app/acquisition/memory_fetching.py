@@ -148,7 +148,7 @@ class MemoryFetching:
         if file is None or sensor.info is None:
             raise DotRefusedError(
                 "{sensor} has no data of this recording",
-                "Check whether it was switched off",
+                "Check whether the sensor was switched off",
                 sensor=sensor.name,
             )
         orders = None if required.orders is None else required.orders.since(writer.header.opened_ns)
@@ -214,11 +214,11 @@ class MemoryFetching:
         one = self._begun.get(sensor)
         if one is None or one.result is None or not one.is_kept or not is_confirmed:
             raise DotRefusedError(
-                "The recording of {sensor} is not confirmed as saved", "Fetch it first", sensor=sensor
+                "The recording of {sensor} is not confirmed as saved", "Fetch the recording first", sensor=sensor
             )
         if not one.result.is_complete and not may_lack:
             raise DotRefusedError(
-                "{sensor} has data that were not fetched", "Fetch again, or discard these data", sensor=sensor
+                "{sensor} has data that were not fetched", "Fetch these data again, or discard them", sensor=sensor
             )
         kept = {one.result.file.started_utc_s, *others}
         self._radio.run(_erased(self._required[sensor].sensor, kept, utc_s))

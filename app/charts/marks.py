@@ -82,7 +82,7 @@ class Gap:
         return replace(self, limit_deg=self.limit_deg - height_deg)
 
     def in_words(self) -> str:
-        reported = tr("{joint}, {first} to {last} %: {what}.")
+        reported = tr("{joint}, {first} to {last} % of the gait cycle: {what}.")
         joint = capitalised(name_of(self.joint))
         return reported.format(joint=joint, first=self.first_percent, last=self.last_percent, what=self.words)
 

@@ -133,7 +133,7 @@ def _paint_words(painter: QPainter, theme: Theme, deviation: Deviation, place: M
         side = theme.px(TRIANGLE)
         width = QFontMetrics(_font(theme, is_first=True)).horizontalAdvance(deviation.words) + 1
         at = left if place.are_words_at_right else box.right - width - theme.px(TRIANGLE_APART) - side
-        paint_icon(painter, Icon.WARNING, QRectF(at, box.top + (line - side) / 2, side, side), c.ink)
+        paint_icon(painter, Icon.DIFFERENCE, QRectF(at, box.top + (line - side) / 2, side, side), c.ink)
         left = at + side + theme.px(TRIANGLE_APART)
     painter.setFont(_font(theme, is_first=True))
     painter.setPen(QColor(c.ink))

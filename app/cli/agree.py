@@ -103,4 +103,6 @@ def check_agreement_place(out: Path) -> None:
     except (OSError, ValueError, AttributeError, RecursionError):
         is_one = False
     if not is_one or any(out.rglob("session.toml")):
-        raise FileRefusedError(str(out), "this already exists and is not an agreement", "Choose another --out")
+        raise FileRefusedError(
+            str(out), "this already exists and is not a comparison with a reference", "Choose another --out"
+        )

@@ -27,9 +27,9 @@ HERE = frozenset(("localhost", "127.0.0.1", "::1"))
 def add_batch_arguments(parser: argparse.ArgumentParser) -> None:
     parser.description = (
         "Analyse every session under a folder, each into a folder of its own in OUT, as analyse does, and write "
-        "OUT/parameters.csv and .parquet: a row for each walk and side, with what may be said of each figure. Given "
+        "OUT/parameters.csv and .parquet: a row for each walk and side, with the data quality of each figure. Given "
         "again, the same command goes on: what is done and has not changed is not done again, what failed is tried "
-        "again. Sessions that fail stand in OUT/failures.csv."
+        "again. Sessions that fail are listed in OUT/failures.csv."
     )
     parser.add_argument(
         "folder",
@@ -100,7 +100,7 @@ def _done(args: argparse.Namespace, workers: "Workers", report: Report) -> "tupl
             work.run(workers, report)
         except ClusterLostError as lost:
             what = "the cluster is out of reach; what was done until then stays in OUT"
-            raise FileRefusedError(args.dask, what, "Start it, then run the same command again") from lost
+            raise FileRefusedError(args.dask, what, "Start the cluster, then run the same command again") from lost
         return work.result, list(sessions.notes())
 
 
@@ -114,11 +114,15 @@ def _check_apart(args: argparse.Namespace) -> None:
     """
     out, library = args.out.resolve(), args.library.resolve()
     if out == library or library in out.parents:
-        raise FileRefusedError(str(out), "this folder is in the library", "Choose a folder outside it for --out")
+        raise FileRefusedError(
+            str(out), "this folder is in the library", "Choose a folder outside the library for --out"
+        )
     address = urlsplit(args.dask or "")
     if args.dask and address.scheme != "tls" and address.hostname not in HERE:
         what = "sessions of a library would be sent to this cluster as they are, for anybody to read on the way"
-        raise FileRefusedError(one_line(args.dask), what, "Use a cluster on this computer, or one with tls://")
+        raise FileRefusedError(
+            one_line(args.dask), what, "Use a cluster on this computer, or one whose address starts with tls://"
+        )
 
 
 @contextmanager

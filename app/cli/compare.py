@@ -2,7 +2,7 @@
 
 import argparse
 import math
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from itertools import groupby
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING
 from app.cli.library import add_key_arguments, read_place, session_place
 from app.storage.layout import default_folder
 from app.system.progress import Report
+from core.parameters import BY_COLUMN
 from devices.files.refusal import FileRefusedError, one_line
 
 if TYPE_CHECKING:
@@ -17,14 +18,15 @@ if TYPE_CHECKING:
     from app.summary.conditions import Part
     from core.results import Analysis
     from core.samples import Session
+    from core.verdicts.measurement_error import Difference
 
 DIFFERENCES = "differences.csv"
 FLAGS = {  # as core.verdicts.measurement_error has them
     "exceeds_error": "beyond measurement error",
-    "inside_error": "inside measurement error",
+    "inside_error": "may be measurement error",
     "too_few_strides": "too few strides",
     "no_published_figure": "not judged",
-    "withheld": "withheld",
+    "withheld": "not reported",
 }
 DAGGER = "†"
 DAGGER_MEANS = f"{DAGGER} The error rests on a figure of which the source could not be checked."
@@ -32,7 +34,7 @@ DAGGER_MEANS = f"{DAGGER} The error rests on a figure of which the source could 
 
 def add_compare_arguments(parser: argparse.ArgumentParser) -> None:
     parser.description = (
-        "Tell the differences between the conditions of a session, or between sessions, and which of them are inside "
+        "List the differences between the conditions of a session, or between sessions, and which of them are inside "
         "the measurement error."
     )
     help_text = (
@@ -43,7 +45,27 @@ def add_compare_arguments(parser: argparse.ArgumentParser) -> None:
         "--library", metavar="LIBRARY", type=Path, default=default_folder(), help="the folder of the library (your own)"
     )
     add_key_arguments(parser)
+    parser.add_argument(
+        "--limit",
+        metavar="COLUMN=VALUE",
+        type=_limit,
+        action="append",
+        default=[],
+        help="a change that matters, such as knee_range_deg=5: in how many of 10 such measurements it is as large",
+    )
     parser.add_argument("--out", metavar="OUT", type=Path, required=True, help=f"the folder for {DIFFERENCES}")
+
+
+def _limit(text: str) -> tuple[str, float]:
+    """A column and the least change of it that matters."""
+    column, _, value = text.partition("=")
+    try:
+        limit = float(value)
+    except ValueError:
+        limit = math.nan
+    if column not in BY_COLUMN or not limit > 0:
+        raise argparse.ArgumentTypeError(f"{text!r} is no column of a table with a value above 0, as knee_range_deg=5")
+    return column, limit
 
 
 def compare(args: argparse.Namespace, report: Report) -> list[str]:
@@ -82,7 +104,7 @@ def compare(args: argparse.Namespace, report: Report) -> list[str]:
         write_differences(rows, folder / DIFFERENCES)
         report(1.0, "writing")
     return [
-        *(line for comparison in comparisons for line in _table(comparison)),
+        *(line for comparison in comparisons for line in _table(comparison, dict(args.limit))),
         *(["", *alone] if alone else []),
         *(["", DAGGER_MEANS] if any(row.difference.is_unverified for row in rows) else []),
         "",
@@ -107,21 +129,30 @@ def _check_place(out: Path) -> None:
         raise FileRefusedError(str(out), "this already exists and is not a comparison", "Choose another --out")
 
 
-def _table(comparison: "Comparison") -> Iterator[str]:
+def _table(comparison: "Comparison", limits: Mapping[str, float]) -> Iterator[str]:
     from app.summary.differences import rows_of
 
     simulated = "SIMULATED. " if comparison.is_simulated else ""
     for _, of_part in groupby(rows_of(comparison), key=lambda row: row.part.letter):
         rows = list(of_part)
         yield f"{simulated}{_named(rows[0].part)} less {_named(comparison.against)}"
-        yield f"  {'':5} {'':38} {'one':>9} {'other':>9} {'differs':>9} {'error':>7}"
+        yield f"  {'':5} {'':38} {'one':>9} {'other':>9} {'differs':>9} {'likely between':>18}"
         for row in rows:
             side = "" if row.side is None else row.side.letter
             found = row.difference
             figures = (row.value.mean, row.other.mean, found.difference)
             cells = " ".join(f"{_short(figure):>9}" for figure in figures)
             mark = DAGGER if found.is_unverified else " "
-            yield f"  {side:5} {row.parameter:38} {cells} {_short(found.error):>7}{mark} {FLAGS[found.judgement]}"
+            likely = " to ".join(map(_short, found.interval)) if found.is_judged else ""
+            often = _often(found, limits.get(row.parameter))
+            yield f"  {side:5} {row.parameter:38} {cells} {likely:>18}{mark} {FLAGS[found.judgement]}{often}"
+
+
+def _often(found: "Difference", limit: float | None) -> str:
+    """In how many of 10 such measurements a change is as large as one that matters."""
+    if limit is None or not found.is_judged:
+        return ""
+    return f"; {limit:g} or more in {10 * found.share_of_at_least(limit):.0f} of 10 such measurements"
 
 
 def _named(part: "Part") -> str:

@@ -19,7 +19,7 @@ MOVEMENTS = {"f": "free_motion", "w": "walking", "s": "standing"}
 
 
 def list_devices(streams_in: str = "") -> Iterator[str]:
-    """What is received now, at which port nothing is, how drivers and readers of files were proved; takes a second or
+    """What is received now, at which port nothing is, how drivers and readers of files were tested; takes a second or
     two.
 
     Parameters
@@ -45,12 +45,12 @@ def list_devices(streams_in: str = "") -> Iterator[str]:
                 found.sensors + streams.sensors, found.passed + streams.passed, found.lines, found.deaf
             )
     names = {driver.key: driver.name for driver in DRIVERS}
-    yield "Sensors that were heard:" if found.sensors else "No sensor was heard."
+    yield "Sensors found:" if found.sensors else "No sensor was found."
     for sensor in found.sensors:
         simulated = ", simulated" if sensor.is_simulated else ""
         yield f"- {names[sensor.driver]}: {sensor.name} at {sensor.place}{simulated}"
     for lines in (one for one in found.lines if one.columns is None):
-        yield f"- Lines of {lines.count} numbers at {lines.port.device}: tell the application what they are."
+        yield f"- Lines of {lines.count} numbers at {lines.port.device}: state in the application what they are."
     if found.deaf is not None:
         yield str(found.deaf)
     if found.passed:
@@ -58,7 +58,7 @@ def list_devices(streams_in: str = "") -> Iterator[str]:
     for passed in found.passed:
         about = f" ({passed.port.description})" if passed.port.description else ""
         yield f"- {passed.port.device}{about}: {passed.refusal}"
-    yield "How the drivers were proved:"
+    yield "How the drivers were tested:"
     for driver in DRIVERS:
         yield f"- {driver.name}: {driver.proof}"
     yield "What the readers of files were held against:"

@@ -65,7 +65,9 @@ def export(args: argparse.Namespace, report: Report) -> list[str]:
     formats = [Format(name) for name in _chosen("--as", args.formats, FORMATS, "is no format")]
     kept = [Typed(name) for name in _chosen("--keep", args.keep, TYPED, "is not among what is typed")]
     if args.identified and (kept or args.preview):
-        raise FileRefusedError("--identified", "identified data are exported unchanged", "Omit --keep and --preview")
+        raise FileRefusedError(
+            "--identified", "data that identify the patient are exported unchanged", "Omit --keep and --preview"
+        )
     if args.preview:
         return _preview(args, kept)
     if args.out.exists() and not (args.out.is_dir() and not any(args.out.iterdir())):

@@ -22,7 +22,7 @@ def add_import_arguments(parser: argparse.ArgumentParser) -> None:
         dest="format",
         type=one_of(FORMATS),
         metavar="FORMAT",
-        help=f"{', '.join(FORMATS)}; without it, told by the content",
+        help=f"{', '.join(FORMATS)}; without it, recognised by the content",
     )
     parser.add_argument(
         "--map",
@@ -32,7 +32,7 @@ def add_import_arguments(parser: argparse.ArgumentParser) -> None:
     )
     parser.add_argument("--kind", type=one_of(KINDS), default="walking", metavar="KIND", help=" | ".join(KINDS))
     parser.add_argument("--recording", metavar="NAME", help='the name of the recording ("walk 1" and so on)')
-    parser.add_argument("--rate", type=positive, metavar="HZ", help="samples per second, where the files do not tell")
+    parser.add_argument("--rate", type=positive, metavar="HZ", help="samples per second, if not in the files")
     parser.add_argument("--out", metavar="SESSION", type=Path, required=True, help="the session folder, new or not")
 
 

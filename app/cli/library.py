@@ -173,7 +173,9 @@ def verify_audit(args: argparse.Namespace) -> Iterator[str]:
         since = Checkpoint.parsed(args.since) if args.since else BEGINNING
     except LibraryError:
         what = f"{one_line(args.since)} is no line of an earlier audit"
-        raise FileRefusedError("--since", what, "Give the last line that this command printed") from None
+        raise FileRefusedError(
+            "--since", what, "Give the last line that an earlier run of this command printed"
+        ) from None
     with opened_library(args) as opened:
         report = opened.library.audit.verify(since)
     for fault in report.faults:

@@ -133,7 +133,7 @@ def _parser() -> argparse.ArgumentParser:
     _add_demo(commands.add_parser("demo", help="simulate a patient and analyse the session"))
     for name, what, add_arguments, work in (
         ("report", "make the report of a session as a PDF", add_report_arguments, make),
-        ("compare", "tell what differs between conditions or sessions", add_compare_arguments, compare),
+        ("compare", "list what differs between conditions or sessions", add_compare_arguments, compare),
         ("agree", "compare the angles of a session with an optical system", add_agree_arguments, agree),
         ("export", "write results for other programs", add_export_arguments, export),
         ("import", "add recordings of another program to a session", add_import_arguments, import_files),
@@ -151,7 +151,7 @@ def _parser() -> argparse.ArgumentParser:
     asking.set_defaults(run=_query)
     _add_recover(commands.add_parser("recover", help="close recordings that were interrupted"))
     _add_audit(commands.add_parser("audit", help="see whether a library's audit was changed"))
-    _add_devices(commands.add_parser("devices", help="list the sensors that are heard, and how drivers were proved"))
+    _add_devices(commands.add_parser("devices", help="list the sensors found, and how drivers were tested"))
     return parser
 
 
@@ -231,9 +231,7 @@ def _add_audit(parser: argparse.ArgumentParser) -> None:
 
 
 def _add_devices(parser: argparse.ArgumentParser) -> None:
-    parser.description = (
-        "List the sensors that are heard at ports and announced on the network, and how each driver was proved."
-    )
+    parser.description = "List the sensors found at ports and on the network, and how each driver was tested."
     parser.add_argument(
         "--emulate",
         type=one_of(EMULATED),

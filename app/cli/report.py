@@ -85,4 +85,4 @@ def _comment(file: Path | None) -> str:
         return file.read_text(encoding="utf-8-sig")
     except (OSError, UnicodeDecodeError) as problem:
         why = problem.strerror if isinstance(problem, OSError) else "it is no text in UTF-8"
-        raise FileRefusedError(str(file), f"this cannot be read ({why})", "Give --comment a text file") from problem
+        raise FileRefusedError(str(file), f"this cannot be read ({why})", "Give a text file for --comment") from problem

@@ -27,6 +27,6 @@ def deleted_by(opened: "OpenedLibrary", patient_id: UUID, session_id: UUID | Non
 def deletion_message(what: str, by: str) -> tuple[str, str]:
     """Say at this station that what is in sight was deleted at another: what happened, and what to do."""
     return (
-        tr("{user} deleted {what} at another workstation.").format(user=by, what=what),
-        tr("To continue, restore it in Settings within 30 days."),
+        tr("At another workstation, {user} deleted {what}.").format(user=by, what=what),
+        tr("To continue, restore the deleted data in Settings within 30 days."),
     )

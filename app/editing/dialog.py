@@ -59,7 +59,7 @@ class EditDialog(QDialog):
         )
         self._table = QWidget()
         self._scroll = QScrollArea()
-        self._note = Text(look, tr("Choose in each line with the arrow keys."), tone="ink2", wraps=True)
+        self._note = Text(look, tr("Choose a value in each line with the arrow keys."), tone="ink2", wraps=True)
         self.save = Button(look, tr("Save choice"), ButtonKind.PRIMARY, key=tr("Enter"))
         self.leave = Button(look, tr("Keep theirs"), ButtonKind.SECONDARY, key=tr("Esc"))
         self._pairs: list[QBoxLayout] = []
@@ -156,7 +156,7 @@ class EditDialog(QDialog):
     def _follow(self) -> None:
         is_whole = self.chosen is not None
         self.save.setEnabled(is_whole)
-        self._note.setText("" if is_whole else tr("Choose in each line with the arrow keys."))
+        self._note.setText("" if is_whole else tr("Choose a value in each line with the arrow keys."))
 
     def _on_moved(self, row: int, column: int, right: int, down: int) -> None:
         """Left and right choose, up and down go to another line."""

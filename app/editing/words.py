@@ -29,7 +29,7 @@ def field_word(field: str) -> str:
         whose = ", ".join(filter(None, [measure_name(column), whose_name(GoalOf(of))]))
         return tr("Goal, {whose}").format(whose=whose)
     if part in list(Joint):
-        of_joint = {"zero_rad": tr("Goniometer, {joint}"), "turned_sign": tr("Sign, {joint}")}
+        of_joint = {"zero_rad": tr("Goniometer, {joint}"), "turned_sign": tr("Angle sign, {joint}")}
         return of_joint[name].format(joint=name_of(Joint(part)))
     if part in list(Side):
         of_side = {"without_ankle": tr("Ankle joint, {side}"), "left_out_s": tr("Strides excluded, {side}")}
@@ -70,7 +70,7 @@ def value_words(field: str, value: Value) -> str:
             "without_ankle": (tr("none"), tr("present")),
             "cannot_stand": (tr("cannot stand"), tr("can stand")),
             KEPT: (tr("included"), tr("excluded")),
-            "is_restrapped_before": (tr("reattached before"), tr("not reattached before")),
+            "is_restrapped_before": (tr("reattached before the recording"), tr("not reattached before the recording")),
         }[name]
         return yes if value else no
     if name == "turned_sign":

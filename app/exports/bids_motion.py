@@ -42,7 +42,7 @@ ABOUT_COLUMNS = {
         "Levels": {
             "sensor": {"Description": "The axes of the sensor itself, as its maker has them; right-hand."},
             "earth": {
-                "Description": "From sensor to earth, as the sensor tells it: z is up, the heading is any.",
+                "Description": "From sensor to earth, as the sensor gives it: z is up, the heading is any.",
                 "SpatialAxes": "__S",
                 "RotationRule": "right-hand",
             },
@@ -50,7 +50,7 @@ ABOUT_COLUMNS = {
     },
     "sensor": {"Description": "Number or name of the sensor."},
     "rate_kind": {
-        "Description": "What one sample of the gyroscope stands for.",
+        "Description": "What one sample of the gyroscope represents.",
         "Levels": {
             "instantaneous": "The instant of its latency.",
             "averaged": "The mean over the interval before its latency.",
@@ -83,7 +83,7 @@ def write_bids(session: Session, folder: Path) -> str:
     """
     held = [one for one in session.recordings if one.is_kept and any(len(block) for block in one.imu.values())]
     if not held:
-        return tr("No included recording has samples.")
+        return tr("No included recording contains sensor data.")
     participant = f"sub-{_label(session.patient.code) or 'unknown'}"
     motion = folder / participant / "motion"
     motion.mkdir(parents=True)

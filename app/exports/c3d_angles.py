@@ -69,7 +69,9 @@ def write_c3d(recording: RecordingAnalysis, is_simulated: bool, path: Path) -> s
     joints = [joint for joint, stated in status.items() if stated in REPORTED]
     if not joints and not events_of(recording):
         reasons = [why_status(recording, joint) for joint in status]
-        return " ".join([tr("It has neither angles nor events to export."), *dict.fromkeys(filter(None, reasons))])
+        return " ".join(
+            [tr("This recording has neither angles nor events to export."), *dict.fromkeys(filter(None, reasons))]
+        )
     found = {joint: reported_abduction_deg(recording, joint) for joint in joints if joint.is_hip}
     abductions = {joint: abduction_deg for joint, abduction_deg in found.items() if abduction_deg is not None}
     rows, step_s = _rows_of_frames(recording)

@@ -85,11 +85,11 @@ ON_CLOCK = ColumnMeaning("on the recording's clock")
 SIDE = _word("left or right")
 USED = _word("true where the stride counts for averages")
 ANGLE_STATUS = _word(
-    "what may be said of the joint: read, care, withheld, range_only (its sign is not known) or no_zero (heights say "
+    "data quality of the joint: read, care, withheld, range_only (its sign is not known) or no_zero (heights say "
     "nothing)"
 )
 N = _word("strides behind the mean")
-STATUS = "read, care, withheld or not_measured: what may be said of "
+STATUS = "read, care, withheld or not_measured: the data quality of "
 OF_PART = {
     "part": _word("letter of the condition or visit"),
     "name": _word("its name"),
@@ -106,8 +106,17 @@ JUDGED = {
     "difference": ColumnMeaning("the first mean less the second", AS_PARAMETER, AS_ROW, AS_ROW),
     "error": ColumnMeaning("what a difference has to exceed to be real, at 95 %", AS_PARAMETER, "", AS_ROW),
     "error_sources": _word("what the error contains"),
-    "status": _word("the worse of what may be said of the two means"),
+    "status": _word("the worse data quality of the two means"),
     "verdict": _word("exceeds_error, inside_error, withheld, too_few_strides (under 10) or no_published_figure"),
+}
+LIKELY = {
+    "low": ColumnMeaning("least of what the true difference is likely to be, at 95 %", AS_PARAMETER, AS_ROW, AS_ROW),
+    "high": ColumnMeaning("most of what the true difference is likely to be, at 95 %", AS_PARAMETER, AS_ROW, AS_ROW),
+    "beyond_speed": ColumnMeaning("the difference less what another walking speed makes", AS_PARAMETER, AS_ROW, AS_ROW),
+    "beyond_speed_low": ColumnMeaning("least of what that is likely to be, at 95 %", AS_PARAMETER, AS_ROW, AS_ROW),
+    "beyond_speed_high": ColumnMeaning("most of what that is likely to be, at 95 %", AS_PARAMETER, AS_ROW, AS_ROW),
+    "mark": _word("beyond_healthy (of legs: beyond error and healthy_limit), beyond_error, or empty"),
+    "healthy_limit": ColumnMeaning("what 95 of 100 healthy people's legs differ by less", AS_PARAMETER, "", AS_ROW),
 }
 PERCENT = {"percent": ColumnMeaning("of the stride, from initial contact to the next")}
 
@@ -191,6 +200,7 @@ DIFFERENCES = {
     **JUDGED,
     **BY_HAND,
     "chosen_before": _word("true where a goal of the parameter had been agreed before the session's day"),
+    **LIKELY,
 }
 KNOWN: Mapping[str, Mapping[str, ColumnMeaning]] = {
     "angles.csv": {
@@ -264,7 +274,7 @@ KNOWN: Mapping[str, Mapping[str, ColumnMeaning]] = {
         "unverified": _word("true where definition or error rests on a source that could not be read"),
         "status": _word(f"{STATUS}the measure"),
         "source": _word("where the measure comes from"),
-        "cannot_say": _word("what the measure does not tell"),
+        "cannot_say": _word("what the measure does not show"),
     },
     "sides.csv": {
         **OF_PART,
@@ -272,6 +282,7 @@ KNOWN: Mapping[str, Mapping[str, ColumnMeaning]] = {
         **{name: one for side in Side for name, one in _prefixed(f"{side}_", {**MEAN, **BY_HAND}, "").items()},
         **JUDGED,
         "symmetry_index_percent": ColumnMeaning("difference by the mean of both legs", AS_PARAMETER),
+        **LIKELY,
     },
     "goals.csv": {
         "recording": _word("its folder"),
@@ -292,27 +303,27 @@ KNOWN: Mapping[str, Mapping[str, ColumnMeaning]] = {
         ),
         "status": _word(f"{STATUS}the value"),
         "standing": _word(
-            "reached or short (by more than the error), reached_inside_error or short_inside_error (not told from the "
-            "goal), not_judged or unknown"
+            "reached or short (by more than the error), reached_inside_error or short_inside_error (not distinguished "
+            "from the goal), not_judged or unknown"
         ),
     },
     "targets.csv": {
         "recording": _word("its folder"),
         "condition": _word("what was worn or set"),
-        "measure": _word("what the patient aimed at on a screen of their own, stride by stride, as it was told live"),
+        "measure": _word("what the patient aimed at on a screen of their own, stride by stride, as it was shown live"),
         "side": _word("left or right; empty of both legs"),
         "target": _word("the value to be reached, in the unit beside it"),
         "unit": _word("of the target"),
         "reached": _word("values that, rounded to a whole number, reached the target"),
-        "strides": _word("values that were told"),
-        "reached_percent": ColumnMeaning("share of the values told that reached the target"),
+        "strides": _word("values that were shown"),
+        "reached_percent": ColumnMeaning("share of the values shown that reached the target"),
     },
     "timed_test.csv": {
         "recording": _word("its folder"),
         "condition": _word("what was worn or set"),
         "test": _word("which test the walk is, in the words of session.toml"),
         "row": _word(
-            "what the row tells of: test, third, lap, turn, pause, rise, stair (a stride) or silence of a sensor"
+            "what the row is of: test, third, lap, turn, pause, rise, stair (a stride) or silence of a sensor"
         ),
         "number": _word("of the rows of this kind, from 1"),
         "start_s": ColumnMeaning("of a test on the recording's clock, of its parts from the start of the test"),
@@ -336,7 +347,7 @@ KNOWN: Mapping[str, Mapping[str, ColumnMeaning]] = {
         "since": _word("the condition that it was changed from"),
         "part": _word("foot, socket, knee unit or pylon, and which screw"),
         "angle_deg": ColumnMeaning(
-            "by how much the part was tilted or turned, as somebody told it",
+            "by how much the part was tilted or turned, as somebody typed it",
             sign="positive: plantarflexion or eversion of the foot, toes out, flexion or abduction of the socket",
         ),
         "turns": ColumnMeaning("turns of the screw", sign="positive: out", unit="turns"),

@@ -8,6 +8,7 @@ column's name; sides are coded. Simulated figures carry the label that HL7 gives
 
 import datetime
 import json
+import math
 import re
 from collections.abc import Iterator, Mapping
 from pathlib import Path
@@ -17,11 +18,15 @@ from uuid import NAMESPACE_URL, uuid5
 from app.exports.figures import SIMULATED, WalkFigure, finite, reason_of, software, unit_of, walk_figures
 from app.storage.pseudonyms import AGE
 from app.summary.agreed import agreed_with
+from app.summary.comparison import compare_legs, first_and_second
+from app.summary.conditions import conditions_of
+from app.summary.differences import likely_figures
 from app.wording.measures import goal_in_words
 from app.wording.translation import PURPOSE
 from app.wording.verdicts import gate_sentence
 from core.body import Side
 from core.goals import Goal
+from core.parameters import BETWEEN_LEGS
 from core.results import Analysis
 from core.samples import Session
 from core.verdicts.model import Verdict
@@ -76,6 +81,7 @@ def bundle(session: Session, analysis: Analysis) -> dict[str, Any]:
         url = _url(session, one.walk, str(one.side), one.name)
         notes = [*_notes(one.walk, conditions.get(one.walk, "")), *([SIMULATED] if analysis.is_simulated else [])]
         resources.append((url, dict(_observation(one, patient_url, when, notes))))
+    resources += _between_legs(session, analysis, patient_url)
     if analysis.is_simulated:
         resources = [(url, {**resource, "meta": {"security": [TEST_DATA]}}) for url, resource in resources]
     return {
@@ -164,6 +170,39 @@ def _observation(one: WalkFigure, patient_url: str, when: str, notes: list[str])
         components.append({"code": _code("strides_used"), "valueInteger": one.strides})
     if components:
         yield "component", components
+
+
+def _between_legs(session: Session, analysis: Analysis, patient_url: str) -> Iterator[tuple[str, dict[str, Any]]]:
+    """One Observation for each measure that the legs of a condition are compared in, with its likely interval."""
+    sides = first_and_second(analysis.affected_side)
+    for part in conditions_of(analysis, session.recordings, agreed=agreed_with(session)):
+        for column in BETWEEN_LEGS if len(part.sides) == len(Side) else ():
+            found, unit = compare_legs(part, column, sides), unit_of(column)
+            if not found.is_reported:
+                continue
+            ends = {key: value for key, value in likely_figures(found).items() if math.isfinite(value)}
+            components: list[dict[str, Any]] = [
+                {"code": _code(key), "valueQuantity": _quantity(value, unit)} for key, value in ends.items()
+            ]
+            if found.mark:
+                components.append({"code": _code("mark"), "valueString": str(found.mark)})
+            is_final = all(part.assessment(side, column).verdict is Verdict.READ for side in sides)
+            yield (
+                _url(session, part.letter, part.name, "legs", column),
+                {
+                    "resourceType": "Observation",
+                    "status": "final" if is_final and found.is_judged else "preliminary",
+                    "category": [{"coding": [{"system": ACTIVITY, "code": "activity", "display": "Activity"}]}],
+                    "code": _code(f"{column}_difference", f"{column}, {sides[0]} less {sides[1]}".replace("_", " ")),
+                    "subject": {"reference": patient_url},
+                    **({"effectiveDateTime": when} if (when := _when(session.started)) else {}),
+                    "valueQuantity": _quantity(found.difference, unit),
+                    "note": [{"text": text} for text in (part.name or part.letter, PURPOSE)]
+                    + ([{"text": SIMULATED}] if analysis.is_simulated else []),
+                    "device": {"display": software()},
+                    **({"component": components} if components else {}),
+                },
+            )
 
 
 def _status(one: WalkFigure) -> str:

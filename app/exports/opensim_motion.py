@@ -36,7 +36,7 @@ SHORTEST_S = 0.5  # of what is worth a file
 ADDUCTION = {Joint.RIGHT_HIP: "hip_adduction_r", Joint.LEFT_HIP: "hip_adduction_l"}
 OF_HIPS = (
     "Hip flexion and adduction are positive; pelvis_tilt is negative forward, pelvis_list positive with the left side "
-    "up. They are told from standing, which is not the zero of a model. hip_rotation and pelvis_rotation are left out: "
+    "up. They start from standing, which is not the zero of a model. hip_rotation and pelvis_rotation are left out: "
     "the one is not readable, of the other the heading is not known."
 )
 
@@ -73,7 +73,7 @@ def write_motion(recording: RecordingAnalysis, is_simulated: bool, path: Path) -
     parts = _parts(recording.time_s, columns)
     if not parts:
         reasons = [why_status(recording, joint) for joint in measured if joint not in joints]
-        return " ".join([tr("It has no angle to export as a pose."), *dict.fromkeys(filter(None, reasons))])
+        return " ".join([tr("This recording has no angle to export as a pose."), *dict.fromkeys(filter(None, reasons))])
     header = [
         "",
         *([SIMULATED] if is_simulated else []),

@@ -22,8 +22,11 @@ from openpyxl.worksheet._write_only import WriteOnlyWorksheet
 from app.exports.figures import SIMULATED, finite, reason_of, software, unit_of, walk_figures
 from app.exports.gait_csv import gait_tables
 from app.exports.pseudonymised import what_is_stated
+from app.summary.agreed import agreed_with
+from app.summary.comparison import Comparison, Contrast, first_and_second
 from app.summary.condition_figures import condition_figures
 from app.summary.conditions import conditions_of
+from app.summary.differences import HEADER, difference_cells, legs_table, rows_along_chain
 from app.summary.status import NOT_REPORTED, all_that_is_stated, why
 from app.wording.alignment import since_in_words
 from app.wording.findings import sentence
@@ -58,6 +61,8 @@ def write_spreadsheet(session: Session, analysis: Analysis, path: Path) -> None:
     of_summary += ["error", "status", "reasons"]
     _sheet(book, "Summary", of_summary, _summary(session, analysis))
     _sheet(book, "Conditions", [*OF_CONDITIONS, "status"], _conditions(session, analysis))
+    for title, (header, lines) in _compared(session, analysis).items():
+        _sheet(book, title, header, ([_value(cell) for cell in line] for line in lines))
     columns: dict[str, None] = dict.fromkeys(of_summary)
     for name in ("strides", "cycles", "events"):
         header, rows = _joined(analysis, name)
@@ -114,6 +119,16 @@ def _conditions(session: Session, analysis: Analysis) -> Iterable[list[Value]]:
             side = "both" if one.side is None else str(one.side)
             strides = one.found.n if is_reported else None
             yield [part.name, walks, side, one.column, *figures, unit_of(one.column), strides, str(one.verdict)]
+
+
+def _compared(session: Session, analysis: Analysis) -> dict[str, tuple[list[str], list[list[str]]]]:
+    """The rows of sides.csv and differences.csv, where there are any."""
+    parts = conditions_of(analysis, session.recordings, agreed=agreed_with(session))
+    found = {"Left vs right": legs_table(parts, first_and_second(analysis.affected_side))}
+    if len(parts) > 1:
+        rows = rows_along_chain(Comparison(Contrast.CONDITIONS, parts))
+        found["Differences"] = list(HEADER), list(map(difference_cells, rows))
+    return {title: table for title, table in found.items() if table[1]}
 
 
 def _finite(value: float) -> Value:

@@ -16,6 +16,7 @@ from app.summary.averages import LegAverages, averages_of
 from app.summary.comparison import compare_legs, first_and_second
 from app.summary.condition_figures import summarise_conditions
 from app.summary.conditions import Part
+from app.summary.differences import likely_figures
 from app.summary.error_figures import error_figures_in_json
 from app.summary.reference_bands import reference_curves
 from app.wording.findings import sentence
@@ -186,6 +187,8 @@ def _side_difference(part: Part, name: str, sides: tuple[Side, Side]) -> dict[st
         "error_deg": _number(found.error),
         "verdict": str(found.judgement),
         "error_sources": [str(source) for source in found.sources],
+        **{f"{key}_deg": _number(value) for key, value in likely_figures(found).items()},
+        "mark": str(found.mark),
     }
 
 

@@ -42,14 +42,16 @@ PAINTED: dict[Film, Paint] = {Film.SENSOR_PLACEMENT: paint_strapping, Film.FREE_
 SCENES: dict[Film, tuple[Scene, ...]] = {
     Film.SENSOR_PLACEMENT: (
         Scene(later("Thigh"), later("A hand's width above the knee, on the outside.")),
-        Scene(later("Shank"), later("On the flat of the shin, or on the outside.")),
+        Scene(later("Shank"), later("On the flat side of the shin, or on the outside.")),
         Scene(later("Foot"), later("On top of the foot, over the laces.")),
         Scene(
             later("Any orientation"), later("Sensor orientation is detected automatically. The strap must not slip.")
         ),
     ),
     Film.FREE_MOTION: (
-        Scene(later("Bend the left knee"), later("Back and forth, as far as comfortable. Moving it by hand is fine.")),
+        Scene(
+            later("Bend the left knee"), later("Back and forth, as far as comfortable. Moving the leg by hand is fine.")
+        ),
         Scene(later("Circle the left lower leg"), later("Seated, lying or standing, moved by hand if needed.")),
         Scene(later("Change direction"), later("From time to time, reverse the direction.")),
         Scene(later("Circle the left foot"), later("Circle at the ankle, in both directions.")),

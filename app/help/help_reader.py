@@ -249,7 +249,9 @@ class HelpReader(QTextBrowser):
         painter = QPainter(image)
         painter.setRenderHint(QPainter.RenderHint.Antialiasing)
         if is_moving:
-            paint_frame(painter, rect, self._look.theme, self._film(), self._film_s, tr("Space pauses and plays."))
+            paint_frame(
+                painter, rect, self._look.theme, self._film(), self._film_s, tr("Space bar: pause or play film.")
+            )
         else:
             paint_stills(painter, rect, self._look.theme, self._film())
         painter.end()

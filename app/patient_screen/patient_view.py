@@ -50,8 +50,11 @@ def title_of(target: Target) -> str:
     if target.measure is TargetMeasure.CADENCE:
         return tr("Both legs: take quicker steps")
     left, right = {
-        TargetMeasure.KNEE_SWING_PEAK: (tr("Left knee: bend it as you swing"), tr("Right knee: bend it as you swing")),
-        TargetMeasure.FOOT_STRIKE: (tr("Left foot: toes up as you land"), tr("Right foot: toes up as you land")),
+        TargetMeasure.KNEE_SWING_PEAK: (
+            tr("Left knee: bend it as the leg swings"),
+            tr("Right knee: bend it as the leg swings"),
+        ),
+        TargetMeasure.FOOT_STRIKE: (tr("Left foot: toes up as it lands"), tr("Right foot: toes up as it lands")),
         TargetMeasure.STANCE_RATIO: (tr("Left leg: stand on it longer"), tr("Right leg: stand on it longer")),
     }[target.measure]
     return left if target.side is Side.LEFT else right

@@ -45,7 +45,7 @@ class ComparedFrame(Card):
     def __init__(self, look: ThemeNotifier, chart: ComparedChart, side: Side, kind: JointKind) -> None:
         self._side, self._kind = side, kind
         self.chart = chart
-        self._mark = IconMark(look, Icon.WARNING, size=18)
+        self._mark = IconMark(look, Icon.DIFFERENCE, size=18)
         self._note = Text(look, size=12, weight=MEDIUM, wraps=True)
         super().__init__(look, padding=12, spacing=2)
         self.setSizePolicy(QSizePolicy.Policy.Expanding, QSizePolicy.Policy.Expanding)
@@ -98,7 +98,9 @@ class ComparedFrame(Card):
         stated = [tr("Simulated.")] if self.chart.is_simulated else []
         for curve in self.chart.curves:
             mean = curve.angle_deg
-            reported = tr("{letter}: {lowest} at {lowest_percent} % to {highest} at {highest_percent} %.")
+            reported = tr(
+                "{letter}: from {lowest} at {lowest_percent} % to {highest} at {highest_percent} % of the gait cycle."
+            )
             stated.append(
                 reported.format(
                     letter=curve.letter,

@@ -48,7 +48,7 @@ class CostMap(Themed):
         """Draw the map of the sensor on the segment `name`; the circle about the axis is 2 SD wide."""
         self._cost, self._side, self._axis_sd_rad = cost, side, axis_sd_rad
         stated = tr(
-            "{sensor}: the axis in use is {apart}° from the best-fitting direction; misfits range from "
+            "{sensor}: the axis in use is {apart}° from the best-fitting direction; fit errors range from "
             "{low} to {high} °/s."
         )
         low, high = self.limits_deg_s

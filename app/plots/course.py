@@ -302,13 +302,13 @@ class _Words(Themed):
         self._show()
 
     def add_marked(self, words: str, *, is_marked: bool) -> None:
-        """A line with a triangle before it where what it states lies beyond the error."""
+        """A line with arrows before it where what it states lies beyond the error."""
         line = QWidget()
         row = QHBoxLayout(line)
         row.setContentsMargins(0, 0, 0, 0)
         row.setSpacing(self._look.theme.px(4))
         if is_marked:
-            row.addWidget(IconMark(self._look, Icon.WARNING, size=16))
+            row.addWidget(IconMark(self._look, Icon.DIFFERENCE, size=16))
         row.addWidget(Text(self._look, words, 12, SEMIBOLD if is_marked else REGULAR, wraps=True), 1)
         self.add(line)
 

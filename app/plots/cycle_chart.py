@@ -65,7 +65,7 @@ DOUBTS = {
         "{sides}: no standing reference. Range of motion and curve shape are valid; absolute angles are not."
     ),
     NO_HEIGHT: later("{sides}: absolute angle not reported. Range of motion and curve shape are valid."),
-    MAY_BE_MIRRORED: later("{sides}: sign unclear, flexion or extension. The curve may be inverted."),
+    MAY_BE_MIRRORED: later("{sides}: it is unclear which direction is flexion. The curve may be inverted."),
 }
 
 
@@ -187,7 +187,7 @@ class CycleFrame(Card):
         self.kind = kind
         self.chart = chart
         self.chips = {side: VerdictChip(look, side) for side in Side}
-        self._mark = IconMark(look, Icon.WARNING, size=18)
+        self._mark = IconMark(look, Icon.DIFFERENCE, size=18)
         self._note = Text(look, size=12, weight=MEDIUM, wraps=True)
         self.beside = Text(look, size=12, tone="ink2", wraps=True)
         self._walk: tuple[Mapping[Side, SideCycle], Mapping[Side, JointVerdicts], bool] = ({}, {}, False)
@@ -343,8 +343,8 @@ class CycleFrame(Card):
                 continue
             lowest, highest = np.min(cycle.mean.mean), np.max(cycle.mean.mean)
             reported = tr(
-                "{part}, mean of {count}: {lowest} at {lowest_percent} % to {highest} at {highest_percent} %, "
-                "toe-off at {toe_off_percent:.0f} %."
+                "{part}, mean of {count} strides: from {lowest} at {lowest_percent} % to {highest} at "
+                "{highest_percent} % of the gait cycle, toe-off at {toe_off_percent:.0f} %."
             )
             stated.append(
                 reported.format(
@@ -371,7 +371,7 @@ class CycleFrame(Card):
             sides = [side.letter for side in doubts if doubts[side] == why]
             notes += [tr(what).format(sides=joined(sides))] if sides else []
         if self.chart.is_about_mean:
-            notes.append(tr("0° is the mean of the gait cycle."))
+            notes.append(tr("0° is the mean angle over the gait cycle."))
         if not cycles:
             notes.append(nothing_in_words(self.kind))
         empty = [s.letter for s, cycle in cycles.items() if not cycle.mean.n and s not in self.chart.not_reported]

@@ -1,4 +1,4 @@
-"""Differences that leave the measurement error. Grey is the error; what leaves it is filled and has a triangle."""
+"""Differences that leave the measurement error. Grey is the error; what leaves it is filled and has arrows."""
 
 import math
 from collections.abc import Sequence
@@ -150,7 +150,7 @@ class DifferencePlot(Themed):
             paint_letter(painter, theme, dot.letter, QPointF(self.x_of(dot.value), middle), colour, dot.exceeds)
         if row.exceeds:
             side = px(MARK)
-            paint_icon(painter, Icon.WARNING, QRectF(self.width() - side, middle - side / 2, side, side), c.ink)
+            paint_icon(painter, Icon.DIFFERENCE, QRectF(self.width() - side, middle - side / 2, side, side), c.ink)
 
     def _paint_axis(self, painter: QPainter) -> None:
         theme = self._look.theme

@@ -259,7 +259,7 @@ class ChartFrame(Card):
         self._moment = Text(look, size=14, tone="ink2")
         self._keys = {side: SideKey(look, side) for side in Side}
         self._values = {side: Text(look, size=15, weight=SEMIBOLD, tone=f"{side}_text") for side in Side}
-        self._wide_mark = IconMark(look, Icon.WARNING, size=18)
+        self._wide_mark = IconMark(look, Icon.DIFFERENCE, size=18)
         self._wide = Text(look, size=12, weight=MEDIUM)
         super().__init__(look, spacing=4)
         self.setSizePolicy(QSizePolicy.Policy.Expanding, QSizePolicy.Policy.Expanding)
@@ -310,7 +310,7 @@ class ChartFrame(Card):
             for widget in (self._keys[side], self._values[side]):
                 widget.setVisible(side in curves)
         self._set_widened()
-        self.chart.setAccessibleName(tr("{joint} over time").format(joint=title_in_words(self.kind)))
+        self.chart.setAccessibleName(tr("{joint} during the recording").format(joint=title_in_words(self.kind)))
         self.chart.setAccessibleDescription(self.in_words())
 
     def read(self, row: int | None, time_s: float | None) -> None:

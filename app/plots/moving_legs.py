@@ -33,10 +33,12 @@ SPEEDS = (
 )
 PELVIS_M, PELVIS_HALF_M = 0.14, 0.08  # as large as it looks right
 LANE, LANE_GAP, LANES_HEIGHT = 18, 8, 84
-NO_LEGS = later("Legs are drawn where a thigh sensor was received and a knee has an absolute angle.")
+NO_LEGS = later("To draw legs, data of a thigh sensor and an absolute knee angle are needed.")
 APART = later("Left and right sensors are not synchronised: legs are drawn half a gait cycle apart.")
-DRAWN = later("Drawn from joint angles and thigh inclination; not measured.")
-DRAWN_WITH_PELVIS = later("Drawn from joint angles and the inclination of thighs and pelvis; not measured.")
+DRAWN = later("The legs are drawn from joint angles and thigh inclination. Their position is not measured.")
+DRAWN_WITH_PELVIS = later(
+    "The legs are drawn from joint angles and the inclination of thighs and pelvis. Their position is not measured."
+)
 
 
 class MovingLegs(Card):

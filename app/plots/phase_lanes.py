@@ -134,7 +134,7 @@ class PhaseFrame(Card):
         for side in Side:
             self._chips[side].hide()
             self._readings[side].setVisible(side in gait)
-        self.lanes.setAccessibleName(tr("Gait phases over time"))
+        self.lanes.setAccessibleName(tr("Gait phases during the recording"))
         self.lanes.setAccessibleDescription(self.in_words())
         self.setVisible(bool(gait))
         self._reserve_room()

@@ -138,8 +138,8 @@ class ProjectedRatesPlot(Themed):
         assert self._shown is not None
         paired, turned = (100 * share for share in (self._shown.congruence, self._shown.reversed_congruence))
         return (
-            tr("As paired: {percent} % agree").format(percent=f"{paired:.0f}"),
-            tr("One axis reversed: {percent} % agree").format(percent=f"{turned:.0f}"),
+            tr("As paired: {percent} % agreement").format(percent=f"{paired:.0f}"),
+            tr("One axis reversed: {percent} % agreement").format(percent=f"{turned:.0f}"),
         )
 
     def _font(self, weight: QFont.Weight) -> QFont:

@@ -126,7 +126,7 @@ class AgreementController(QObject):
         name = session_name(self._session.patient.code, self._session.started, WHAT)
         self._dialog = ask_for_new_folder(
             self._page,
-            tr("Save the agreement to a new folder"),
+            tr("Save the agreement report to a new folder"),
             lambda place: free_name(place, name),
             self._on_folder_selected,
         )

@@ -16,8 +16,9 @@ from app.widgets.themed import Themed
 from app.wording.translation import joined, later, tr
 
 KINDS = later(
-    "CSV with time_s and left_knee, left_ankle, right_knee, right_ankle in degrees, OpenSim .mot, "
-    "C3D or Visual3D text. Time offset and signs are detected from the movement."
+    "Accepted files: CSV with time_s and left_knee, left_ankle, right_knee, right_ankle in "
+    "degrees, OpenSim .mot, C3D or Visual3D text. Gaitwright detects time offset and signs from "
+    "the movement."
 )
 
 
@@ -82,7 +83,7 @@ class AgreementPage(Themed):
         self._say(tr("Choose the optical system's file"), tr(KINDS), tr("Choose reference file"))
 
     def show_working(self, names: Sequence[str]) -> None:
-        self._say(tr("Searching for these walks in {files}.").format(files=joined(list(names))), "", "")
+        self._say(tr("Searching {files} for the recorded walks.").format(files=joined(list(names))), "", "")
 
     def show_refused(self, what: str, remedy: str) -> None:
         self._say(what, remedy, tr("Choose another file"))

@@ -5,19 +5,18 @@ from dataclasses import replace
 
 from app.results.compared_table import head_cell, value_cell
 from app.results.compared_words import (
-    beyond_sentence,
     change_in_words,
     difference_sentence,
-    error_in_figures,
+    evidence_of,
+    interval_of,
     is_judged,
     largest_sentence,
     why_not_reported,
 )
 from app.summary.answer import Answer, Outcome
 from app.summary.comparison import Compared, Comparison
-from app.summary.numbers_in_words import DAGGER, NOTHING, in_words, judged_in_words
+from app.summary.numbers_in_words import NOTHING, in_words, judged_in_words
 from app.summary.plain_text import shortened
-from app.theme.icons import Icon
 from app.widgets.fact_strip import KeyFigure
 from app.widgets.table import TableColumn, TableRow
 from app.widgets.table_cells import CENTRE, EMPTY, RIGHT, ErrorStrip, TableCell, TextCell
@@ -46,7 +45,7 @@ def beside_columns(found: Comparison) -> list[TableColumn]:
         TableColumn(title, share=3),
         *(TableColumn(head_cell(shortened(head, LONGEST_HEAD), spoken=head), share=1) for head in heads),
         TableColumn(TextCell(tr("grey: error"), align=CENTRE, size=12, tone="ink2"), share=2),
-        TableColumn(head_cell(tr("error")), share=1),
+        TableColumn(head_cell(tr("likely between")), share=1),
         TableColumn(TextCell(tr("result"), size=12, tone="ink2"), share=1),
     ]
 
@@ -81,15 +80,13 @@ def answer_beside(found: Comparison) -> Answer:
     if worth:
         most = max(worth, key=lambda row: row.difference.ratio)
         first = difference_sentence(most, tr("in this walk"), tr("in {part}").format(part=walk))
-        return Answer(Outcome.DIFFERS, first, beyond_sentence(most))
+        return Answer(Outcome.DIFFERS, first, evidence_of(most))
     if not reported:
         return Answer(Outcome.OPEN, tr("Nothing can be compared with {walk}.").format(walk=walk), "")
     most = max(reported, key=lambda row: row.difference.ratio)
     if any(row.exceeds for row in reported):
-        first = tr("Some changes from {walk} are beyond measurement error, none clearly.")
-        if most.difference.is_borrowed:
-            first = tr("Some changes from {walk} are beyond an error borrowed from another joint.")
-        then = f"{tr('The table marks them.')} {largest_sentence(most)}"
+        first = tr("Some changes from {walk} are beyond measurement error, but none clearly so.")
+        then = f"{tr('The table marks these changes.')} {largest_sentence(most)}"
         return Answer(Outcome.OPEN, first.format(walk=walk), then)
     first = tr("All judged changes from {walk} are within measurement error.").format(walk=walk)
     return Answer(Outcome.NOTHING, first, largest_sentence(most))
@@ -101,7 +98,7 @@ def _in_short(row: Compared) -> str:
         return why_not_reported(row)
     change = change_in_words(row.difference.difference, row.measure)
     leg = "" if row.measure.is_of_walk else row.side.letter
-    return " ".join(filter(None, [leg, change, "" if leg else in_words(row.difference.judgement)]))
+    return " ".join(filter(None, [leg, change, "" if leg else in_words(row.difference)]))
 
 
 def _row(row: Compared) -> TableRow:
@@ -121,13 +118,12 @@ def _row(row: Compared) -> TableRow:
                 change,
                 align=RIGHT,
                 weight=weight,
-                mark=Icon.WARNING if row.exceeds else None,
                 spoken=f"{who}, {tr('change')}: {change}" if change else "",
             ),
             _strip(row),
-            TextCell(_error(row), align=RIGHT, tone="ink2"),
+            TextCell(interval_of(row), align=RIGHT, tone="ink2"),
             TextCell(
-                in_words(found.judgement) if row.is_reported else why_not_reported(row),
+                in_words(found) if row.is_reported else why_not_reported(row),
                 size=12,
                 weight=weight,
                 tone="ink" if row.exceeds else "ink2",
@@ -144,7 +140,3 @@ def _strip(row: Compared) -> TableCell:
         word = tr("too few strides") if found.judgement is Judgement.TOO_FEW_STRIDES else tr("no published error")
         return TextCell(word, align=CENTRE, size=12, tone="ink2")
     return ErrorStrip(found.difference, found.error, SCALE * found.error, is_judged=True, spoken=judged_in_words(found))
-
-
-def _error(row: Compared) -> str:
-    return error_in_figures(row) + (DAGGER if is_judged(row) and row.difference.is_unverified else "")

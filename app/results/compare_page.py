@@ -42,18 +42,17 @@ from core.body import JointKind, Side
 from core.gait.cycles import POINTS
 from core.results import Analysis
 from core.verdicts.norms import AgeAndHeight, ReferenceCurves
-from core.verdicts.sigmas import ComparisonKind
 
 CURVES, PLOT, TABLE = "curves", "plot", "table"
 MOST_WITH_STRIDES = 3  # visits whose strides are counted beside their day
 KINDS = (200, 360)  # px: the narrowest and the widest that the box becomes
 OTHER_ZERO = later(
     "No common standing reference: compare range of motion and curve shape, not absolute angles. "
-    "0° is the mean of the gait cycle."
+    "Here, 0° is the mean angle over the gait cycle."
 )
 NO_COMMON_CONDITION = later(
-    "This visit shares no condition with an earlier visit, so they are not compared. {walked} "
-    "“Any visits and conditions” compares any two you choose."
+    "This visit shares no condition with an earlier visit, so the visits are not compared. "
+    "{walked} To compare any two visits or conditions, choose “Any visits and conditions”."
 )
 NOTHING = {
     Contrast.CONDITIONS: later("Only one walk has strides. Record a second walk to compare."),
@@ -104,7 +103,7 @@ class ComparePage(Themed):
             for side in Side:
                 self.frames[side, kind] = ComparedFrame(look, ComparedChart(look, kind), side, kind)
         self.side_charts = CycleCharts(look, reference_curves())
-        self._mark = IconMark(look, Icon.WARNING, size=20)
+        self._mark = IconMark(look, Icon.DIFFERENCE, size=20)
         self.conclusion = Text(look, size=14, wraps=True)
         self.error = Text(look, size=12, tone="ink2", wraps=True)
         self.card = ComparedCard(look)
@@ -418,14 +417,12 @@ class ComparePage(Themed):
         condition = "" if visits is None else condition_in_words(visits.condition)
         title = pattern.format(letter=found.against.letter, condition=condition)
         reported = [row for row in found.changes if row.is_reported]
-        is_borrowed = any(found.error_kind(part) is not ComparisonKind.ATTACHED for part in found.others)
-        is_borrowed &= any(joint.kind is JointKind.ANKLE for joint in found.joints)
-        self.error.setText(error_in_words([row.difference for row in reported], is_borrowed=is_borrowed))
+        self.error.setText(error_in_words([row.difference for row in reported]))
         worth = [sentence(row) for row in sorted(reported, key=weight_in(found)) if row.difference.is_worth_a_sentence]
         latest = found.latest if self.kind is Contrast.VISITS else None
         stated = conclusion(worth, reported, latest) if found.others else []
         if visits is not None and visits.without:
-            without = tr("Not compared, no walk in this condition: {visits}.")
+            without = tr("Not compared, as they have no walk in this condition: {visits}.")
             stated.append(without.format(visits=", ".join(visits.without)))
         self._say(stated, chosen, is_marked=bool(worth))
         self.card.show_comparison(found, title, self.conclusion.text())
@@ -446,9 +443,7 @@ class ComparePage(Themed):
         self._fit_side_charts()
         reported = [row for row in self.side_rows if row.is_reported]
         differences = [row.difference for row in reported]
-        self.error.setText(
-            error_in_words(differences, is_borrowed=any(joint.kind is JointKind.ANKLE for joint in part.joints))
-        )
+        self.error.setText(error_in_words(differences))
         worth = [row for row in sorted(reported, key=side_weight) if row.difference.is_worth_a_sentence]
         stated = conclusion([side_sentence(row, first, second) for row in worth], reported)
         self._say(stated, parts[:1], is_marked=bool(worth))

@@ -5,11 +5,11 @@ from collections.abc import Sequence
 from dataclasses import replace
 
 from app.charts.cycles import is_mean_enough, is_spread_enough
-from app.results.compared_words import BRIEF, change_in_words, days_of, error_in_figures
+from app.results.compared_words import BRIEF, change_in_words, days_of, interval_of
 from app.summary.comparison import Compared, Comparison, Contrast, SideRow
 from app.summary.conditions import Part
 from app.summary.goals import goal_mark
-from app.summary.numbers_in_words import DAGGER, NOTHING, fixed
+from app.summary.numbers_in_words import DAGGER, MARKS, NOTHING, fixed
 from app.summary.visit_trend import trend_of
 from app.theme.icons import Icon
 from app.widgets.figures_table import CARE_MARK, FIGURE
@@ -63,7 +63,7 @@ def has_brief_table(found: Comparison) -> bool:
 def side_table(rows: Sequence[SideRow], first: Side, second: Side) -> TableOfParts:
     """Every measure of both legs, their difference with its error, and symmetry."""
     one, other = first.letter, second.letter
-    heads = [one, other, f"{one} {MINUS} {other}", tr("error"), tr("symmetry, %")]
+    heads = [one, other, f"{one} {MINUS} {other}", tr("likely between"), tr("symmetry, %")]
     return _columns([head_cell(head) for head in heads], has_sides=False), [side_table_row(row, heads) for row in rows]
 
 
@@ -94,9 +94,9 @@ def _heads(found: Comparison, shown: Sequence[Part]) -> list[TextCell]:
     heads = [head_cell(part.letter, day if is_of_visits else "") for part, day in each]
     others = [found.latest] if is_of_visits and found.latest is not None else found.others
     changes = [head_cell(f"{part.letter} {MINUS} {found.against.letter}") for part in others if part is not None]
-    many = tr("error of {letter}").format(letter=found.others[-1].letter) if len(others) > 1 else ""
+    many = tr("{letter} likely between").format(letter=found.others[-1].letter) if len(others) > 1 else ""
     trend = [TextCell(tr("trend; grey: error"), size=12, tone="ink2")] if is_of_visits else []
-    return [*heads, *trend, *changes, head_cell(many or tr("error"))]
+    return [*heads, *trend, *changes, head_cell(many or tr("likely between"))]
 
 
 def _columns(heads: Sequence[TextCell], *, has_sides: bool) -> list[TableColumn]:
@@ -165,7 +165,6 @@ def _figure(value: str, small: str = "", *, is_marked: bool = False, is_grey: bo
         size=FIGURE,
         weight=SEMIBOLD if is_marked else REGULAR,
         tone="ink3" if is_grey else "ink",
-        mark=Icon.WARNING if is_marked else None,
     )
 
 
@@ -188,11 +187,12 @@ def _changed(row: Compared | SideRow, against: Part | None = None) -> TextCell:
     doubt = _doubt(row.difference)
     if against is not None and isinstance(row, Compared) and row.against is not against:
         doubt = " ".join(filter(None, [tr("from {letter}").format(letter=row.against.letter), doubt]))
-    return _figure(words, doubt, is_marked=row.exceeds)
+    mark = MARKS[row.difference.mark]
+    return _figure(words, " ".join(filter(None, [mark, doubt])), is_marked=row.exceeds)
 
 
 def _error_cell(row: Compared | SideRow) -> TextCell:
-    return replace(_figure(error_in_figures(row)), tone="ink2")
+    return replace(_figure(interval_of(row)), tone="ink2")
 
 
 def _doubt(found: Difference) -> str:

@@ -5,9 +5,10 @@ from collections.abc import Callable, Sequence
 from app.summary.comparison import Compared, Comparison, Reservation, SideRow
 from app.summary.conditions import Part
 from app.summary.error_sources import sources_in_words
+from app.summary.interval_words import evidence, interval_in_figures
 from app.summary.measure_sentences import Reported, change_sentence, legs_sentence, who_in_sentence
 from app.summary.measures import Measure
-from app.summary.numbers_in_words import DAGGER, NOTHING, fixed, signed
+from app.summary.numbers_in_words import NOTHING, signed
 from app.summary.walk_figures import reason_in_words
 from app.wording.body import side_name
 from app.wording.dates import day_in_words
@@ -24,8 +25,7 @@ JUDGED = (Judgement.EXCEEDS_ERROR, Judgement.INSIDE_ERROR)
 MOST_STATED = 3  # sentences about differences; the table has all of them
 
 ERROR = later("Grey: measurement error. It includes {sources}.")
-BORROWED = later("The ankle uses the knee's error figure.")
-UNVERIFIED = later("† based on a figure whose source could not be verified.")
+UNVERIFIED = later("† based on a value whose source could not be verified.")
 
 
 def part_in_words(part: Part, name: str) -> str:
@@ -56,16 +56,9 @@ def is_judged(row: Compared | SideRow) -> bool:
     return row.is_reported and row.difference.judgement in JUDGED
 
 
-def error_in_figures(row: Compared | SideRow) -> str:
-    """What a difference must exceed, as in a table, whose names have the units; a dash where none was judged."""
-    degree = "°" if row.measure.unit == "°" else ""  # as its difference
-    return fixed(row.difference.error, row.measure.decimals) + degree if is_judged(row) else NOTHING
-
-
-def error_in_sentence(row: Compared | SideRow) -> str:
-    """The same with its unit, and a mark where it rests on what could not be verified."""
-    figures = fixed(row.difference.error, row.measure.decimals) + unit_behind(row.measure)
-    return figures + (DAGGER if row.difference.is_unverified else "")
+def interval_of(row: Compared | SideRow) -> str:
+    """Where a difference is likely to be, as in a table, whose names have the units; a dash where none was judged."""
+    return interval_in_figures(row.measure.column, row.difference) if is_judged(row) else NOTHING
 
 
 def why_not_reported(row: Compared | SideRow) -> str:
@@ -96,7 +89,7 @@ def side_weight(row: SideRow) -> float:
 
 def sentence(row: Compared) -> str:
     """A difference that lies beyond the measurement error."""
-    return f"{difference_sentence(row, _where(row.part), _where(row.against))} {beyond_sentence(row)}"
+    return f"{difference_sentence(row, _where(row.part), _where(row.against))} {evidence_of(row)}"
 
 
 def difference_sentence(row: Compared, now: str, before: str) -> str:
@@ -112,15 +105,15 @@ def _where(part: Part) -> str:
     return tr("in {part}").format(part=part.letter)
 
 
-def beyond_sentence(row: Compared | SideRow) -> str:
-    """That a difference is beyond its error, which is named."""
-    return tr("Beyond measurement error (±{error}).").format(error=error_in_sentence(row))
+def evidence_of(row: Compared | SideRow) -> str:
+    """Where a difference is likely to be, and what else is known of it."""
+    return evidence(row.measure.column, row.difference)
 
 
 def side_sentence(row: SideRow, first: Side, second: Side) -> str:
     """A difference between the legs that lies beyond the measurement error."""
     legs, values = (side_name(first), side_name(second)), (row.first.mean, row.second.mean)
-    return f"{legs_sentence(row.measure.column, row.difference, legs, values)} {beyond_sentence(row)}"
+    return f"{legs_sentence(row.measure.column, row.difference, legs, values)} {evidence_of(row)}"
 
 
 def conclusion(worth: Sequence[str], reported: Sequence[Compared | SideRow], latest: Part | None = None) -> list[str]:
@@ -134,45 +127,46 @@ def conclusion(worth: Sequence[str], reported: Sequence[Compared | SideRow], lat
         The visit that all of them lead to; None: they are those of any parts.
     """
     if len(worth) > MOST_STATED:
-        return [*worth[:MOST_STATED], tr("The table shows all of them.")]
+        return [*worth[:MOST_STATED], tr("The table shows all differences.")]
     if worth:
         return list(worth)
     judged = [row for row in reported if is_judged(row)]
     most = max(judged, key=lambda row: row.difference.ratio, default=None)
     if most is None:
         none = tr("The differences could not be judged.")
-        of_visit = tr("The changes to visit {visit} could not be judged.")
+        of_visit = tr("The changes up to visit {visit} could not be judged.")
     elif not any(row.exceeds for row in judged):
         none = tr("All judged differences are within measurement error.")
-        of_visit = tr("All judged changes to visit {visit} are within measurement error.")
-    elif most.difference.is_borrowed:
-        none = tr("Some differences are beyond an error borrowed from another joint. The table marks them.")
-        of_visit = tr(
-            "Some changes to visit {visit} are beyond an error borrowed from another joint. The table marks them."
-        )
+        of_visit = tr("All judged changes up to visit {visit} are within measurement error.")
     else:
-        none = tr("Some differences are beyond measurement error, none clearly. The table marks them.")
-        of_visit = tr("Some changes to visit {visit} are beyond measurement error, none clearly. The table marks them.")
+        none = tr(
+            "Some differences are beyond measurement error, but none clearly so. The table marks these differences."
+        )
+        of_visit = tr(
+            "Some changes up to visit {visit} are beyond measurement error, but none clearly so. The "
+            "table marks these changes."
+        )
     stated = none if latest is None else of_visit.format(visit=latest.letter)
     return [stated] if most is None else [stated, largest_sentence(most)]
 
 
 def largest_sentence(row: Compared | SideRow) -> str:
-    """The difference of most errors with its error: "Largest: left knee range of motion +4.7° (±9.2°)."."""
+    """The difference of most errors with its interval: "Largest: left knee range of motion +4.7° (−4 to +13)."."""
     measure = name_in_sentence(row.measure.column)
     if isinstance(row, Compared) and not row.measure.is_of_walk:
         measure = tr("{side} {measure}").format(side=side_name(row.side), measure=measure)
     change = signed(row.difference.difference, row.measure.decimals) + unit_behind(row.measure)
-    stated = tr("Largest: {measure} {change} (±{error}).")
-    return stated.format(measure=measure, change=change, error=error_in_sentence(row))
+    stated = tr("Largest: {measure} {change}, likely {interval}.")
+    return stated.format(
+        measure=measure, change=change, interval=interval_in_figures(row.measure.column, row.difference)
+    )
 
 
-def error_in_words(reported: Sequence[Difference], *, is_borrowed: bool) -> str:
+def error_in_words(reported: Sequence[Difference]) -> str:
     """What the error contains, and what of it is not to be relied on."""
     judged = [found for found in reported if found.error > 0]
     if not judged:
         return ""
     stated = [tr(ERROR).format(sources=sources_in_words(judged))]
-    stated += [tr(BORROWED)] if is_borrowed else []
     stated += [tr(UNVERIFIED)] if any(found.is_unverified for found in judged) else []
     return " ".join(stated)

@@ -45,7 +45,7 @@ LEG_KINDS, HIP_KINDS = ("knee", "ankle"), ("hip", "pelvis")
 NO_SPEED = later("This walk: speed not known or not reported.")
 NO_SIDE = later("No reference: a prosthetic leg is not compared with other people.")
 CARE = later("{mark}: caution.")
-HIP_BAND = later("At the hip the reference is shifted to the curves: compare shape only.")
+HIP_BAND = later("At the hip, the reference is shifted to the level of the curves: compare the shape only.")
 
 
 class CyclePage(QWidget):

@@ -8,7 +8,8 @@ from app.results.beside_words import beside_columns, beside_rows
 from app.summary.comparison import Comparison
 from app.summary.facts import Facts
 from app.summary.goals import goal_mark
-from app.summary.numbers_in_words import DAGGER, NOTHING, fixed, in_brief, judged_in_words, signed
+from app.summary.interval_words import interval_in_figures
+from app.summary.numbers_in_words import NOTHING, fixed, in_brief, judged_in_words, signed
 from app.summary.what_differs import LegsRow, what_differs
 from app.theme.icons import Icon
 from app.theme.notifier import ThemeNotifier
@@ -77,7 +78,7 @@ def _columns(facts: Facts) -> list[TableColumn]:
         *(TableColumn(_counted(facts, side), share=1) for side in Side),
         TableColumn(TextCell(less, align=RIGHT, size=12, tone="ink2"), share=1),
         TableColumn(TextCell(tr("grey: error"), align=CENTRE, size=12, tone="ink2"), share=2),
-        TableColumn(TextCell(tr("error"), align=RIGHT, size=12, tone="ink2"), share=1),
+        TableColumn(TextCell(tr("likely between"), align=RIGHT, size=12, tone="ink2"), share=1),
         TableColumn(TextCell(tr("ref. ±2 SD"), align=RIGHT, size=12, tone="ink2"), share=1),
         TableColumn(TextCell(tr("result"), size=12, tone="ink2"), share=1),
     ]
@@ -104,13 +105,11 @@ def _row(facts: Facts, row: LegsRow) -> TableRow:
     cells: tuple[TableCell, ...] = (
         TextCell(row.name, " · ".join(map(goal_mark, row.goals)), weight=weight),
         *(_value(row, side) for side in Side),
-        TextCell(
-            shown, align=RIGHT, weight=weight, mark=Icon.WARNING if exceeds else None, spoken=stated if shown else ""
-        ),
+        TextCell(shown, align=RIGHT, weight=weight, spoken=stated if shown else ""),
         _strip(row),
-        TextCell(_error(row), align=RIGHT, tone="ink2"),
+        TextCell(interval_in_figures(row.column, found), align=RIGHT, tone="ink2"),
         TextCell(_band(facts, row), align=RIGHT, tone="ink2"),
-        TextCell(in_brief(found.judgement), size=12, weight=weight, tone="ink" if exceeds else "ink2"),
+        TextCell(in_brief(found), size=12, weight=weight, tone="ink" if exceeds else "ink2"),
     )
     return TableRow(cells)
 
@@ -144,12 +143,6 @@ def _strip(row: LegsRow) -> TableCell:
         word = tr("too few strides") if found.judgement is Judgement.TOO_FEW_STRIDES else tr("no published error")
         return TextCell(word, align=CENTRE, size=12, tone="ink2")
     return ErrorStrip(found.difference, found.error, SCALE * found.error, is_judged=True, spoken=judged_in_words(found))
-
-
-def _error(row: LegsRow) -> str:
-    if not row.is_judged:
-        return NOTHING
-    return fixed(row.difference.error, row.decimals) + row.unit + (DAGGER if row.difference.is_unverified else "")
 
 
 def _band(facts: Facts, row: LegsRow) -> str:

@@ -249,7 +249,7 @@ class _AxisCard(Card):
             "two such spots."
         )
         marks = tr(
-            "Cross: axis in use. Circle: its certainty, 2 SD. Ring: best fit in this map. Scale: misfit "
+            "Cross: axis in use. Circle: its uncertainty, 2 SD. Ring: best fit in this map. Scale: misfit "
             "of equation 3, root mean square."
         )
         self._row = QBoxLayout(QBoxLayout.Direction.LeftToRight)
@@ -277,7 +277,10 @@ class _AxisCard(Card):
             name.setText(sensor)
             chart.show_cost(cost, found.joint.side, calibration.axis_sd_rad, sensor)
         near, far = (figures[f"lowest_{sensor}_apart_deg"].in_words for sensor in ("proximal", "distal"))
-        stated = tr("The axis in use lies {near} and {far} from the best fit. Calibration certainty: {axis_sd} (1 SD).")
+        stated = tr(
+            "The axis in use lies {near} (proximal sensor) and {far} (distal sensor) from the best fit. "
+            "Calibration uncertainty: {axis_sd} (1 SD)."
+        )
         stated = stated.format(near=near, far=far, axis_sd=figures["axis_sd_deg"].in_words)
         self._verdict.setText(f"{stated} {_why_apart(found)}".strip())
 
@@ -286,8 +289,8 @@ def _why_apart(found: JointDiagnostics) -> str:
     if found.calibration.method is Method.PUBLISHED:
         return ""
     if found.calibration.is_hinge:
-        return tr("This joint moves like a true hinge, so this map decides.")
-    return tr("An anatomical joint is not a hinge. The whole relative motion decides, not this map alone.")
+        return tr("This joint moves like a true hinge, so this map determines the axis.")
+    return tr("An anatomical joint is not a hinge. The whole relative motion determines the axis, not this map alone.")
 
 
 class _PairingCard(Card):
@@ -300,9 +303,9 @@ class _PairingCard(Card):
         self._keys = LineKeys(look)
         self._verdict = Text(look, weight=MEDIUM, wraps=True)
         words = tr(
-            "One second in which the joint hardly bends: both segments then rotate alike off the axis. "
-            "One curve is rotated to fit the other. If both axes point the same way, the curves overlap. "
-            "If not, they are mirror images."
+            "In this second, the joint hardly bends, so both segments rotate alike across the axis. One "
+            "curve is rotated to fit the other. If both axes point the same way, the curves overlap. If "
+            "not, they are mirror images."
         )
         self.column.addLayout(self.head)
         self.column.addWidget(Text(look, words, tone="ink2", wraps=True))
@@ -322,16 +325,17 @@ class _PairingCard(Card):
 
 def _paired(found: JointDiagnostics, figures: dict[str, FoundFigure]) -> str:
     if found.projected is None:
-        return tr("No second of this motion has enough rotation off the axis to draw.")
+        return tr("No second of this motion has enough rotation across the axis to draw the curves.")
     apart = found.projected.congruence - found.projected.reversed_congruence
     paired, reverse = (figures[f"{name}congruence_percent"].in_words for name in ("", "reversed_"))
     if abs(apart) < MIN_APART:
-        return tr("Both fit: {paired} and {reverse} agreement. This second does not decide the pairing.").format(
-            paired=paired, reverse=reverse
-        )
-    stated = tr("Agreement as paired {paired}, reversed {reverse}: the pairing is confirmed.")
+        return tr(
+            "Both directions fit: agreement {paired} as paired, {reverse} reversed. This second does not "
+            "decide the pairing."
+        ).format(paired=paired, reverse=reverse)
+    stated = tr("Agreement {paired} as paired, {reverse} reversed: the pairing is confirmed.")
     if apart < 0:
-        stated = tr("Agreement as paired {paired}, reversed {reverse}: this second contradicts the pairing.")
+        stated = tr("Agreement {paired} as paired, {reverse} reversed: this second contradicts the pairing.")
     return stated.format(paired=paired, reverse=reverse)
 
 
@@ -340,10 +344,10 @@ def _decided(found: JointDiagnostics, figures: dict[str, FoundFigure]) -> str:
     if found.calibration.method is Method.PUBLISHED or margin is None:
         return ""
     if margin > MARGIN_BEYOND:
-        return tr("The accelerations decided it: the next best solution fits over {most} times worse.").format(
-            most=f"{MARGIN_BEYOND:.0f}"
-        )
-    return tr("The accelerations decided it: the next best solution fits {times} times worse.").format(
+        return tr(
+            "The accelerations decided the pairing: the next best solution fits more than {most} times worse."
+        ).format(most=f"{MARGIN_BEYOND:.0f}")
+    return tr("The accelerations decided the pairing: the next best solution fits {times} times worse.").format(
         times=figures["pairing_margin"].in_words
     )
 
@@ -362,9 +366,9 @@ class _AngleCard(Card):
         self._cut = Text(look, size=12, tone="ink2", wraps=True)
         self._verdict = Text(look, weight=MEDIUM, wraps=True)
         words = tr(
-            "Gyroscopes alone (equation 11) are smooth but drift. Accelerometers alone (equation 14) do "
-            "not drift but scatter. Combined (equation 15), they do neither. This is the published angle, "
-            "shown with the result under Whole walk."
+            "The angle from gyroscopes alone (equation 11) is smooth but drifts. From accelerometers "
+            "alone (equation 14), it does not drift but scatters. Combined (equation 15), it does "
+            "neither. The combined angle is the published one, shown with the result under Whole walk."
         )
         self.column.addLayout(self.head)
         self.column.addWidget(Text(look, words, tone="ink2", wraps=True))
@@ -397,7 +401,7 @@ class _AngleCard(Card):
         is_whole = self.stretch.choice == WHOLE or last - first <= CLOSE_S
         self.chart.see(*((first, last) if is_whole else (middle - CLOSE_S / 2, middle + CLOSE_S / 2)))
         percent = 100 * self.chart.cut_share
-        cut = tr("{percent} % of the accelerometer angle is beyond this axis and cut off here.")
+        cut = tr("{percent} % of the accelerometer angle lies outside this chart and is cut off.")
         self._cut.setText(cut.format(percent=figure_text(percent, ".1f")) if percent >= 0.05 else "")
         self._cut.setVisible(bool(self._cut.text()))
 

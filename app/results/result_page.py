@@ -59,7 +59,7 @@ BESIDE_TABLE, NOT_REPORTED, NOTE = (
 GAP = 12  # px between what is in one row
 PELVIS = 56  # px high: above the legs
 ANSWER_ICONS = {
-    Outcome.DIFFERS: Icon.WARNING,
+    Outcome.DIFFERS: Icon.DIFFERENCE,
     Outcome.NOTHING: Icon.READ,
     Outcome.OPEN: Icon.INFO,
     Outcome.UNREADABLE: Icon.NOT_REPORTED,

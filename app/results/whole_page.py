@@ -20,13 +20,19 @@ from core.results import JointAngle, RecordingAnalysis
 RESULT, PUBLISHED, ORIENTATION, BOTH = "result", "published", "orientation", "both"
 
 HINTS = {
-    RESULT: later("Shaded: certainty, ± 2 SD."),
-    PUBLISHED: later("Equation 15 of the paper, with the same joint axes. Its certainty is not known."),
-    ORIENTATION: later("Equation 10 of the paper, from orientations with magnetometer. Its certainty is not known."),
-    BOTH: later("Bold: result, shaded with its certainty (± 2 SD). Thin: published method."),
+    RESULT: later("Shaded: uncertainty, ± 2 SD."),
+    PUBLISHED: later(
+        "This angle follows equation 15 of the paper, with the same joint axes as the result. Its "
+        "uncertainty is not known."
+    ),
+    ORIENTATION: later(
+        "This angle follows equation 10 of the paper, from sensor orientations with magnetometer. Its "
+        "uncertainty is not known."
+    ),
+    BOTH: later("Bold: result, with shaded uncertainty (± 2 SD). Thin: published method."),
 }
 KEYS = later("Zoom: wheel or + −. Move: drag or Page Up, Page Down. Read values: mouse or arrow keys.")
-EVENT_KEYS = later("[ ] step through initial contacts and toe-offs. Pre-swing: heel rise to toe-off.")
+EVENT_KEYS = later("Keys [ and ] step through initial contacts and toe-offs. Pre-swing: heel rise to toe-off.")
 
 
 class WholePage(Themed):

@@ -87,4 +87,4 @@ def document(analysis: Analysis, timelines: Mapping[str, str]) -> str:
             lines.append(f"| {one.subject} | {one.quantity} | {verdict} | {why(one.assessment)} |")
     slipped = [side for side in Side if any(is_slipped(r, side).any() for r in analysis.recordings)]
     lines += ["", *(f"Strap moved on the {side} leg: from then on its curves are not reported." for side in slipped)]
-    return "\n".join([*lines, "", "Curves not reported lie under /withheld, grey, in no view until added to one."])
+    return "\n".join([*lines, "", "Curves not reported lie under `/withheld`, grey, in no view until added to one."])

@@ -242,7 +242,7 @@ def verify(entries: Iterable[AuditEntry], key: bytes, checkpoint: Checkpoint = B
         end = Checkpoint(entry.number, entry.hash)
         is_held = is_held or end == checkpoint
     if not is_held:
-        faults.append(AuditFault(checkpoint.number, "is not what the checkpoint tells of, or is missing"))
+        faults.append(AuditFault(checkpoint.number, "is not what the checkpoint names, or is missing"))
     return AuditReport(end, tuple(faults))
 
 

@@ -89,7 +89,8 @@ def back_up(
     """
     if opened.shared is not None:
         raise LibraryError(
-            "This library is on the clinic's server and is backed up there", "Use pg_dump, and copy the recordings"
+            "This library is on the clinic's server and is backed up there",
+            "Back up the database with pg_dump, and copy the recordings",
         )
     made_at = now().astimezone(datetime.UTC)
     folder = into.resolve() / f"{NAME}{made_at:%Y-%m-%dT%H-%M-%SZ}"
@@ -201,7 +202,7 @@ class _Work:
                 tr("Not enough disk space: {needed_mb:.0f} MB needed, {free_mb:.0f} MB free").format(
                     needed_mb=needed / 1e6, free_mb=free / 1e6
                 ),
-                "Free disk space, or choose another disk",
+                "Free up disk space, or choose another disk",
             )
 
     def add(self, count: int, what: str) -> None:

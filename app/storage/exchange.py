@@ -201,7 +201,7 @@ def _refuse_undecoded(name: str, decoded: DecodedJournal) -> None:
     if decoded.undecoded:
         what = tr("{recording} was recorded with {driver}, which this version cannot read")
         reported = what.format(recording=name, driver=decoded.undecoded[0])
-        raise LibraryError(reported, "Install the version used to record it, or a later one")
+        raise LibraryError(reported, "Install the Gaitwright version used for the recording, or a later one")
 
 
 def _import_recordings(opened: OpenedLibrary, session_id: UUID, session: Session, report: Report, room: Room) -> None:

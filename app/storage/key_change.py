@@ -103,7 +103,7 @@ def refuse_change(opened: OpenedLibrary) -> None:
     if opened.shared is not None or opened.away_from is not None:
         raise LibraryError(
             "The key of a clinic's library cannot change while workstations share it",
-            "Move it back to a folder, change its key there, then move it to the server again",
+            "Move the library back to a folder and change its key there. Then move it to the server again",
         )
     shelter = opened.shelter
     if shelter is None:
@@ -111,10 +111,12 @@ def refuse_change(opened: OpenedLibrary) -> None:
     opened.refuse_gone()
     if find_segments(shelter.folder):
         raise LibraryError(
-            "Recordings made while the library was unavailable are not in it yet. A new key could not read them",
+            "Recordings made while the library was unavailable are not in the library yet. A new key "
+            "could not read them",
             tr(
-                "They are in {shelter} and are added while Gaitwright is open. A file stays there if the "
-                "library has a different file of the same name. Try again once that folder is empty"
+                "The recordings are in {shelter} and are added to the library while Gaitwright is open. A "
+                "file stays there if the library has a different file of the same name. Try again once that "
+                "folder is empty"
             ).format(shelter=shelter.folder),
         )
     if any(not one.problem for one in find_interrupted(opened)):
@@ -160,7 +162,7 @@ def _hold_alone(execute: Callable[[str], object]) -> None:
     except Exception as error:
         if "locked" not in str(error):
             raise
-        raise LibraryBusyError("Another program has the library open", "Close it, then try again") from None
+        raise LibraryBusyError("Another program has the library open", "Close that program, then try again") from None
 
 
 def _copy(connection: "object", beside: Path, new: KeyMaterial, report: Report) -> None:

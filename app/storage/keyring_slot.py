@@ -43,7 +43,7 @@ def remember(slots: KeySlots, data_key: KeyMaterial, code: str) -> None:
     except Exception as problem:  # each system's keyring has errors of its own, which the package lets through
         slots.remove_keyring_slot(code)
         raise KeyRefusedError(
-            "The keyring does not accept the key", "Unlock it, or continue with the passphrase"
+            "The keyring does not accept the key", "Unlock the keyring, or continue with the passphrase"
         ) from problem
 
 

@@ -112,7 +112,7 @@ class KeySlots:
         data_key = self._opened(slot, _secret(passphrase)) if slot is not None and _is_operators(slot.code) else None
         if data_key is None:
             raise KeyRefusedError(
-                "This passphrase does not open the library", "Enter it again, or use the recovery key"
+                "This passphrase does not open the library", "Enter the passphrase again, or use the recovery key"
             )
         return data_key
 
@@ -145,7 +145,9 @@ class KeySlots:
         """
         with self._changing() as slots:
             if _checked_code(code) in slots:
-                raise KeyRefusedError(tr("{code} is already in use").format(code=_normal(code)), "Choose another code")
+                raise KeyRefusedError(
+                    tr("The user code {code} is already in use").format(code=_normal(code)), "Choose another code"
+                )
             own = Slot.wrapping(data_key, _normal(code), _checked(passphrase, (code, *known)), self._cost)
             given = self._given()
             self._write({**slots, own.code: own}, given=given | {own.code} if is_given else given - {own.code})
@@ -166,7 +168,7 @@ class KeySlots:
         with self._changing() as slots:
             if _checked_code(code) not in slots:
                 raise KeyRefusedError(
-                    tr("{code} has no key to this library").format(code=_normal(code)), "Add the user first"
+                    tr("User {code} has no key to this library").format(code=_normal(code)), "Add the user first"
                 )
             secret = _checked(passphrase, (code, *known))
             if self.is_given(code) and slots[_normal(code)].opened(secret) is not None:
@@ -228,7 +230,7 @@ class KeySlots:
             text, is_confirmed = new_recovery_key(), False
             kept[RECOVERY] = Slot.wrapping(new, RECOVERY, _recovery_bytes(text), self._cost)
         if not any(_is_operators(code) for code in kept):
-            raise KeyRefusedError("Nobody would have a key to the library", "Log in with the passphrase once")
+            raise KeyRefusedError("Nobody would then have a key to the library", "Log in with the passphrase once")
         left_out = sorted(code for code in codes if code in slots and code not in kept)
         return SealedAgain(_file(kept, is_confirmed, self._given()), text, tuple(left_out))
 
@@ -247,7 +249,7 @@ class KeySlots:
         with self._changing() as slots:
             if _checked_code(code) not in slots:
                 raise KeyRefusedError(
-                    tr("{code} has no key to this library").format(code=_normal(code)), "Add the user first"
+                    tr("User {code} has no key to this library").format(code=_normal(code)), "Add the user first"
                 )
             own = Slot.wrapping(data_key, KEYRING + _normal(code), secret, self._cost)
             self._write({**slots, own.code: own})
@@ -331,7 +333,7 @@ class KeySlots:
 
     def _damaged(self) -> KeyRefusedError:
         what = tr("{file} is damaged").format(file=self._path.name)
-        return KeyRefusedError(what, "Restore it from a backup of this library")
+        return KeyRefusedError(what, "Restore the file from a backup of this library")
 
     def _given(self) -> frozenset[str]:
         return frozenset(map(str, self._content().get(GIVEN, ())))
@@ -379,13 +381,13 @@ def _recovery_bytes(text: str) -> bytes:
             tr("A recovery key has {required} characters; this one has {count}").format(
                 required=count + 1, count=len(letters)
             ),
-            "Compare it with the recovery sheet",
+            "Compare the key with the recovery sheet",
         )
     number = 0
     for c in letters[:-1]:
         number = number << 5 | LETTERS.index(c)
     if LETTERS[number % 31] != letters[-1]:
-        raise KeyRefusedError("A character of the recovery key is wrong", "Compare it with the recovery sheet")
+        raise KeyRefusedError("A character of the recovery key is wrong", "Compare the key with the recovery sheet")
     return number.to_bytes(RECOVERY_BYTES, "big")
 
 
@@ -404,7 +406,7 @@ def _is_operators(code: str) -> bool:
 def _checked_code(code: str) -> str:
     code = _normal(code)
     if not (code.isalnum() and len(code) <= 12) or code == RECOVERY:
-        what = tr("{code} is not a valid code").format(code=code) if code else tr("A user needs a code")
+        what = tr("{code} is not a valid user code").format(code=code) if code else tr("A user needs a code")
         raise KeyRefusedError(what, "Use up to 12 letters and digits")
     return code
 

@@ -137,7 +137,7 @@ class Library:
             station = station_of(folder)
             if station is None and not (folder / DATABASE).exists():
                 raise LibraryError(
-                    "This folder contains no library", "Choose another folder, or restore it from a backup"
+                    "This folder contains no library", "Choose another folder, or restore the library from a backup"
                 )
             if station is None and not is_to_be_moved and (folder / MOVING).exists():
                 raise LibraryError(

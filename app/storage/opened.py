@@ -129,7 +129,9 @@ def open_library(folder: Path, passphrase: str, code: str = "", *, is_to_be_move
     """
     slots = slots_of(folder)
     if not slots.exists:
-        raise LibraryError("This folder contains no library", "Choose another folder, or restore it from a backup")
+        raise LibraryError(
+            "This folder contains no library", "Choose another folder, or restore the library from a backup"
+        )
     if not code:
         if len(slots.codes) > 1:
             raise KeyRefusedError("This library has several users", "Enter your user code")
@@ -243,4 +245,6 @@ def held_alone(folder: Path) -> Iterator[None]:
             _remove_unfinished(folder)
             yield
     except BlockingIOError as error:
-        raise LibraryError("This library is already open in Gaitwright", "Use that window, or close it") from error
+        raise LibraryError(
+            "This library is already open in Gaitwright", "Use the open Gaitwright window, or close it"
+        ) from error

@@ -58,7 +58,9 @@ class Operators:
                 OperatorRow.role == Role.ADMINISTRATOR, OperatorRow.is_active
             )
             if session.scalars(administrators).first() is None:
-                raise LibraryError("A library needs an administrator", "Give the role to someone else first")
+                raise LibraryError(
+                    "A library needs an administrator", "Give the administrator role to someone else first"
+                )
             details = {"role": row.role.value, "is_active": row.is_active}
             note(self._unit, session, Action.EDIT, about("operator", row.code), **details)
             return operator_of(row)

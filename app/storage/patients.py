@@ -277,12 +277,13 @@ def _refuse_taken(session: OrmSession, code: str) -> None:
     if row is None:
         return
     if row.deleted_at is not None:
-        raise LibraryError("A deleted patient has this code", "Restore that patient, or choose another code")
+        raise LibraryError("A deleted patient has this code", "Restore the deleted patient, or choose another code")
     if row.merged_into_id is not None:
         raise LibraryError(
-            "This code was merged into another patient's code", "Open that patient, or choose another code"
+            "The patient with this code was merged with another patient",
+            "Open the other patient, or choose another code",
         )
-    raise LibraryError("Another patient has this code", "Open that patient, or choose another code")
+    raise LibraryError("Another patient has this code", "Open the other patient, or choose another code")
 
 
 def _checked(reported: Patient) -> Patient:

@@ -103,7 +103,7 @@ class Recordings:
         with self._unit.writing(Role.CLINICIAN) as session:
             row = existing_recording(session, recording_id)
             if any(other.segment == journal.segment for other in row.journals):
-                raise LibraryError("The recording already has this part", "Recover it first")
+                raise LibraryError("The recording already has this part", "Recover the recording first")
             row.journals.append(JournalRow(**asdict(journal)))
 
     def close(self, recording_id: UUID, state: RecordingState, sha256: Mapping[int, str]) -> StoredRecording:
@@ -117,7 +117,7 @@ class Recordings:
         with self._unit.writing(Role.CLINICIAN) as session:
             row = existing_recording(session, recording_id)
             if {journal.segment for journal in row.journals} != set(sha256):
-                raise LibraryError("The files of the recording do not match the library", "Recover it first")
+                raise LibraryError("The files of the recording do not match the library", "Recover the recording first")
             for journal in row.journals:
                 journal.sha256 = sha256[journal.segment]
             row.state = state

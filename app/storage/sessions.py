@@ -254,7 +254,8 @@ def refuse_early(deleted_at: datetime.datetime | None, now: datetime.datetime) -
     """
     if deleted_at is None or now - deleted_at < KEPT_DELETED:
         raise LibraryError(
-            tr("Deleted data can be destroyed only after {days} days").format(days=KEPT_DELETED.days), "Wait until then"
+            tr("Deleted data can be destroyed only after {days} days").format(days=KEPT_DELETED.days),
+            "Wait until this period is over",
         )
 
 

@@ -63,7 +63,9 @@ class SharedEdits:
         with self._unit.writing(Role.CLINICIAN) as session:
             row = existing_patient(session, patient_id)
             if row.merged_into_id is not None:
-                raise LibraryError("This patient has since been merged with another", "Open that patient in the list")
+                raise LibraryError(
+                    "This patient has since been merged with another", "Open the other patient in the list"
+                )
             _refuse_deleted(row)
 
             def changes(values: Values) -> list[Change]:

@@ -108,5 +108,5 @@ class UnitOfWork:
         if session.scalar(select(misplaced.exists())):
             raise LibraryError(
                 tr("Simulated recordings belong to patients whose code starts with {start}").format(start=DEMO),
-                "Choose or create such a patient",
+                "Choose or create a patient with such a code",
             )

@@ -48,12 +48,12 @@ def answer_of(facts: Facts) -> Answer:
     """The weightiest finding of a walk and the one after it, or the caveat where there is no other."""
     strides = {side: facts.strides(side) for side in facts.gait}
     if not strides:
-        first = tr("No results for this walk: no stride was found from a foot or shank sensor.")
+        first = tr("No results for this walk: no foot or shank sensor showed a stride.")
         return Answer(Outcome.UNREADABLE, first)
     if not any(map(is_mean_enough, strides.values())):
         counted = joined([f"{side[0].upper()}\u00a0{strides[side]}" for side in Side if side in strides])
         first = tr("Too few strides for a mean: {counted}.").format(counted=counted)
-        return Answer(Outcome.UNREADABLE, first, tr("Repeat the walk, further or longer."))
+        return Answer(Outcome.UNREADABLE, first, tr("Repeat the walk over a longer distance or time."))
     last = _brief_caveat(facts)
     if found := ranked_findings(facts, None, BANDS_ON_SCREEN):
         beside = [found[1].stated] if len(found) > 1 else last

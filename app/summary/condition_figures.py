@@ -5,11 +5,14 @@ from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from typing import Any
 
+from app.summary.comparison import compare_legs, first_and_second
 from app.summary.conditions import Part, conditions_of
+from app.summary.differences import likely_figures
 from app.summary.measures import MEASURES
 from core.body import Side
 from core.gait.spatiotemporal import MeanAndSd
 from core.goals import NO_GOALS, AgreedGoals
+from core.parameters import BETWEEN_LEGS
 from core.results import Analysis
 from core.samples import Recording
 from core.verdicts.measurement_error import whisker
@@ -44,7 +47,7 @@ def condition_figures(part: Part) -> Iterator[ConditionFigure]:
             kind = ComparisonKind.VISITS
             mean = part.of_walk(column, kind) if measure.is_of_walk else part.mean(side, column, kind)
             of = None if measure.is_of_walk else side
-            yield ConditionFigure(column, of, found, whisker(column, kind, mean), verdict)
+            yield ConditionFigure(column, of, found, whisker(column, kind, mean, part.speed_m_s), verdict)
 
 
 def summarise_conditions(
@@ -62,9 +65,25 @@ def summarise_conditions(
                 f"{one.column}_error": _number(one.error),
                 f"{one.column}_status": str(one.verdict),
             }
+        sides["both"] |= {"legs": _legs(part, analysis)} if len(part.sides) == len(Side) else {}
         walks = [walk.name for walk in part.walks]
         reported.append({"letter": part.letter, "condition": part.name, "walks": walks, **sides})
     return reported
+
+
+def _legs(part: Part, analysis: Analysis) -> dict[str, Any]:
+    """By how much the legs differ in each measure that is compared between them, the affected or left one first."""
+    sides = first_and_second(analysis.affected_side)
+    found = {column: compare_legs(part, column, sides) for column in BETWEEN_LEGS}
+    return {
+        column: {
+            "difference": _number(one.difference),
+            **{key: _number(value) for key, value in likely_figures(one).items()},
+            "mark": str(one.mark),
+        }
+        for column, one in found.items()
+        if one.is_reported
+    }
 
 
 def _number(value: float) -> float | None:

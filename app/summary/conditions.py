@@ -114,20 +114,33 @@ class Part:
         return found
 
     @cached_property
-    def _found_means(self) -> dict[tuple[Side, str, float], MeanOfStrides]:
+    def _found_means(self) -> dict[tuple[Side, str, bool], MeanOfStrides]:
         return {}
 
     def mean(self, side: Side, column: str, kind: ComparisonKind) -> MeanOfStrides:
-        """The same with its uncertainty in a comparison of a kind; walks of one strapping share their lags."""
-        joint = joint_of(column, side)
-        lag_sd_s = (self.calibrated[joint].lag_sd_s or 0.0) if joint and joint in self.calibrated else 0.0
+        """The same with its uncertainty in a comparison of a kind; walks of one strapping share lags and axes."""
         is_shared = kind in (ComparisonKind.HALVES, ComparisonKind.ATTACHED)
-        clock_error = 0.0 if is_shared else ANGLE_PER_LAG_DEG_S * lag_sd_s
-        found = self._found_means.get((side, column, clock_error))
+        found = self._found_means.get((side, column, is_shared))
         if found is None:
-            found = mean_of_strides(self.values(side, column), clock_error)
-            self._found_means[side, column, clock_error] = found
+            errors = (0.0, 0.0) if is_shared else (self._clock_error(side, column), self._axis_error(side, column))
+            found = self._found_means[side, column, is_shared] = mean_of_strides(self.values(side, column), *errors)
         return found
+
+    def _clock_error(self, side: Side, column: str) -> float:
+        joint = joint_of(column, side)
+        found = self.calibrated.get(joint) if joint is not None else None
+        return ANGLE_PER_LAG_DEG_S * (found.lag_sd_s or 0.0) if found is not None else 0.0
+
+    def _axis_error(self, side: Side, column: str) -> float:
+        """What the axes of either part of a walk's data make of a joint's mean, root mean square of the walks."""
+        joint = joint_of(column, side)
+        if joint is None or not column.startswith(joint.kind):
+            return 0.0
+        found = [walk.axis_halves[joint] for walk in self.walks if joint in walk.axis_halves]
+        if not found:
+            return 0.0
+        name = f"{column.removesuffix('_deg')}_rad"
+        return math.degrees(math.sqrt(fmean(one.spread.get(name, 0.0) ** 2 for one in found)))
 
     def strides_deg(self, joint: Joint) -> FloatArray:
         """The joint's angle over the strides used of all walks (k, 101), degrees, even where it may not be reported."""

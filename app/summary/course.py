@@ -48,10 +48,9 @@ class CourseFigure:
         """The verdict with the gates that led to it, without what each of them found."""
         return Assessment(self.verdict, tuple(GateReason(gate, self.verdict) for gate in self.gates))
 
-    @property
-    def whisker(self) -> float:
-        """Half of the error of a difference between visits; NaN where no error is known."""
-        return whisker(self.column, ComparisonKind.VISITS, self.found) if self.is_reported else math.nan
+    def whisker_at(self, speed_m_s: float) -> float:
+        """Half of the error of a difference between visits walked so fast; NaN where no error is known."""
+        return whisker(self.column, ComparisonKind.VISITS, self.found, speed_m_s) if self.is_reported else math.nan
 
 
 @dataclass(frozen=True, slots=True)

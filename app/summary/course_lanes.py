@@ -217,7 +217,12 @@ def _point(number: int, walked: CourseCondition, kind: LaneKind, side: Side | No
     figure = walked.figure(kind.column, side)
     if figure is None or figure.verdict is Verdict.NOT_MEASURED:
         return None
-    return LanePoint(number, figure.found.mean if figure.is_reported else math.nan, figure.whisker, figure.verdict)
+    return LanePoint(
+        number,
+        figure.found.mean if figure.is_reported else math.nan,
+        figure.whisker_at(walked.speed_m_s),
+        figure.verdict,
+    )
 
 
 def _change(visits: Sequence[CourseVisit], kind: LaneKind, line: LaneLine) -> LaneChange:

@@ -94,8 +94,8 @@ def key_in_words(lanes: Sequence[CourseLane]) -> str:
     """What is drawn beside the values; empty where nothing of it is."""
     has_whiskers = any(math.isfinite(point.whisker) for lane in lanes for line in lane.lines for point in line.reported)
     changes = [found for lane in lanes for one in lane.changes if (found := one.since_first) is not None]
-    stated = [tr("Whisker: half the error of a change.")] if has_whiskers else []
-    stated += [tr("Grey: first visit \N{PLUS-MINUS SIGN} error.")] if any(lane.band for lane in lanes) else []
+    stated = [tr("Whisker: half the measurement error of a change.")] if has_whiskers else []
+    stated += [tr("Grey: first visit ± measurement error.")] if any(lane.band for lane in lanes) else []
     stated += [tr("Dotted: goal.")] if any(lane.goals for lane in lanes) else []
     if any(found.is_unverified for found in changes):
         stated.append(dagger_note())
@@ -180,7 +180,7 @@ def next_step(recovered: NextStep | None, latest: LatestVisit | None, today: dat
     day = short_date(latest.day)
     if latest.not_reported:
         names = joined([name_of(joint) for joint in latest.not_reported])
-        stated = tr("check {joints}, not reported on {day}.")
+        stated = tr("check {joints}: no values were reported on {day}.")
         return NextStep(stated.format(joints=names, day=day), tr("Review"), latest.id)
     if latest.has_walk and not latest.has_report:
         return NextStep(tr("write the report for {day}.").format(day=day), tr("Open"), latest.id)
@@ -202,7 +202,8 @@ def reached_in_words(reached: Sequence[GoalFigure], day: str) -> str:
     )
     if not others:
         return stated
-    return f"{stated} {tr_n('{count} more.', '{count} more.', len(others)).format(count=len(others))}"
+    more = tr_n("One other goal reached.", "Other goals reached: {count}.", len(others)).format(count=len(others))
+    return f"{stated} {more}"
 
 
 def undecided_step(session_id: UUID, day: datetime.date | None) -> NextStep:

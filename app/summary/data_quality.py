@@ -100,7 +100,7 @@ def data_quality(facts: Facts) -> DataQuality:
 def quality_without_walk(visit: AnalysedVisit, recording: str) -> DataQuality:
     """What was noticed about a recording of which nothing is judged; empty: about the whole session."""
     lines = [_of_finding(finding) for finding in _noticed(visit, {recording} - {""}, set())]
-    first = tr("No data quality findings.") if not lines else tr("There are findings.")
+    first = tr("No data quality findings.") if not lines else tr("There are data quality findings.")
     return _quality(first, "", lines, "")
 
 

@@ -48,18 +48,18 @@ def figures_of(found: JointDiagnostics) -> dict[str, FoundFigure]:
     unknown = math.nan
     joint = found.joint
     near, far = segment_name(joint.proximal.segment), segment_name(joint.distal.segment)
-    residual, best = calibration.hinge_residual_rad_s, tr("Axis in use to best fit, {segment}")
+    residual, best = calibration.hinge_residual_rad_s, tr("Angle, axis in use to best fit, {segment}")
     rows = [
         ("data_sets", tr("Data sets, 10 per second"), float(found.excitation.sets), "", 0),
         ("moving_s", tr("Movement used"), found.excitation.moving_s, "s", 1),
         ("about_axis_deg_s", tr("Rotation about the axis"), _deg(found.excitation.about_rad_s), "deg_s", 0),
         ("across_axis_deg_s", tr("Rotation across the axis"), _deg(found.excitation.across_rad_s), "deg_s", 0),
-        ("axis_sd_deg", tr("Calibration certainty, 1 SD"), _deg(calibration.axis_sd_rad), "deg", 1),
+        ("axis_sd_deg", tr("Calibration uncertainty, 1 SD"), _deg(calibration.axis_sd_rad), "deg", 1),
         *(
             (f"lowest_{sensor}_apart_deg", best.format(segment=segment), _deg(cost.apart_rad), "deg", 1)
             for sensor, segment, cost in zip(SENSORS, (near, far), found.costs, strict=True)
         ),
-        ("published_apart_deg", tr("Axis in use to published axis"), _deg(found.published_apart_rad), "deg", 1),
+        ("published_apart_deg", tr("Angle, axis in use to published axis"), _deg(found.published_apart_rad), "deg", 1),
         ("hinge_residual_deg_s", tr("Hinge residual (eq 3)"), _deg(residual), "deg_s", 1),
         ("off_axis_deg_s", tr("Off-axis rotation, this recording"), _deg(found.off_axis_rate_rad_s), "deg_s", 1),
         (
@@ -76,11 +76,11 @@ def figures_of(found: JointDiagnostics) -> dict[str, FoundFigure]:
             "percent",
             0,
         ),
-        ("pairing_margin", tr("Misfit of the next best solution, times"), _or_nan(calibration.sign_margin), "", 1),
+        ("pairing_margin", tr("Misfit of the next best solution, factor"), _or_nan(calibration.sign_margin), "", 1),
         *_centre_rows(found, near, far),
         ("lag_ms", tr("Clock lag of the distal sensor"), 1000 * calibration.lag_s, "ms", 1),
-        ("lag_sd_ms", tr("Clock lag certainty, 1 SD"), 1000 * _or_nan(calibration.lag_sd_s), "ms", 1),
-        ("lag_cost_ratio", tr("Misfit without lag correction, times"), _or_nan(found.lag_cost_ratio), "", 2),
+        ("lag_sd_ms", tr("Clock lag uncertainty, 1 SD"), 1000 * _or_nan(calibration.lag_sd_s), "ms", 1),
+        ("lag_cost_ratio", tr("Misfit without lag correction, factor"), _or_nan(found.lag_cost_ratio), "", 2),
         ("drift_deg_s", tr("Drift if only gyroscopes are used"), abs(_deg(ways.drift_rad_s)), "deg_s", 2),
         (
             "bias_drift_deg_s",
@@ -108,7 +108,7 @@ def _centre_rows(found: JointDiagnostics, near: str, far: str) -> list[tuple[str
         for sensor, segment, centre in zip(SENSORS, (near, far), centres, strict=True)
     ]
     centre_sd_mm = 1000 * _or_nan(calibration.centre_sd_m)
-    return [*rows, ("centre_sd_mm", tr("Joint centre certainty, 1 SD"), centre_sd_mm, "mm", 0)]
+    return [*rows, ("centre_sd_mm", tr("Joint centre uncertainty, 1 SD"), centre_sd_mm, "mm", 0)]
 
 
 def names_of_files(joint: Joint, is_simulated: bool) -> dict[str, str]:

@@ -33,6 +33,7 @@ COMPARED_CYCLES = "compared_cycles.csv"
 SIDES = "sides.csv"
 OF_PART = ("part", "name", "walks")
 JUDGED = ("difference", "error", "error_sources", "status", "verdict")
+LIKELY = ("low", "high", "beyond_speed", "beyond_speed_low", "beyond_speed_high", "mark", "healthy_limit")
 OF_CURVE = ("mean_deg", "stride_sd_deg", "n", "shape_deg", "status")
 HEADER = (
     *OF_PART,
@@ -40,6 +41,7 @@ HEADER = (
     *("side", "parameter", "n", "mean", "sd", "against_n", "against_mean", "against_sd"),
     *JUDGED,
     *("left_out_by_hand", "against_left_out_by_hand", "chosen_before"),
+    *LIKELY,
 )
 
 OF_WALKS = {measure.column: measure for measure in MEASURES if measure.is_of_walk}
@@ -144,7 +146,7 @@ def write_differences(found: Iterable[Row], path: Path) -> None:
     OSError
         The file cannot be written.
     """
-    write_table(HEADER, map(_cells, found), path)
+    write_table(HEADER, map(difference_cells, found), path)
 
 
 def write_compared_cycles(parts: Sequence[Part], path: Path) -> None:
@@ -185,6 +187,13 @@ def write_sides(parts: Sequence[Part], sides: tuple[Side, Side], path: Path) -> 
     OSError
         The file cannot be written.
     """
+    header, lines = legs_table(parts, sides)
+    if lines:
+        write_table(header, lines, path)
+
+
+def legs_table(parts: Sequence[Part], sides: tuple[Side, Side]) -> tuple[list[str], list[list[str]]]:
+    """Header and rows of sides.csv."""
     each = [f"{side}_{what}" for side in sides for what in ("n", "mean", "sd")]
     by_hand = [f"{side}_left_out_by_hand" for side in sides]
     lines = []
@@ -201,9 +210,8 @@ def write_sides(parts: Sequence[Part], sides: tuple[Side, Side], path: Path) -> 
             symmetry = symmetry_index_percent(one.mean, other.mean) if has_index else math.nan
             cells = [*_named(part), column, *_mean(one), *_mean(other)]
             judged = _judged(difference, status)
-            lines.append([*cells, *judged, figure_cell(symmetry), *left_out])
-    if lines:
-        write_table([*OF_PART, "parameter", *each, *JUDGED, "symmetry_index_percent", *by_hand], lines, path)
+            lines.append([*cells, *judged, figure_cell(symmetry), *left_out, *_likely(difference)])
+    return [*OF_PART, "parameter", *each, *JUDGED, "symmetry_index_percent", *by_hand, *LIKELY], lines
 
 
 def _curves(comparison: Comparison, part: Part, side: Side) -> Iterator[Row]:
@@ -237,14 +245,15 @@ def _of_both(comparison: Comparison, part: Part) -> Iterator[Row]:
             yield Row(part, against, None, name, value, other, found, status)
 
 
-def _cells(row: Row) -> list[str]:
+def difference_cells(row: Row) -> list[str]:
+    """One row of differences.csv, by HEADER."""
     parts = [*_named(row.part), *_named(row.against)]
     side = "both" if row.side is None else str(row.side)
     judged = _judged(row.difference, row.status)
     by_hand = [str(part.left_out_by_hand(row.side)) for part in (row.part, row.against)]
     is_chosen = row.part.agreed.is_chosen(row.parameter, Side if row.side is None else (row.side,))
     figures = [*_mean(row.value), *_mean(row.other), *judged, *by_hand]
-    return [*parts, side, row.parameter, *figures, str(is_chosen).lower()]
+    return [*parts, side, row.parameter, *figures, str(is_chosen).lower(), *_likely(row.difference)]
 
 
 def _named(part: Part) -> list[str]:
@@ -258,3 +267,16 @@ def _mean(value: MeanAndSd) -> list[str]:
 def _judged(found: Difference, status: Verdict) -> list[str]:
     sources = " ".join(found.sources)
     return [figure_cell(found.difference), figure_cell(found.error), sources, str(status), str(found.judgement)]
+
+
+def likely_figures(found: Difference) -> dict[str, float]:
+    """Where a difference is likely to be, with what goes with speed and without, and the healthy limit; NaN unknown."""
+    low, high = found.interval
+    beyond, error = (found.by_speed.beyond, found.by_speed.error) if found.by_speed else (math.nan, math.nan)
+    edges = (low, high, beyond, beyond - error, beyond + error, found.healthy)
+    return dict(zip((name for name in LIKELY if name != "mark"), edges, strict=True))
+
+
+def _likely(found: Difference) -> list[str]:
+    figures = likely_figures(found)
+    return [str(found.mark) if name == "mark" else figure_cell(figures[name]) for name in LIKELY]

@@ -51,9 +51,9 @@ def how_drawn(session: Session, *, has_pelvis: bool = False) -> str:
         f"The legs are drawn, not measured. Knee and ankle bend as the angles say and each thigh is inclined as its "
         f"sensor was; thigh, foot and hips are shares of a height of {height_m:.2f} m"
         f"{'' if is_typed else ', which nobody typed'} (Drillis & Contini 1966), as is the shank where the centres of "
-        f"knee and ankle are not both known. How thick they are says nothing. {hips}, "
+        f"knee and ankle are not both known. How thick they are means nothing. {hips}, "
         f"and every knee's axis points sideways: where the patient walked to is not known. {FRAMES_HZ:.0f} pictures a "
-        f"second at most. A leg or foot is grey where the angle that bends it is withheld, has no zero, or may be "
+        f"second at most. A leg or foot is grey where the angle that bends it is not reported, has no zero, or may be "
         f"mirrored."
     )
 

@@ -9,13 +9,13 @@ from app.summary.conditions import Part
 from app.summary.course import Course, CourseCondition, CourseTest, timed_test_of
 from app.summary.numbers_in_words import fixed
 from app.wording.measures import decimals, goal_in_words, limit, short_unit
-from app.wording.translation import tr
+from app.wording.translation import tr, tr_n
 from core.body import Side
 from core.goals import Goal, GoalOf
 from core.parameters import QuantityKind
 from core.timed.measures import PROTOCOLS
 from core.verdicts.attempts import error_between_visits
-from core.verdicts.goals import GoalStanding, beyond, error_of_visit, standing
+from core.verdicts.goals import GoalStanding, beyond, error_of_visit, share_at_goal, standing
 from core.verdicts.measurement_error import Difference
 from core.verdicts.model import Assessment, Verdict
 from core.verdicts.norms import MIN_STRIDES_FOR_MEAN
@@ -50,13 +50,13 @@ def measured(goal: Goal, part: Part) -> GoalFigure:
         if not part.sides:
             return _nothing(goal, Verdict.NOT_MEASURED)
         found = part.of_walk(goal.column, ComparisonKind.VISITS)
-        return _figure(goal, found, part.assessment_of_walk(goal.column))
+        return _figure(goal, found, part.assessment_of_walk(goal.column), part.speed_m_s)
     side = goal.of.side
     assert side is not None  # the other two are handled above
     if not part.is_measured(side, goal.column):
         return _nothing(goal, Verdict.NOT_MEASURED)
     found = part.mean(side, goal.column, ComparisonKind.VISITS)
-    return _figure(goal, found, part.assessment(side, goal.column))
+    return _figure(goal, found, part.assessment(side, goal.column), part.speed_m_s)
 
 
 def in_course(goal: Goal, walked: CourseCondition) -> GoalFigure:
@@ -67,7 +67,11 @@ def in_course(goal: Goal, walked: CourseCondition) -> GoalFigure:
     if goal.column in PROTOCOLS:
         return _of_test(goal, walked.test(goal.column))
     figure = walked.figure(goal.column, goal.of.side)
-    return _figure(goal, figure.found, figure.assessment) if figure else _nothing(goal, Verdict.NOT_MEASURED)
+    return (
+        _figure(goal, figure.found, figure.assessment, walked.speed_m_s)
+        if figure
+        else _nothing(goal, Verdict.NOT_MEASURED)
+    )
 
 
 def reached_at(goals: Sequence[Goal], course: Course) -> tuple[GoalFigure, ...]:
@@ -91,13 +95,13 @@ def _between(goal: Goal, found: Difference | None, verdict: Verdict) -> GoalFigu
     return GoalFigure(goal, found.difference, found.error, verdict)
 
 
-def _figure(goal: Goal, found: MeanOfStrides, assessment: Assessment) -> GoalFigure:
+def _figure(goal: Goal, found: MeanOfStrides, assessment: Assessment, speed_m_s: float) -> GoalFigure:
     if not (assessment.is_reported and found.n >= MIN_STRIDES_FOR_MEAN and math.isfinite(found.mean)):
         return _nothing(goal, assessment.verdict)
     is_biased = (
         KINDS.get(goal.column) is QuantityKind.STANCE and assessment.is_toe_off_biased
     )  # by how much, nobody knows
-    error = math.nan if is_biased else error_of_visit(goal.column, found)
+    error = math.nan if is_biased else error_of_visit(goal.column, found, speed_m_s)
     return GoalFigure(goal, found.mean, error, assessment.verdict)
 
 
@@ -130,10 +134,10 @@ def standing_in_words(found: GoalFigure) -> str:
     """How a value compares with its goal, after the goal was named."""
     error = fixed(found.error, _places(found.goal.column)) + short_unit(found.goal.column)
     stated = {
-        GoalStanding.SHORT: tr("not reached, beyond measurement error (±{error})"),
-        GoalStanding.SHORT_INSIDE: tr("not reached, but within measurement error (±{error})"),
-        GoalStanding.REACHED_INSIDE: tr("reached, but within measurement error (±{error})"),
-        GoalStanding.REACHED: tr("reached, beyond measurement error (±{error})"),
+        GoalStanding.SHORT: tr("not reached; the difference is beyond measurement error (±{error})"),
+        GoalStanding.SHORT_INSIDE: tr("not reached; the difference is within measurement error (±{error})"),
+        GoalStanding.REACHED_INSIDE: tr("reached; the difference is within measurement error (±{error})"),
+        GoalStanding.REACHED: tr("reached; the difference is beyond measurement error (±{error})"),
         GoalStanding.NOT_JUDGED: tr("not judged: measurement error not known"),
         GoalStanding.UNKNOWN: tr("no value reported"),
     }
@@ -142,16 +146,16 @@ def standing_in_words(found: GoalFigure) -> str:
 
 def beyond_in_words(found: GoalStanding) -> str:
     """Of a goal that is reached, whether that is more than the error."""
-    return tr("beyond error") if found is GoalStanding.REACHED else tr("within error, so not certain")
+    return tr("beyond error") if found is GoalStanding.REACHED else tr("within measurement error, so not certain")
 
 
 def brief_standing(found: GoalStanding) -> str:
     """The same in a few words, where the goal is shown beside it."""
     return {
-        GoalStanding.SHORT: tr("not reached, beyond error"),
+        GoalStanding.SHORT: tr("not reached; the difference is beyond measurement error"),
         GoalStanding.SHORT_INSIDE: tr("not reached; the difference is within measurement error"),
-        GoalStanding.REACHED_INSIDE: tr("reached, but within measurement error"),
-        GoalStanding.REACHED: tr("reached, beyond measurement error"),
+        GoalStanding.REACHED_INSIDE: tr("reached; the difference is within measurement error"),
+        GoalStanding.REACHED: tr("reached; the difference is beyond measurement error"),
         GoalStanding.NOT_JUDGED: tr("goal not judged"),
         GoalStanding.UNKNOWN: tr("goal not judged"),
     }[found]
@@ -162,7 +166,21 @@ def goal_sentence(found: GoalFigure) -> str:
     if found.standing in (GoalStanding.UNKNOWN, GoalStanding.NOT_JUDGED):
         return ""
     stated = tr("Goal: {goal}; measured {value}, {standing}.")
-    return stated.format(goal=goal_in_words(found.goal), value=value_in_words(found), standing=standing_in_words(found))
+    sentence = stated.format(
+        goal=goal_in_words(found.goal), value=value_in_words(found), standing=standing_in_words(found)
+    )
+    return f"{sentence} {often_at_goal(found)}"
+
+
+def often_at_goal(found: GoalFigure) -> str:
+    """In how many of 10 such measurements the true value is at the goal or beyond it."""
+    tenths = round(10 * share_at_goal(found.goal, found.value, found.error))
+    if tenths in (0, 10):
+        often = tr("Fewer than 1 of 10 such measurements are at the goal.")
+        return tr("More than 9 of 10 such measurements are at the goal.") if tenths else often
+    return tr_n(
+        "{count} of 10 such measurements is at the goal.", "{count} of 10 such measurements are at the goal.", tenths
+    ).format(count=tenths)
 
 
 def goal_mark(goal: Goal) -> str:

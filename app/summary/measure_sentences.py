@@ -4,7 +4,7 @@ from collections.abc import Sequence
 from typing import NamedTuple
 
 from app.summary.facts import Facts, role
-from app.summary.numbers_in_words import fixed, signed
+from app.summary.numbers_in_words import fixed
 from app.wording.body import name_of, side_name
 from app.wording.measures import decimals, name_in_sentence, short_unit, unit_symbol
 from app.wording.translation import capitalised, later, tr
@@ -87,16 +87,6 @@ def similar_sentence(column: str, who: str, difference: float, now: Reported, be
     return capitalised(text)
 
 
-def likely_sentence(column: str, found: Difference, now: Reported, before: Reported) -> str:
-    """What a difference within its error may be."""
-    decimals = _decimals(column, now.value, before.value, found.difference)
-    unit = _unit(column)
-    edges = found.difference, found.difference - found.error, found.difference + found.error
-    size, low, high = (signed(edge, decimals) + unit for edge in edges)
-    stated = tr("The change of {size} may be measurement error: likely between {low} and {high}.")
-    return stated.format(size=size, low=low, high=high)
-
-
 def who_in_sentence(column: str, side: Side) -> str:
     """The joint that a measure is of, else the leg; empty where it is of both."""
     if column in parameters.OF_WALK:
@@ -123,14 +113,14 @@ def _decimals(column: str, value: float, other: float, difference: float) -> int
     return decimals + disagree
 
 
-def _unit(column: str) -> str:
+def unit_in_sentence(column: str) -> str:
     """As it is written behind a number; a share is that of the gait cycle, since "2 % more" means another thing."""
     is_share = unit_of(column) is Unit.PERCENT
     return f"\N{NO-BREAK SPACE}{tr('% of the gait cycle')}" if is_share else unit_and_decimals(column)[0]
 
 
 def _figures(column: str, values: Sequence[float], decimals: int) -> list[str]:
-    return [fixed(value, decimals) + _unit(column) for value in values]
+    return [fixed(value, decimals) + unit_in_sentence(column) for value in values]
 
 
 def leg_beside_leg(facts: Facts, column: str, found: Difference) -> str:

@@ -8,7 +8,7 @@ from app.wording.translation import figure_text, tr
 from core.body import Side
 from core.gait.spatiotemporal import MeanAndSd
 from core.parameters import ANKLE_RANGE, KNEE_RANGE, STANCE
-from core.verdicts.measurement_error import Difference, Judgement, least_error
+from core.verdicts.measurement_error import Difference, Judgement, Mark, least_error
 from core.verdicts.model import Verdict
 from core.verdicts.norms import MIN_STRIDES_FOR_MEAN, MIN_STRIDES_FOR_SD
 from core.verdicts.sigmas import ComparisonKind
@@ -85,33 +85,43 @@ def care_note() -> str:
     return tr("{mark}: caution; reason on page 1.").format(mark=CARE)
 
 
-def in_words(verdict: Judgement) -> str:
-    """Say in a table whether a difference is larger than the measurement error."""
-    return {
+MARKS = {Mark.HEALTHY: "\N{BLACK CIRCLE}", Mark.ERROR: "\N{WHITE CIRCLE}", Mark.NONE: ""}
+
+
+def in_words(found: Difference) -> str:
+    """What a difference is beyond, as a table states it, with its mark."""
+    stated = {
         Judgement.EXCEEDS_ERROR: tr("beyond error"),
-        Judgement.INSIDE_ERROR: tr("within error"),
+        Judgement.INSIDE_ERROR: tr("may be error"),
         Judgement.NOT_REPORTED: tr("not reported"),
         Judgement.TOO_FEW_STRIDES: tr("too few strides"),
         Judgement.NO_PUBLISHED_FIGURE: tr("not judged"),
-    }[verdict]
+    }[found.judgement]
+    if found.mark is Mark.HEALTHY:
+        stated = tr("beyond healthy range")
+    return f"{MARKS[found.mark]}\u00a0{stated}".strip()
 
 
-def in_brief(verdict: Judgement) -> str:
-    """The same in a narrow column, whose head states what is judged against what."""
-    return {Judgement.EXCEEDS_ERROR: tr("beyond"), Judgement.INSIDE_ERROR: tr("within")}.get(verdict, in_words(verdict))
+def in_brief(found: Difference) -> str:
+    """The mark alone, or why there is none."""
+    return MARKS[found.mark] or in_words(found)
 
 
 def judged_in_words(found: Difference) -> str:
-    """The same with a mark where the error rests on a figure whose source could not be read."""
-    return (
-        f"{in_words(found.judgement)}\u00a0{DAGGER}"
-        if found.is_unverified and found.error > 0
-        else in_words(found.judgement)
+    """The same as `in_words`, with a dagger where the error rests on a figure whose source could not be read."""
+    return in_words(found) + (f"\u00a0{DAGGER}" if found.is_unverified and found.is_judged else "")
+
+
+def marks_note() -> str:
+    """What the marks mean, below a table."""
+    return tr(
+        "\N{BLACK CIRCLE} beyond what 95 of 100 healthy people differ by; \N{WHITE CIRCLE} beyond measurement error; "
+        "no mark: may be measurement error."
     )
 
 
 def dagger_note() -> str:
-    return tr("{dagger}: error based on a figure whose source could not be verified.").format(dagger=DAGGER)
+    return tr("{dagger}: measurement error based on a value whose source could not be verified.").format(dagger=DAGGER)
 
 
 USUAL = {KNEE_RANGE: 60.0, ANKLE_RANGE: 28.0, STANCE: 61.0}  # means for which tables give an error

@@ -64,9 +64,9 @@ def axis_of(facts: Facts, kind: str, *, is_about_mean: bool = False) -> Axis:
 def title_of(facts: Facts, kind: str) -> str:
     if facts.has_no_zero(kind):
         from_mean = {
-            JointKind.HIP: tr("Hip angle, degrees from its mean (flexion +)"),
-            JointKind.KNEE: tr("Knee angle, degrees from its mean (flexion +)"),
-            JointKind.ANKLE: tr("Ankle angle, degrees from its mean (dorsiflexion +)"),
+            JointKind.HIP: tr("Hip angle minus its mean, degrees (flexion +)"),
+            JointKind.KNEE: tr("Knee angle minus its mean, degrees (flexion +)"),
+            JointKind.ANKLE: tr("Ankle angle minus its mean, degrees (dorsiflexion +)"),
         }
         return from_mean[JointKind(kind)]
     measured = {
@@ -85,9 +85,9 @@ def title_with_side(facts: Facts, kind: str, side: Side, *, is_about_mean: bool 
 def small_title(facts: Facts, kind: str, *, is_about_mean: bool = False) -> str:
     """Of a panel half as wide as the page, as it goes on behind a side."""
     short = {
-        "knee": tr("knee, degrees from its mean (flexion +)"),
-        "ankle": tr("ankle, degrees from its mean (dorsiflexion +)"),
-        "hip": tr("hip, degrees from its mean (flexion +)"),
+        "knee": tr("knee angle minus its mean, degrees (flexion +)"),
+        "ankle": tr("ankle angle minus its mean, degrees (dorsiflexion +)"),
+        "hip": tr("hip angle minus its mean, degrees (flexion +)"),
     }
     title = title_of(facts, kind)
     return short[kind] if is_about_mean or facts.has_no_zero(kind) else within_sentence(title)
@@ -150,13 +150,13 @@ def toe_off_in_words(percent: float) -> str:
 def joint_title(facts: Facts, side: Side, kind: str) -> str:
     """Of a narrow panel."""
     name = capitalised(name_of(joint_of(kind, side)))
-    return tr("{joint}, ° from its mean").format(joint=name) if facts.has_no_zero(kind) else f"{name}, °"
+    return tr("{joint} minus its mean, °").format(joint=name) if facts.has_no_zero(kind) else f"{name}, °"
 
 
 def narrow_title(facts: Facts, kind: JointKind) -> str:
     """Of both legs in a panel a third as wide as the page."""
     name = title_in_words(kind)
-    return tr("{joint}, ° from its mean").format(joint=name) if facts.has_no_zero(kind) else f"{name}, °"
+    return tr("{joint} minus its mean, °").format(joint=name) if facts.has_no_zero(kind) else f"{name}, °"
 
 
 def why_not_reported(facts: Facts, joint: Joint) -> str:
@@ -214,15 +214,18 @@ def band_in_words(facts: Facts, *, is_at_height: bool) -> str:
     ]
     if is_at_height:
         stated.append(
-            tr("It is shifted to the level of each curve to compare shape; the absolute angle is shown beside it.")
+            tr(
+                "The reference is shifted to the level of each curve to compare shape. The absolute angle is "
+                "shown beside it."
+            )
         )
     elif JointKind.HIP in facts.kinds:
-        stated.append(tr("For the hip it has a different zero and is shown on page 1 only."))
+        stated.append(tr("At the hip, the reference has another zero and is shown on page 1 only."))
     if facts.bands.are_curves_of_other_ages:
         stated.append(tr(OTHER_AGES))
     if not facts.sides_with_band.issuperset(facts.gait):
         sides = joined([side_name(side) for side in Side if side in facts.sides_with_band])
-        stated.append(tr("It applies to the {side} leg only.").format(side=sides))
+        stated.append(tr("The reference applies to the {side} leg only.").format(side=sides))
     return " ".join(stated)
 
 
@@ -277,7 +280,7 @@ def not_drawn(facts: Facts, kind: str) -> list[str]:
         if not np.isfinite(facts.mean_curve_deg(side, kind)).any() and not len(facts.strides_deg(side, kind)):
             found = facts.verdicts.joint(joint_of(kind, side))
             is_not_reported = Verdict.NOT_REPORTED in (found.shape.verdict, found.sign.verdict)
-            pattern = tr("Not drawn: {joint}, not reported.") if is_not_reported else tr("Not drawn: {joint}.")
+            pattern = tr("Not drawn: {joint} (not reported).") if is_not_reported else tr("Not drawn: {joint}.")
             stated.append(pattern.format(joint=joint))
     return stated
 
@@ -290,7 +293,7 @@ def curve_alt(facts: Facts, kind: str, sides: Sequence[Side]) -> str:
         for column in PEAK_COLUMNS[kind]:
             value, at = facts.value(side, column), facts.peak_percent(side, column)
             if is_mean_enough(value.n):
-                peak = tr("{name} {value}° at {percent} %")
+                peak = tr("{name} {value}° at {percent} % of the gait cycle")
                 name = peak_name(column)
                 numbers.append(peak.format(name=name, value=fixed(value.mean, 0), percent=fixed(at.mean, 0)))
         found = facts.value(side, f"{kind}_range_deg")

@@ -37,7 +37,7 @@ def caveats(
     `is_of_joints`: of the joints alone, not of the legs' timing and distance.
     """
     if not facts.gait:
-        return [tr("No stride was found from a foot or shank sensor.")]
+        return [tr("No foot or shank sensor showed a stride.")]
     return [f"{one.where}: {one.stated}" for one in causes(facts, of, is_of_joints=is_of_joints)]
 
 
@@ -144,7 +144,7 @@ def cells(facts: Facts) -> list[tuple[str, str]]:
         (tr("Strides used"), _each(facts, lambda side: str(facts.strides(side)))),
         (tr("Excluded"), _left_out(facts)),
         (tr("Samples lost"), _loss_in_words(facts)),
-        (tr("Joint axes, 1 SD"), _axes(facts)),
+        (tr("Joint axes, ±1 SD"), _axes(facts)),
         (tr("Sensor clock lag"), _lag(facts)),
         (tr("Standing reference"), _zero(facts)),
         (tr("Straps"), _straps(facts)),
@@ -201,9 +201,9 @@ def _lag(facts: Facts) -> str:
         return tr("none: same clock")
     not_reported = _without_lag(facts)
     if len(not_reported) == len(facts.calibrated):
-        return tr("not resolvable")
+        return tr("not determinable")
     if not_reported:
-        return tr("not resolvable at the {joints}").format(joints=joined([name_of(joint) for joint in not_reported]))
+        return tr("not determinable at the {joints}").format(joints=joined([name_of(joint) for joint in not_reported]))
     worst_ms = max(abs(found.lag_s) for found in facts.calibrated.values()) * 1000
     return tr("{lag} ms, corrected").format(lag=fixed(worst_ms, 1)) if round(worst_ms, 1) else tr("none found")
 

@@ -23,12 +23,12 @@ FOLDER = files("resources") / "reference_bands"
 
 NOBODY = AgeAndHeight()  # of whom nothing is known
 WHY_NO_BAND = {
-    NoBand.CHILD: later("No reference: the available groups are adults."),
+    NoBand.CHILD: later("No reference: all reference groups are adults."),
     NoBand.SPEED_UNKNOWN: later("No reference: walking speed is unknown."),
     NoBand.HEIGHT_MISSING: later("No reference: the patient's height is needed to classify the walking speed."),
     NoBand.OTHER_SPEED: later("No reference at this speed."),
 }
-OTHER_AGES = later("The reference is for other ages, so the distance from it is not judged.")
+OTHER_AGES = later("The reference is for other ages, so differences from it are not judged.")
 
 
 @cache

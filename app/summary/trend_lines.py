@@ -92,4 +92,4 @@ def _value(part: CourseCondition, column: str, side: Side | None, number: int) -
     figure = part.figure(column, side)
     if figure is None or figure.verdict is Verdict.NOT_MEASURED:
         return None
-    return TrendValue(number, figure.found.mean if figure.is_reported else math.nan, figure.whisker)
+    return TrendValue(number, figure.found.mean if figure.is_reported else math.nan, figure.whisker_at(part.speed_m_s))

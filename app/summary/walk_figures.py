@@ -45,21 +45,18 @@ class Figure:
     unknown: Mapping[Side, str] = field(default_factory=dict)
     unknown_both: str = ""
     with_care: frozenset[Side] = frozenset()
-
-    @property
-    def judged_band(self) -> tuple[float, float] | None:
-        """The band, where words may say how far from it a figure lies."""
-        return None if self.column in WITHOUT_BAND_WORDS else self.band
+    judged_band: tuple[float, float] | None = None
 
 
-# its band's SD holds no error of ours: with the source's alone half of healthy walks lay beyond 2 SD
-WITHOUT_BAND_WORDS = frozenset({"stance_percent"})
+TwoBands = tuple[tuple[float, float] | None, tuple[float, float] | None]
+"""Of a cited group as published, and as judged."""
+NO_BANDS: TwoBands = (None, None)
 PEAKS = (  # name of the column in strides.csv, name for the reader, window of the band's peak
     ("at_initial_contact_deg", later("At initial contact"), None),
     ("loading_peak_deg", later("Peak flexion, loading"), "knee_loading_peak"),
     ("stance_minimum_deg", later("Least flexion, stance"), "knee_stance_minimum"),
     ("swing_peak_deg", later("Peak flexion, swing"), "knee_swing_peak"),
-    ("swing_peak_percent", later("Time of peak flexion, swing, %"), None),
+    ("swing_peak_percent", later("Time of peak flexion in swing, %"), None),
     ("range_deg", later("Range of motion"), None),
     ("stance_dorsiflexion_deg", later("Peak dorsiflexion, stance"), "ankle_stance_dorsiflexion"),
     ("push_off_plantarflexion_deg", later("Peak plantarflexion, push-off"), "ankle_push_off_plantarflexion"),
@@ -196,7 +193,7 @@ def time_distance_figures(
     """
     is_any, is_all = bool(sides_with_band), sides_with_band.issuperset(part.sides)
 
-    def row(label: str, name: str, unit: str, decimals: int, band: tuple[float, float] | None = None) -> Figure:
+    def row(label: str, name: str, unit: str, decimals: int, bands: TwoBands = NO_BANDS) -> Figure:
         found = {side: part.assessment(side, name) for side in part.sides}
         reported = {side: part.value(side, name) for side, one in found.items() if one.is_reported}
         not_reported = [side for side, one in found.items() if one.verdict is Verdict.NOT_REPORTED]
@@ -208,23 +205,28 @@ def time_distance_figures(
             unit,
             decimals,
             reported,
-            band=band if is_any and reported else None,
+            band=bands[0] if is_any and reported else None,
             unknown=unknown,
             with_care=care,
+            judged_band=bands[1] if is_any and reported else None,
         )
 
-    def both(label: str, name: str, unit: str, decimals: int, band: tuple[float, float] | None = None) -> Figure:
+    def both(label: str, name: str, unit: str, decimals: int, bands: TwoBands = NO_BANDS) -> Figure:
         verdict = part.assessment_of_walk(name).verdict
         care = frozenset(part.sides) if verdict is Verdict.CARE else frozenset()
         why = NOT_REPORTED if verdict is Verdict.NOT_REPORTED else ""
-        shown = band if is_all else None
-        return Figure(name, label, unit, decimals, {}, part.of_both(name), shown, unknown_both=why, with_care=care)
+        shown, judged = bands if is_all else NO_BANDS
+        value = part.of_both(name)
+        return Figure(
+            name, label, unit, decimals, {}, value, shown, unknown_both=why, with_care=care, judged_band=judged
+        )
 
-    def band(name: str, factor: float = 1.0) -> tuple[float, float] | None:
+    def band(name: str, factor: float = 1.0) -> TwoBands:
         if group is None:
-            return None
-        value = group.values[name]
-        return factor * (value.mean - value.sd), factor * (value.mean + value.sd)
+            return NO_BANDS
+        own, judged = group.values[name], group.judged(name)
+        one, other = ((factor * (value.mean - value.sd), factor * (value.mean + value.sd)) for value in (own, judged))
+        return one, other
 
     return (
         # the class is chosen by speed, so its speed would be no comparison

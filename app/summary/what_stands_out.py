@@ -8,10 +8,13 @@ from collections.abc import Iterable, Iterator
 from dataclasses import dataclass
 from enum import IntEnum
 
+from app.charts.cycles import is_mean_enough
 from app.summary import quality
 from app.summary.comparison import Compared, Comparison, Contrast, compare_legs
 from app.summary.facts import KINDS, Facts, joint_of, role
+from app.summary.interval_words import evidence
 from app.summary.measure_sentences import (
+    CLAUSES,
     Reported,
     change_sentence,
     leg_beside_leg,
@@ -40,7 +43,7 @@ from core.parameters import (
 )
 from core.results import ZeroKind
 from core.timed.measures import COLUMNS, PROTOCOLS
-from core.verdicts.measurement_error import Difference, least_error
+from core.verdicts.measurement_error import Difference, Mark, least_error
 from core.verdicts.model import Verdict
 from core.verdicts.quantities import joint_of as joint_of_column
 from core.verdicts.sigmas import ComparisonKind
@@ -102,12 +105,15 @@ class Candidate:
     evidence: str = ""
     column: str = ""
     since: Since = Since.NOTHING
+    is_agreed: bool = False
+    is_of_other_side: bool = False
 
     @property
-    def weight(self) -> tuple[Since, Rank, float, int]:
-        """What is reported first is least; ratios that are alike leave it to the measure."""
+    def weight(self) -> tuple[Since, bool, Rank, bool, float, int]:
+        """What is reported first is least: goals, the kind, the affected side, the ratio, then the measure."""
         among = FIRST_OF_ALIKE.index(self.column) if self.column in FIRST_OF_ALIKE else len(FIRST_OF_ALIKE)
-        return self.since, self.rank, -round(self.ratio, 1), among
+        ratio = -round(self.ratio, 1)
+        return self.since, not self.is_agreed, self.rank, self.is_of_other_side, ratio, among
 
 
 def printed_findings(facts: Facts, comparison: Comparison | None) -> list[Candidate]:
@@ -143,47 +149,75 @@ def _without_family(candidates: list[Candidate]) -> list[Candidate]:
 
 
 def nothing_found(facts: Facts, comparison: Comparison | None) -> list[str]:
-    """Stated where no finding is reported: whether anything exceeds its error, and whether the band holds all."""
+    """Stated where no finding is reported: the legs' values and what they differ by, or those of the one leg."""
     judged = judged_differences(facts, comparison)
     away = [abs(sd) for side, column in _peaks(facts) if math.isfinite(sd := facts.away_sd(side, column))]
-    stated = []
+    stated = [*_legs_alike(facts), *_since_last(facts)] or _one_leg(facts)
     has_angles = any(joint_of_column(column, Side.LEFT) is not None for column in judged)
-    if any(difference.exceeds for difference in judged.values()):
-        stated.append(
-            tr(
-                "No difference is far enough beyond measurement error to be listed here. The tables mark "
-                "every difference beyond error."
-            )
-        )
-    elif judged and (has_angles or not any(map(facts.is_measured, Joint))):
-        stated += _similar_legs(facts)
-        stated.append(tr("All judged differences are within measurement error."))
-    elif judged:
-        stated.append(
-            tr("No angle can be compared. All judged differences in timing and steps are within measurement error.")
-        )
+    if judged and not has_angles and any(map(facts.is_measured, Joint)):
+        stated.append(tr("No angle can be compared."))
     if away and max(away) <= MAX_AWAY_SD:
         stated.append(
             tr(
-                "All judged peaks are within 2\N{NO-BREAK SPACE}SD of the reference, shifted to the level of "
-                "each curve."
+                "All judged peaks are within 2\N{NO-BREAK SPACE}SD of the reference. For this, the reference "
+                "is shifted to the level of each curve."
             )
         )
     return stated or [tr("Nothing could be judged.")]
 
 
-def _similar_legs(facts: Facts) -> list[str]:
-    """The values of the legs where they differ by most errors, none of them beyond one."""
+def _legs_alike(facts: Facts) -> list[str]:
+    """The legs' values, and what their largest difference may be: beyond error, it is named as such."""
     if len(facts.gait) < len(Side):
         return []
     found = {column: compare_legs(facts.part, column, facts.first_and_second) for column in BETWEEN_LEGS}
-    column = max(found, key=lambda one: (found[one].ratio > 0, not found[one].is_unverified, found[one].ratio))
-    if not found[column].ratio:
+    judged = [column for column, one in found.items() if one.is_judged]
+    beyond = [column for column in judged if found[column].mark is Mark.ERROR]
+    if beyond:
+        column = max(beyond, key=lambda one: (not found[one].is_unverified, found[one].ratio))
+        return [leg_beside_leg(facts, column, found[column]), evidence(column, found[column])]
+    shown = [column for column in (KNEE, STANCE) if column in judged] or judged[:1]
+    if not shown:
         return []
+    values = [_both_values(facts, column) for column in shown]
+    stated = tr("Left and right are similar: {values}.").format(values=", ".join(values))
+    return [stated, evidence(shown[0], found[shown[0]])]
+
+
+def _both_values(facts: Facts, column: str) -> str:
+    """A measure of both legs: "knee flexion, stance to swing 53.1° and 58.0°"."""
     unit, decimals = unit_and_decimals(column)
     left, right = (fixed(facts.value(side, column).mean, decimals) + unit for side in Side)
-    stated = tr("Left and right are similar: {measure} {left} and {right}.")
-    return [stated.format(measure=name_in_sentence(column), left=left, right=right)]
+    return tr("{measure} {left} and {right}").format(measure=name_in_sentence(column), left=left, right=right)
+
+
+def _since_last(facts: Facts) -> list[str]:
+    """What the knee, else stance, has changed by since the visit before, which no finding reports."""
+    lines = [line for line in _course(facts) if line.since_last is not None and line.since_last.is_judged]
+    walked, first = walked_visits(facts.course, facts.condition), facts.first_and_second[0]
+    for column in (KNEE, STANCE, SPEED):
+        for line in lines:
+            if line.column == column and line.side in (None, first) and (found := line.since_last) is not None:
+                who = "" if line.side is None else who_of_role(facts, line.side, column)
+                unit, decimals = unit_and_decimals(column)
+                change = signed(found.difference, decimals) + unit
+                stated = tr("Since {day}: {who} {measure} {change}.").format(
+                    day=date(walked[line.before].day), who=who, measure=name_in_sentence(column), change=change
+                )
+                return [" ".join(stated.split(" ")).replace("  ", " "), evidence(column, found)]
+    return []
+
+
+def _one_leg(facts: Facts) -> list[str]:
+    """What one leg alone has of the knee, else of stance."""
+    for side in facts.first_and_second:
+        for column in (KNEE, STANCE):
+            value = facts.value(side, column)
+            if is_mean_enough(value.n) and math.isfinite(value.mean):
+                unit, decimals = unit_and_decimals(column)
+                pattern, size = tr(CLAUSES[column]), fixed(value.mean, decimals) + unit
+                return [f"{capitalised(pattern.format(who=who_of_role(facts, side, column), value=size))}."]
+    return []
 
 
 def judged_differences(facts: Facts, comparison: Comparison | None) -> dict[str, Difference]:
@@ -216,7 +250,8 @@ def _changes(facts: Facts, comparison: Comparison | None) -> Iterator[Candidate]
             column, found = row.measure.column, row.difference
             topic = _topic(None if row.measure.is_of_walk else row.side, column, found.difference > 0)
             stated = _changed(facts, comparison, row)
-            yield Candidate(_rank(column), found.ratio, (topic,), stated, column=column, since=Since.CHOSEN)
+            side = None if row.measure.is_of_walk else row.side
+            yield _change(facts, column, side, found, stated, topic, Since.CHOSEN)
 
 
 def _course(facts: Facts) -> list[TrendLine]:
@@ -238,9 +273,10 @@ def _since_visits(facts: Facts) -> Iterator[Candidate]:
             values = {one.visit: one.value for one in line.values}
             day = tr("on {day}").format(day=date(walked[at].day))
             now, before = Reported(tr("in this visit"), line.values[-1].value), Reported(day, values[at])
-            stated = _with_error(facts, line.column, line.side, found, now, before)
+            who = "" if line.side is None else who_of_role(facts, line.side, line.column)
+            stated = change_sentence(line.column, who, found.difference, now, before)
             topic = _topic(line.side, line.column, found.difference > 0)
-            yield Candidate(_rank(line.column), found.ratio, (topic,), stated, column=line.column, since=since)
+            yield _change(facts, line.column, line.side, found, stated, topic, since)
 
 
 def _between_legs(facts: Facts) -> Iterator[Candidate]:
@@ -254,10 +290,8 @@ def _between_legs(facts: Facts) -> Iterator[Candidate]:
             continue
         is_more = found.difference > 0
         topics = (_topic(first, column, is_more), _topic(second, column, not is_more))
-        unit, decimals = unit_and_decimals(column)
-        evidence = tr("Measurement error between the legs: {error}.").format(error=fixed(found.error, decimals) + unit)
         stated = leg_beside_leg(facts, column, found)
-        yield Candidate(_rank(column), found.ratio, topics, stated, evidence, column)
+        yield Candidate(_rank(column), found.ratio, topics, stated, evidence(column, found), column)
 
 
 def _beyond_band(facts: Facts, bands: tuple[str, str]) -> Iterator[Candidate]:
@@ -269,13 +303,13 @@ def _beyond_band(facts: Facts, bands: tuple[str, str]) -> Iterator[Candidate]:
         offset = facts.offset_deg(side, kind)
         pattern = (
             tr(
-                "{joint} {peak}: {value}°; {group} at the level of the curve {band}°: more than "
-                "2\N{NO-BREAK SPACE}SD below."
+                "{joint} {peak}: {value}°, more than 2\N{NO-BREAK SPACE}SD below the {group} ({band}° at the "
+                "curve's level)."
             )
             if away < 0
             else tr(
-                "{joint} {peak}: {value}°; {group} at the level of the curve {band}°: more than "
-                "2\N{NO-BREAK SPACE}SD above."
+                "{joint} {peak}: {value}°, more than 2\N{NO-BREAK SPACE}SD above the {group} ({band}° at the "
+                "curve's level)."
             )
         )
         stated = pattern.format(
@@ -297,9 +331,9 @@ def _beyond_band(facts: Facts, bands: tuple[str, str]) -> Iterator[Candidate]:
             if abs(away) > MAX_AWAY_SD:
                 unit, decimals = unit_and_decimals(column)
                 pattern = (
-                    tr("{measure}, {side}: {value}; {group} {band}: more than 2\u00a0SD below.")
+                    tr("{measure}, {side}: {value}, more than 2\N{NO-BREAK SPACE}SD below the {group} ({band}).")
                     if away < 0
-                    else tr("{measure}, {side}: {value}; {group} {band}: more than 2\u00a0SD above.")
+                    else tr("{measure}, {side}: {value}, more than 2\N{NO-BREAK SPACE}SD above the {group} ({band}).")
                 )
                 stated = pattern.format(
                     measure=capitalised(name_in_sentence(column)),
@@ -332,7 +366,12 @@ def caveat(facts: Facts, comparison: Comparison | None) -> list[str]:
     if speeds:
         return [tr("Speed {speeds} m/s: part of a difference may be due to speed.").format(speeds=speeds)]
     if any(found.zero is ZeroKind.STANDING for found in facts.calibrated.values()):
-        return [tr("Angles start from the patient's standing posture. That posture shifts the whole curve up or down.")]
+        return [
+            tr(
+                "Angles are measured from the patient's standing posture. That posture shifts the whole curve "
+                "up or down."
+            )
+        ]
     return []
 
 
@@ -366,17 +405,18 @@ def _changed(facts: Facts, comparison: Comparison | None, row: Compared) -> str:
         now, before = tr("in this visit"), tr("in the earlier visit")
     side = None if row.measure.is_of_walk else row.side
     reported = Reported(now, row.value.mean), Reported(before, row.other.mean)
-    return _with_error(facts, row.measure.column, side, row.difference, *reported)
+    who = "" if side is None else who_of_role(facts, side, row.measure.column)
+    return change_sentence(row.measure.column, who, row.difference.difference, *reported)
 
 
-def _with_error(
-    facts: Facts, column: str, side: Side | None, found: Difference, now: Reported, before: Reported
-) -> str:
-    """A change, and what it exceeds."""
-    who = "" if side is None else who_of_role(facts, side, column)
-    unit, decimals = unit_and_decimals(column)
-    stated = change_sentence(column, who, found.difference, now, before)
-    return f"{stated} {tr('Measurement error: {error}.').format(error=fixed(found.error, decimals) + unit)}"
+def _change(
+    facts: Facts, column: str, side: Side | None, found: Difference, stated: str, topic: Topic, since: Since
+) -> Candidate:
+    return Candidate(
+        *(_rank(column), found.ratio, (topic,), stated, evidence(column, found), column, since),
+        is_agreed=facts.part.agreed.is_chosen(column, tuple(Side) if side is None else (side,)),
+        is_of_other_side=facts.affected not in (None, side) and side is not None,
+    )
 
 
 def _peaks(facts: Facts) -> Iterable[tuple[Side, str]]:

@@ -91,7 +91,7 @@ class NamelessFormatter(logging.Formatter):
         at = time.strftime("%Y-%m-%dT%H:%M:%S", time.gmtime(record.created))
         head = f"{at}.{int(record.msecs):03d}Z {version_of('gaitwright')} {record.process} {record.levelname}"
         logger = _module(record.name)
-        text = _text(record) if _is_own(logger) else "said something"
+        text = _text(record) if _is_own(logger) else "wrote something"
         lines = [f"{head} {logger} line {record.lineno}: {text}"]
         error = record.exc_info[1] if isinstance(record.exc_info, tuple) else None
         if error is not None:

@@ -57,8 +57,8 @@ def strength_in_words(passphrase: str, shortest: int, known: Iterable[str] = ())
         return "{}. {}.".format(*refusal_of_passphrase(passphrase, shortest, known))
     held = _in_words(held_for_s(passphrase, known))
     if strength is Strength.FAIR:
-        return tr("Fair: guessing it would take {held}. One more word makes it strong.").format(held=held)
-    return tr("Strong: guessing it would take {held}.").format(held=held)
+        return tr("Fair: guessing this passphrase would take {held}. One more word makes it strong.").format(held=held)
+    return tr("Strong: guessing this passphrase would take {held}.").format(held=held)
 
 
 def refusal_of_passphrase(passphrase: str, shortest: int, known: Iterable[str] = ()) -> tuple[str, str]:
@@ -100,18 +100,18 @@ def _why(parts: list[dict[str, Any]]) -> str:
     longest = max(parts, key=lambda part: (part["pattern"] != "bruteforce", len(part["token"])))
     match longest["pattern"]:
         case "repeat":
-            return tr("It repeats itself")
+            return tr("The passphrase contains repeats")
         case "sequence":
-            return tr("Its letters or digits are in sequence")
+            return tr("The passphrase contains letters or digits in sequence")
         case "spatial":
-            return tr("Its keys lie side by side")
+            return tr("The passphrase uses keys that lie side by side")
         case "date" | "regex":
-            return tr("It contains a date or a year")
+            return tr("The passphrase contains a date or a year")
         case "dictionary" if longest["dictionary_name"] == "user_inputs":
-            return tr("It contains your name or code, or that of the clinic or program")
+            return tr("The passphrase contains a name or code: yours, the clinic's or the program's")
         case "dictionary":
-            return tr("It contains a common password, word or name")
-    return tr("It is too short for the characters it uses")
+            return tr("The passphrase contains a common password, word or name")
+    return tr("The passphrase is too short for the characters it uses")
 
 
 def _in_words(seconds: float) -> str:

@@ -25,6 +25,7 @@ class Icon(StrEnum):
     UNCHECKED = "unchecked"
     INFO = "info"
     WARNING = "warning"
+    DIFFERENCE = "difference"
     GRAVE = "grave"
     BACK = "back"
     REPEAT = "repeat"
@@ -58,7 +59,7 @@ class Icon(StrEnum):
     GOAL = "goal"
 
 
-VERDICT_ICONS = {  # circles speak of the measurement, triangles of the patient
+VERDICT_ICONS = {  # triangles are for problems of the measurement; a change of the patient has arrows
     Verdict.READ: Icon.READ,
     Verdict.CARE: Icon.CARE,
     Verdict.NOT_REPORTED: Icon.NOT_REPORTED,

@@ -156,7 +156,9 @@ def _disagreement(found: HipIdentification) -> Fact:
 def _centre(found: HipIdentification) -> Fact:
     lengths = [float(np.linalg.norm(one)) for one in (found.centre_proximal_m, found.centre_distal_m)]
     least, most = LIMITS.hip_centre_m
-    words = tr("{pelvis} cm, {thigh} cm").format(pelvis=round(100 * lengths[0]), thigh=round(100 * lengths[1]))
+    words = tr("pelvis {pelvis} cm, thigh {thigh} cm").format(
+        pelvis=round(100 * lengths[0]), thigh=round(100 * lengths[1])
+    )
     return Fact(words, any(not least <= length <= most for length in lengths))
 
 
@@ -171,27 +173,27 @@ def _apart(found: HipIdentification) -> Fact:
 
 HIP_QUESTIONS: tuple[tuple[str, str, Callable[[HipIdentification], Fact]], ...] = (
     (
-        later("Heading certainty"),
-        later("One standard deviation of the pelvis heading relative to the thigh."),
+        later("Heading uncertainty"),
+        later("One standard deviation of the direction that the pelvis faces, relative to the thigh."),
         _heading,
     ),
     (
-        later("Margin"),
-        later("How much worse the next best solution fits. Below {required}, the result is uncertain."),
+        later("Uniqueness"),
+        later("How many times worse the next best solution fits. Below {required}, the result is uncertain."),
         lambda found: _margin_of(found.margin, LIMITS.pairing_margin),
     ),
     (later("Disagreement"), later("Share of the hip acceleration on which the two sensors disagree."), _disagreement),
-    (later("Centre to sensors"), later("Distance from the hip centre to the pelvis and thigh sensors."), _centre),
+    (later("Hip centre to sensors"), later("Distance from the hip centre to the pelvis and thigh sensors."), _centre),
     (later("Hip spacing"), later("How far the left hip centre lies to the left of the right one."), _apart),
     (later("Clock lag"), later("Time added to the clock of the distal sensor."), _lag),
     (later("Standing reference"), later("Posture taken as zero."), lambda _: Fact(tr("posture"))),
 )
 QUESTIONS: tuple[tuple[str, str, Callable[[JointCalibration], Fact]], ...] = (
     (later("Axis from"), later("Recording used to determine the joint axis."), _axis_from),
-    (later("Calibration certainty"), later("One standard deviation of the joint axis direction."), _axis_certainty),
+    (later("Calibration uncertainty"), later("One standard deviation of the joint axis direction."), _axis_certainty),
     (
-        later("Margin"),
-        later("How much worse the next best solution fits. Below {required}, the result is uncertain."),
+        later("Uniqueness"),
+        later("How many times worse the next best solution fits. Below {required}, the result is uncertain."),
         _margin,
     ),
     (later("Direction"), later("Whether flexion and extension can be distinguished."), _direction),

@@ -259,7 +259,9 @@ class NumberField(Field):
             self.set_wrong("")
             return
         required = (
-            tr("Enter a number from {low} to {high}.") if self.decimals else tr("Enter {low} to {high}, no decimals.")
+            tr("Enter a number from {low} to {high}.")
+            if self.decimals
+            else tr("Enter a whole number from {low} to {high}.")
         )
         unit = self._box.unit
         space = "" if unit in ("", "°", "%") else " "

@@ -463,8 +463,8 @@ def state_word(state: GaugeState) -> str:
         GaugeState.OPEN: tr("To do"),
         GaugeState.NOW: tr("Now"),
         GaugeState.ENOUGH: tr("Enough movement"),
-        GaugeState.CENTRE: tr("Enough movement for centre"),
-        GaugeState.PLATEAU: tr("certainty no longer rises"),
+        GaugeState.CENTRE: tr("Enough movement for the centre"),
+        GaugeState.PLATEAU: tr("uncertainty no longer falls"),
         GaugeState.LOOSE: tr("not a hinge"),
         GaugeState.ABSENT: "",
     }[state]

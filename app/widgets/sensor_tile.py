@@ -68,7 +68,7 @@ class SensorTile:
         """What its tile shows under the name."""
         match self.state:
             case TileState.NOT_WORN:
-                return tr("found later") if self.is_awaited else tr("not used")
+                return tr("detected later") if self.is_awaited else tr("not used")
             case TileState.SILENT:
                 return tr("no signal {seconds} s").format(seconds=int(self.silent_s))
             case TileState.QUIET:

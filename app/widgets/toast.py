@@ -61,7 +61,7 @@ class Toast(Themed):
         self.raise_()
         if not self.underMouse():
             self._clock.start()
-        words = tr("{what} Ctrl Z to undo.").format(what=what)
+        words = tr("{what} Press Ctrl Z to undo.").format(what=what)
         QAccessible.updateAccessibility(QAccessibleAnnouncementEvent(self, words))
 
     def set_room(self, width: int) -> None:

@@ -48,7 +48,9 @@ class FetchControl(QObject):
     @property
     def cannot_leave(self) -> str:
         """Why the step cannot be left now; empty where it can."""
-        return tr("A walk is being fetched. Wait, or fetch it later.") if self.is_fetching else ""
+        return (
+            tr("A walk is being fetched from the sensors. Wait, or fetch this walk later.") if self.is_fetching else ""
+        )
 
     @property
     def shown(self) -> ProgressShown | None:

@@ -37,7 +37,9 @@ def trouble_message(trouble: Trouble, status: JournalStatus, lost: int = 0) -> M
 
 def _late_message(status: JournalStatus, lost: int, remedy: str) -> Message:
     """Nothing has been dropped: say so of all samples only where none was lost on its way here either."""
-    nothing = tr("No data lost so far.") if not lost else tr("Incoming data wait; none of them were discarded.")
+    nothing = (
+        tr("No data lost so far.") if not lost else tr("Incoming data wait for the disk. None of them were discarded.")
+    )
     if status.stuck_s > SLOW_S:
         return tr("The disk responds slowly."), f"{nothing} {remedy}"
     kept = tr("No data were lost because of this.") if not lost else tr("No data were discarded because of this.")
@@ -47,11 +49,13 @@ def _late_message(status: JournalStatus, lost: int, remedy: str) -> Message:
 def _written(trouble: Trouble, status: JournalStatus) -> str:
     """Up to where the recording is kept: on a disk that is gone only what it had confirmed."""
     if trouble is Trouble.DISK_GONE:
-        return tr("The first {time} are confirmed on the disk.").format(time=clock(status.synced_s))
+        return tr("The first {time} min of the recording are confirmed on the disk.").format(
+            time=clock(status.synced_s)
+        )
     if status.dropped_records:
-        stated = tr("The first {time} are written; everything after that is lost.")
+        stated = tr("The first {time} min of the recording are written; everything after that is lost.")
     else:
-        stated = tr("The first {time} are written.")
+        stated = tr("The first {time} min of the recording are written.")
     return stated.format(time=clock(status.written_s))
 
 
@@ -65,14 +69,14 @@ def unread_message(status: JournalStatus, *, is_tried_again: bool) -> str:
     if status.state is State.RECORDING and is_tried_again:
         return tr("The recording is still being written. It is loaded as soon as possible.")
     if status.state is State.RECORDING:
-        return tr("The recording is still being written. What is written is found when Gaitwright next starts.")
+        return tr("The recording is still being written. When Gaitwright next starts, it finds what was written.")
     is_whole = status.state is State.CLOSED and not status.dropped_records
     if is_tried_again:
         whole = tr("The recording is safe on the disk. It is loaded as soon as possible.")
-        part = tr("The first {time} of the recording are on the disk. They are loaded as soon as possible.")
+        part = tr("The first {time} min of the recording are on the disk. They are loaded as soon as possible.")
     else:
-        whole = tr("The recording is safe on the disk. It is found when Gaitwright next starts.")
-        part = tr("The first {time} of the recording are on the disk. They are found when Gaitwright next starts.")
+        whole = tr("The recording is safe on the disk. Gaitwright finds it when it next starts.")
+        part = tr("The first {time} min of the recording are on the disk. Gaitwright finds them when it next starts.")
     return whole if is_whole else part.format(time=clock(status.synced_s))
 
 
@@ -105,15 +109,15 @@ def standstill_message(
     """
     if standstill.ended_s < began_s or now_s - standstill.ended_s > STANDSTILL_REPORTED_S:
         return NOTHING
-    stated = tr("Gaitwright stalled for {seconds:.0f} s, {time} into the recording.")
+    stated = tr("Gaitwright stalled for {seconds:.0f} s, {time} min into the recording.")
     if standstill.was_asleep:
-        stated = tr("The computer was asleep for {seconds:.0f} s, {time} into the recording.")
+        stated = tr("The computer was asleep for {seconds:.0f} s, {time} min into the recording.")
     what = stated.format(seconds=standstill.lasted_s, time=clock(standstill.began_s - began_s))
     if not are_received or now_s - standstill.ended_s < SETTLED_S:
         return what, tr("Missing samples are being counted.")
     if any(count > standstill.lost_before.get(name, 0) for name, count in lost.items()):
         # without a figure: live clocks are still settling, and were up to a tenth off the journal's own count
-        return what, tr("Samples were lost and stay gaps. They are counted when the recording is loaded.")
+        return what, tr("Samples were lost and leave gaps. Missing samples are counted when the recording is loaded.")
     if not are_counted:
         return what, tr("Missing samples are counted when the recording is loaded.")
     return what, tr("No sample is missing: data sent in the meantime were read afterwards.")

@@ -127,7 +127,9 @@ class MemoryFetches(QObject):
         if self.is_running:
             return "", ""
         if self._is_broken:
-            return tr("Fetching stopped early."), tr("Fetch the recording again. See the log for details.")
+            return tr("Fetching the recording stopped early."), tr(
+                "Fetch the recording again. See the log for details."
+            )
         for sensor, problem in self._failed.items():
             if isinstance(problem, SourceRefusedError):
                 return f"{filled(problem.what, problem.values)}.", f"{filled(problem.remedy, problem.values)}."

@@ -110,7 +110,8 @@ class SensorSync(QObject):
             stated = [f"{name} ({tr(REASONS[why])})" for name, why in error.failed.items()]
             what = tr("Not synchronised: {sensors}.").format(sensors=", ".join(stated))
             return what, tr(
-                "Place all sensors side by side near this computer. Switch these off and on, then try again."
+                "Place all sensors side by side near this computer. Switch the named sensors off and on, then "
+                "try again."
             )
         if isinstance(error, SourceRefusedError):
             return f"{filled(error.what, error.values)}.", f"{filled(error.remedy, error.values)}."

@@ -211,7 +211,7 @@ class Visit(QObject):
         if not self.sensors.site_of and not self.sensors.is_left_to_motion:
             return tr("Set the sensor positions first.")
         if self.sensors.are_in_memory:
-            return tr("The sensors are ready for walks. Return them to live on the Sensors step first.")
+            return tr("The sensors are ready to record walks. First set them to send data live, on the Sensors step.")
         return self.cannot_record
 
     @property

@@ -32,7 +32,7 @@ def slip_message(slips: Sequence[Slip], began_s: float) -> Message:
 def implausible_message(joints: Sequence[Joint]) -> Message:
     """Report angles that no joint has, and are not shown."""
     names = ", ".join(name_of(joint) for joint in joints)
-    what = tr("{joints}: angle beyond \N{MINUS SIGN}40\N{DEGREE SIGN} to 160\N{DEGREE SIGN}, not shown.")
+    what = tr("{joints}: angle outside −40° to 160°, not shown.")
     return what.format(joints=capitalised(names)), tr("Check the sensor positions, then record the free motion again.")
 
 
@@ -48,9 +48,9 @@ def bias_message(corrections: Sequence[BiasCorrection]) -> Message:
 
 def no_angles_message(worn: Collection[Site]) -> Message:
     """Say when the angles come that were not known when the walk began."""
-    then = tr("They appear after five strides of each leg.")
+    then = tr("The angles appear after five strides of each leg.")
     if not any(site.segment is Segment.FOOT for site in worn):
-        then = tr("They appear when the walk has been stopped.")  # nothing counts strides before
+        then = tr("The angles appear when the walk has been stopped.")  # nothing counts strides before
     return tr("Angles are not shown yet."), then
 
 
@@ -71,16 +71,19 @@ def no_foot_message(worn: Collection[Site]) -> Message:
 
 def recovered_message(walk: str, seconds: float) -> Message:
     """Say how much of a walk the journal holds, and what the end of the program may have cost besides."""
-    recovered = tr("{time} of {walk} was recovered, up to the last record on disk.")
-    stated, look = recovered.format(time=clock(seconds), walk=walk), tr("Review it, then include or exclude it.")
+    recovered = tr("{time} of {walk} was recovered, up to the last data on disk.")
+    stated, look = (
+        recovered.format(time=clock(seconds), walk=walk),
+        tr("Review the recording, then include or exclude it."),
+    )
     return tr("The program closed during recording."), f"{stated} {look} {recovery_costs()}"
 
 
 def recovery_costs() -> str:
     """What the end of a program costs at most; the figures are those of T1 in the evidence."""
     return tr(
-        "In 99 of 100 cases, ending the program loses at most 0.1 s. A power cut loses up to 0.5 s "
-        "and any data not yet on disk."
+        "In 99 of 100 cases, ending the program loses at most 0.1 s of recording. A power cut loses "
+        "up to 0.5 s and any data not yet on disk."
     )
 
 
@@ -91,25 +94,26 @@ def lacks_message(walk: str, lacks: "Sequence[Lack]") -> Message:
         what = tr("{sensor} stopped {seconds} s before the end of {walk}.").format(
             sensor=early.sensor, seconds=round(early.early_s), walk=walk
         )
-        return what, tr("Its button was pressed or its memory is full. Angles from this sensor end there.")
+        return what, tr("The sensor's button was pressed or its memory is full. Angles from this sensor end there.")
     lost = [one for one in lacks if one.lost]
     if lost:
         stated = ", ".join(f"{one.sensor} {one.lost}" for one in lost)
         what = tr("Samples of {walk} could not be fetched: {sensors}.").format(walk=walk, sensors=stated)
-        return what, tr("They are missing here. The sensors keep the recording until their memory is erased.")
+        return what, tr("These samples are missing here. The sensors keep the recording until their memory is erased.")
     if lacks:
         what = tr("{sensor} did not report the end of {walk}.").format(sensor=lacks[0].sensor, walk=walk)
-        return what, tr("Received data are saved; the end may be missing.")
+        return what, tr("Received data are saved; the end of the walk may be missing.")
     return NOTHING
 
 
 def loose_message(on_own_clocks: Sequence[str]) -> Message:
     """Say that sensors that stream are to be synchronised again; `on_own_clocks`: those without the common one."""
-    what = tr("Last synchronised half an hour ago: the sensor clocks drift apart.")
+    what = tr("The sensors were last synchronised half an hour ago. Their clocks drift apart.")
     if on_own_clocks:
         what = tr("Not synchronised: {sensors}.").format(sensors=", ".join(on_own_clocks))
     return what, tr(
-        "Synchronise again before the next walk. Otherwise measures that combine both legs are less accurate."
+        "Synchronise the sensors again before the next walk. Otherwise measures that combine both "
+        "legs are less accurate."
     )
 
 
@@ -118,7 +122,7 @@ def few_strides_message(counts: Mapping[Side, int]) -> Message:
     left, right = (counts.get(side, STRIDES_FOR_SPREAD) for side in Side)
     if min(left, right) >= STRIDES_FOR_SPREAD:
         return NOTHING
-    stated = tr("Only {left} left and {right} right strides; a standard deviation needs {required}.")
+    stated = tr("Only {left} left and {right} right strides; a standard deviation needs {required} per leg.")
     if left >= STRIDES_FOR_SPREAD:
         stated = tr("Only {right} right strides; a standard deviation needs {required}.")
     elif right >= STRIDES_FOR_SPREAD:

@@ -34,7 +34,7 @@ class SetUpFirstError(SourceRefusedError):
     """Sensors that were found, and have to be set up by the choice of this `key` before they are opened."""
 
     def __init__(self, key: str) -> None:
-        super().__init__(later("These sensors must be set up first"), later("Choose them as the source"))
+        super().__init__(later("These sensors must be set up first"), later("Choose these sensors as the source"))
         self.key = key
 
 
@@ -248,7 +248,7 @@ class WornSensors(QObject):
         what = tr("{first} and {last} look swapped.") if len(names) == 2 else tr("{sites} look mixed up.")
         what = what.format(sites=joined(names), first=names[0], last=names[-1])
         wrong = [name_of(joint) for joint in self.joints if not self.detected.keys().isdisjoint(_ends(joint))]
-        then = tr("Angles would be wrong: {joints}.").format(joints=joined(wrong)) if wrong else ""
+        then = tr("These angles would be wrong: {joints}.").format(joints=joined(wrong)) if wrong else ""
         return capitalised(what), then
 
     def use_detected(self) -> None:

@@ -26,8 +26,8 @@ NAMES = {
 # read, not the figures
 NO_PROOF = later(
     "Joint angles and times may not reflect an alignment change. In ten people with a transtibial "
-    "prosthesis, induced changes affected neither (Jonkergouw 2019, Gait Posture 68:122; abstract "
-    "and highlights read)."
+    "prosthesis, induced changes affected neither (Jonkergouw 2019, Gait Posture 68:122; from "
+    "abstract and highlights)."
 )
 OF_FOOT, OF_SOCKET = later("Foot"), later("Socket")  # what a screw's shift and height are of
 PLANTAR = later("plantar"), later("dorsal")

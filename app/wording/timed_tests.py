@@ -36,16 +36,16 @@ def planned_words(planned: PlannedTest | None) -> str:
         return tr("no test")
     stated = [name_of_test(planned.protocol)]
     if planned.start_key_s is not None:
-        stated.append(tr("start key at {at:.1f} s").format(at=planned.start_key_s))
+        stated.append(tr("start key pressed at {at:.1f} s").format(at=planned.start_key_s))
     if planned.end_key_s is not None:
-        stated.append(tr("end key at {at:.1f} s").format(at=planned.end_key_s))
+        stated.append(tr("end key pressed at {at:.1f} s").format(at=planned.end_key_s))
     return ", ".join(stated)
 
 
 def start_words(protocol: TimedProtocol) -> str:
     """What starts the clock where no key does."""
     if protocol is TimedProtocol.TEN_METRES:
-        return tr("2 m after standing still for 1 s")
+        return tr("after standing still for 1 s and walking 2 m")
     if DEFINITIONS[protocol].is_from_chair:
         return tr("when the thighs leave the seat")
     return tr("first step after standing still for 1 s")
@@ -54,9 +54,9 @@ def start_words(protocol: TimedProtocol) -> str:
 def end_words(protocol: TimedProtocol) -> str:
     """What ends it where no key does."""
     return {
-        TimedProtocol.TEN_METRES: tr("10 m later, sensor distance"),
-        TimedProtocol.TWO_MINUTES: tr("after 2:00"),
-        TimedProtocol.SIX_MINUTES: tr("after 6:00"),
+        TimedProtocol.TEN_METRES: tr("10 m further on, by the sensors"),
+        TimedProtocol.TWO_MINUTES: tr("after 2:00 min"),
+        TimedProtocol.SIX_MINUTES: tr("after 6:00 min"),
         TimedProtocol.UP_AND_GO: tr("seated again"),
         TimedProtocol.SIT_TO_STAND: tr("standing for the fifth time"),
         TimedProtocol.STAIRS: tr("when the last step ends"),
@@ -67,10 +67,12 @@ def reason_words(reason: NotMeasured) -> str:
     """Why something is missing, as a clause."""
     return {
         NotMeasured.NO_FEET: tr("no foot sensor was worn"),
-        NotMeasured.NO_THIGHS: tr("no thigh sensor had a continuous signal, or the patient did not stand still before"),
-        NotMeasured.NO_START: tr("no standing still for 1 s before the first step"),
+        NotMeasured.NO_THIGHS: tr(
+            "no thigh sensor had a continuous signal, or the patient did not stand still before the test"
+        ),
+        NotMeasured.NO_START: tr("the patient did not stand still for 1 s before the first step"),
         NotMeasured.NO_RISE: tr("no rise from the chair was detected"),
-        NotMeasured.NOT_FINISHED: tr("the recording ended before the test"),
+        NotMeasured.NOT_FINISHED: tr("the recording ended before the test was finished"),
         NotMeasured.SILENT: tr("a foot sensor had no signal"),
     }[reason]
 
@@ -121,7 +123,7 @@ def tape_sentence(test: TimedTest) -> str:
     if not math.isfinite(apart_m):
         return ""
     share = 100.0 * apart_m / test.distance_m
-    reported = tr("The sensors measured {own:.2f} m, {apart:+.2f} m from the tape ({tape:.2f} m)").format(
+    reported = tr("The sensors measured {own:.2f} m, {apart:+.2f} m compared with the tape ({tape:.2f} m)").format(
         own=test.sensor_distance_m, apart=apart_m, tape=test.distance_m
     )
     if round(abs(share), 6) <= ALLOWED_PERCENT:
@@ -142,14 +144,16 @@ def stairs_sentence(test: TimedTest) -> str:
     """How many strides led up and down, and how long they took; empty where none did."""
     stated = []
     for is_up, words in (
-        (True, tr("strides up: {count}, mean {time:.2f} s")),
-        (False, tr("strides down: {count}, mean {time:.2f} s")),
+        (True, tr("strides up: {count}, mean duration {time:.2f} s")),
+        (False, tr("strides down: {count}, mean duration {time:.2f} s")),
     ):
         times_s = [one.end_s - one.start_s for one in test.stairs if one.is_up is is_up]
         if times_s:
             stated.append(words.format(count=len(times_s), time=sum(times_s) / len(times_s)))
     return (
-        tr("Stair strides, excluded from walking means: {strides}.").format(strides="; ".join(stated)) if stated else ""
+        tr("Strides on stairs are excluded from the means of walking: {strides}.").format(strides="; ".join(stated))
+        if stated
+        else ""
     )
 
 
@@ -158,7 +162,9 @@ def course_sentence(test: TimedTest) -> str:
     speeds = [one.speed_m_s for one in test.thirds]
     if test.definition.duration_s is None or len(speeds) < 2 or not all(math.isfinite(one) for one in speeds):
         return ""
-    return tr("First third {first:.2f} m/s, last third {last:.2f} m/s.").format(first=speeds[0], last=speeds[-1])
+    return tr("Speed: {first:.2f} m/s in the first third, {last:.2f} m/s in the last third.").format(
+        first=speeds[0], last=speeds[-1]
+    )
 
 
 MEASURED = {  # what the sources of errors measured, by their words in files

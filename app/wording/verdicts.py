@@ -27,20 +27,21 @@ class GateWords(NamedTuple):
 
 
 _ONE_RECEIVER = later("Use one receiver for all sensors.")
-_LOOK_AT_SIGN = later("Check the curve, then confirm or reverse the sign.")
+_LOOK_AT_SIGN = later("Check the curve, then confirm or reverse the sign of the angle.")
 _STRAP_PELVIS = later(
-    "Strap the pelvis sensor to the sacrum, not to a waistband. Then walk 15 s with a turn, or do lunges."
+    "Strap the pelvis sensor to the sacrum, not to a waistband. Then let the patient walk 15 s "
+    "with a turn, or do lunges."
 )
 _FREE_MOTION = later("Tighten the strap and record free motion again.")
 
 # {value} and {limit} carry their units; where a gate has no figure the first sentence is without one
 WORDS = {
     "pairing": GateWords(
-        later("Sensor positions could not be confirmed (margin {value}, required {limit})."),
+        later("Sensor positions could not be confirmed (clarity {value}, required {limit})."),
         later("Check the sensor positions, or record free motion."),
     ),
     "disagreement": GateWords(
-        later("The two sensors disagree at their joint (disagreement {value}, limit {limit})."),
+        later("The two sensors do not move like the two sides of one joint (disagreement {value}, limit {limit})."),
         later("Check the sensor positions, or record free motion."),
     ),
     "labels": GateWords(
@@ -48,7 +49,9 @@ WORDS = {
         later("Check the sensor positions."),
     ),
     "hip_disagreement": GateWords(
-        later("Pelvis and thigh sensors disagree on the acceleration at the hip (by {value}, limit {limit})."),
+        later(
+            "Pelvis and thigh sensors measure different accelerations at the hip (difference {value}, limit {limit})."
+        ),
         _STRAP_PELVIS,
     ),
     "hip_centre": GateWords(later("The hip joint centre lies {value} from a sensor (limit {limit})."), _STRAP_PELVIS),
@@ -58,30 +61,45 @@ WORDS = {
     ),
     "hip_found": GateWords(
         later(
-            "The hip joint could not be located. It needs standing, thigh and shank sensors, and enough hip movement."
+            "The hip joint could not be located. Required are standing still, thigh and shank sensors, "
+            "and enough hip movement."
         ),
         later("Let the patient stand still for three seconds, then walk 15 s with a turn, or do lunges."),
     ),
     "hip_heading": GateWords(
-        later("Thigh heading against the pelvis is too uncertain ({value}, limit {limit}). Abduction is not reported."),
+        later(
+            "The direction of the thigh relative to the pelvis is too uncertain ({value}, limit {limit}). "
+            "Abduction is not reported."
+        ),
         later("Let the patient walk 15 s with a turn, or do lunges."),
     ),
     "hip_deep": GateWords(
-        later("Hip flexion reaches {value} (limit {limit}). That deep, the sensor shows only half of the pelvic tilt.")
+        later(
+            "Hip flexion reaches {value} (limit {limit}). In such deep flexion, the sensor shows only "
+            "half of the pelvic tilt."
+        )
     ),
     "pelvis_tilt": GateWords(
-        later("Pelvic tilt range is {value}. Up to {limit} it cannot be separated from measurement error.")
+        later("Pelvic tilt range is {value}. A range up to {limit} cannot be distinguished from measurement error.")
     ),
     "sign": GateWords(
         later(
-            "Flexion and extension could not be distinguished (margin {value}, required {limit}). Only "
+            "Flexion and extension could not be distinguished (clarity {value}, required {limit}). Only "
             "range of motion is reported."
         ),
         _LOOK_AT_SIGN,
     ),
     "axis": GateWords(
-        later("Calibration certainty is only ±{value} (limit ±{limit})."),
-        later("Record free motion, or move longer and in more directions."),
+        later("The calibration has an uncertainty of ±{value} (limit ±{limit})."),
+        later("Record free motion, or let the patient move longer and in more directions."),
+    ),
+    "axis_halves": GateWords(
+        later("The {joint}'s axis came out {value} apart in the two halves of the walk (limit {limit})."),
+        later("Record free motion."),
+    ),
+    "axis_motions": GateWords(
+        later("The {joint}'s axis came out {value} apart in free motion and in the walk (limit {limit})."),
+        _FREE_MOTION,
     ),
     "lag": GateWords(later("The two sensors are synchronised only to ±{value} (limit ±{limit})."), _ONE_RECEIVER),
     "plausible": GateWords(
@@ -100,27 +118,29 @@ WORDS = {
     ),
     "strap": GateWords(later("Strap moved; strides from {value} on are excluded."), _FREE_MOTION),
     "strides": GateWords(later("Few strides ({value} used, {limit} required)."), later("Let the patient walk longer.")),
-    "halves": GateWords(later("First and second half of the walk differ by {value} (limit {limit}).")),
+    "halves": GateWords(
+        later("The values in the first and second half of the walk differ by {value} (limit {limit}).")
+    ),
     "halves_time": GateWords(later("Stride time differs by {value} between the halves of the walk (limit {limit}).")),
-    "drift": GateWords(later("First and last third of the walk differ by {value} (limit {limit}).")),
+    "drift": GateWords(later("The values in the first and last third of the walk differ by {value} (limit {limit}).")),
     "odd_even": GateWords(
         later("Every second stride differs from the others by {value} standard errors (limit {limit}).")
     ),
     "loss": GateWords(
-        later("Gaps over 50 ms take {value} of the strides used ({limit} at most)."),
+        later("Signal gaps over 50 ms take up {value} of the strides used ({limit} at most)."),
         later("Move the receiver closer."),
     ),
     "clipping": GateWords(
         later("The motion exceeded a sensor's range in {value} of the strides used ({limit} at most)."),
-        later("Choose a wider range, then record again."),
+        later("Choose a wider sensor range, then record again."),
     ),
     "rate": GateWords(
-        later("A sensor's samples came at {value} of the rate set (limit {limit})."),
+        later("A sensor sent samples at {value} of the set sample rate (limit {limit})."),
         later("Check the sensor's sample rate, then record again."),
     ),
     "every_second": GateWords(
-        later("Every second sample of a sensor is missing: {value} came (limit {limit})."),
-        later("Check its sample rate, move the receiver nearer, then record again."),
+        later("Every second sample of a sensor is missing: {value} of the samples arrived (limit {limit})."),
+        later("Check the sensor's sample rate, move the receiver nearer, then record again."),
     ),
     "events": GateWords(later("Stance is {value} of the gait cycle (limit {limit}). Gait events may be wrong.")),
     "distance": GateWords(later("Left and right stride length differ by {value} (limit {limit}).")),
@@ -130,8 +150,8 @@ WORDS = {
     ),
     "step_share": GateWords(
         later(
-            "Left and right sensors are not synchronised: the left step takes {value} of both (limit "
-            "{limit}), with equal stance times."
+            "Left and right sensors are not synchronised. The left step takes {value} of the time of both "
+            "steps (limit {limit}), with equal stance times."
         ),
         _ONE_RECEIVER,
     ),
@@ -141,7 +161,25 @@ WORDS = {
     ),
     "clocks": GateWords(later("Left and right sensors may be {value} out of sync (limit {limit})."), _ONE_RECEIVER),
 }
+NOT_REPORTED = {  # gates whose sentence is another where nothing is reported
+    "axis_halves": GateWords(
+        later(
+            "The {joint}'s axis came out {value} apart in the two halves of the walk, so its angles are not compared."
+        ),
+        later("Record free motion."),
+    ),
+    "axis_motions": GateWords(
+        later(
+            "The {joint}'s axis came out {value} apart in free motion and in the walk, so its angles are not compared."
+        ),
+        _FREE_MOTION,
+    ),
+}
 WITHOUT_FIGURES = {
+    "axis_halves": GateWords(
+        later("The joint's axis differs between the two halves of the walk."), later("Record free motion.")
+    ),
+    "axis_motions": GateWords(later("The joint's axis differs between free motion and the walk."), _FREE_MOTION),
     "pairing": GateWords(
         later("Sensor positions could not be confirmed."),
         later("Check the sensor positions, or record free motion."),
@@ -149,7 +187,7 @@ WITHOUT_FIGURES = {
     "sign": GateWords(
         later("Flexion and extension could not be distinguished. Only range of motion is reported."), _LOOK_AT_SIGN
     ),
-    "axis": GateWords(later("The certainty of the joint axis is not known."), later("Record free motion.")),
+    "axis": GateWords(later("The uncertainty of the joint axis is not known."), later("Record free motion.")),
     "lag": GateWords(later("The two sensors could not be synchronised from the movement."), _ONE_RECEIVER),
     "strap": GateWords(later("Strap moved before this walk."), _FREE_MOTION),
     "labels": GateWords(
@@ -157,11 +195,11 @@ WITHOUT_FIGURES = {
         later("Check the sensor positions."),
     ),
     "step_share": GateWords(
-        later("Left and right sensors are not synchronised: step times differ, with equal stance times."),
+        later("Left and right sensors are not synchronised: step times differ, although stance times are equal."),
         _ONE_RECEIVER,
     ),
     "clocks": GateWords(
-        later("Left and right sensors are not synchronised. Timing between the legs is not reported."),
+        later("Left and right sensors are not synchronised. Times that involve both legs are not reported."),
         _ONE_RECEIVER,
     ),
 }
@@ -170,11 +208,13 @@ WITHOUT_FIGURES = {
 def gate_words(reason: GateReason) -> GateWords:
     """Why this gate is not passed, and what to do, in the language of the application."""
     is_bare = reason.value is None and not reason.sites and reason.gate in WITHOUT_FIGURES
-    words = (WITHOUT_FIGURES if is_bare else WORDS)[reason.gate]
+    is_grave = reason.verdict is Verdict.NOT_REPORTED and reason.gate in NOT_REPORTED
+    words = (WITHOUT_FIGURES if is_bare else NOT_REPORTED if is_grave else WORDS)[reason.gate]
     is_share = reason.gate in SHARES
     value, limit = (_figure(figure, reason.unit, is_share=is_share) for figure in (reason.value, reason.limit))
     sites = capitalised(joined([name_of(site) for site in reason.sites]))
-    why = tr(words.why).format(value=value, limit=limit, sites=sites)
+    joint = name_of(reason.joint) if reason.joint else ""
+    why = tr(words.why).format(value=value, limit=limit, sites=sites, joint=joint)
     return GateWords(why, tr(words.to_do) if words.to_do else "")
 
 

@@ -451,7 +451,7 @@ class LibraryController(QObject):
                 tr("Recordings made meanwhile are now being added to the library."),
             )
             return
-        then = tr("There was nothing to add.")
+        then = tr("There were no recordings to add.")
         if brought:
             then = tr_n(
                 "{count} recording made meanwhile was added.",

@@ -105,7 +105,9 @@ class LibraryHolder:
         def opening() -> Opening:
             data_key = open_remembered(slots_of(folder), code)
             if data_key is None:
-                raise KeyRefusedError(tr("The passphrase is no longer stored on this computer"), tr("Enter it"))
+                raise KeyRefusedError(
+                    tr("The passphrase is no longer stored on this computer"), tr("Enter the passphrase")
+                )
             return logged_in(folder, data_key, code), ""
 
         return self._open(opening)
@@ -266,11 +268,11 @@ class LibraryHolder:
             )
         what = tr(GONE).format(folder=library.folder) + "."
         if library.shelter is None:
-            return Refusal(what, tr("The demonstration ends here. Open it again."))
+            return Refusal(what, tr("The demonstration ends here. Open the demonstration again."))
         then = tr(
-            "Put its folder back, or connect its disk. Until then recordings stay on this computer in "
-            "{shelter}, encrypted as always. They are added to the library automatically once it is "
-            "available again."
+            "Put the library's folder back, or connect its disk. Until then recordings stay on this "
+            "computer in {shelter}, encrypted as always. They are added to the library automatically once "
+            "it is available again."
         )
         return Refusal(what, then.format(shelter=library.shelter.folder))
 

@@ -43,4 +43,4 @@ def refusal_of(error: Exception) -> Refusal:
     if isinstance(error, OSError):
         what = tr("A file could not be read or written ({why}).").format(why=error.strerror or type(error).__name__)
         return Refusal(what, tr("Check the disk and the folder's permissions, then try again."))
-    return Refusal(tr("This stopped before it was finished."), tr("Try again. See the log for details."))
+    return Refusal(tr("The task stopped before it was finished."), tr("Try again. See the log for details."))

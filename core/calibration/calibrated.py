@@ -5,7 +5,7 @@ Knees come first, since an ankle's sign follows its knee's; an ankle without one
 
 import numpy as np
 
-from core.angles.measure import Twist
+from core.angles.measure import Geometry, Twist
 from core.body import Joint, knee_of
 from core.calibration.clinical_sign import ClinicalSign, ankle_sign, ankle_sign_from_foot, knee_sign
 from core.calibration.identified import Identified
@@ -68,7 +68,7 @@ def _calibration(
     """One joint's calibration, and its sign as the motion gives it, whatever the user states."""
     session, basis = tracks.session, found.basis
     joint = basis.joint
-    standing = _standing_twist(tracks, found)
+    standing = standing_twist_of(tracks, basis, found.geometry)
     moving = within_half_a_turn(np.concatenate([t.moving_twist for t in twists])) if twists else np.empty(0)
     zero_rad = standing if standing is not None else (float(np.median(moving)) if moving.size else 0.0)
     bend_rad, has_standing = wrap(moving - zero_rad), standing is not None
@@ -124,14 +124,14 @@ def _is_clock_shared(session: Session, joint: Joint) -> bool:
     return len(clocks) == 1 and "" not in clocks
 
 
-def _standing_twist(tracks: SensorTracks, found: Identified) -> float | None:
-    joint = found.basis.joint
+def standing_twist_of(tracks: SensorTracks, basis: Basis, geometry: Geometry) -> float | None:
+    """What a joint reads in its standing, rad, bare twist; None without one."""
+    joint = basis.joint
     for recording in tracks.span:
-        if recording.name == found.basis.standing:
+        if recording.name == basis.standing:
             rests = [tracks.rest(recording, site) for site in (joint.proximal, joint.distal)]
             if rests[0] is None or rests[1] is None:
                 return None
-            geometry = found.geometry
             down_1, down_2 = rests[0].acc_m_s2, rests[1].acc_m_s2
             if geometry.is_hinge:  # its angle is free of the biases, so its zero has to be
                 down_1, down_2 = down_1 - geometry.unknowns[6:9], down_2 - geometry.unknowns[9:12]

@@ -1,13 +1,14 @@
 """The identification of one joint from the recordings that are in force, robust or as published."""
 
 from dataclasses import dataclass
+from typing import NamedTuple
 
 import numpy as np
 
 from core.angles.measure import Geometry, pairs_of
 from core.body import Joint
 from core.calibration.bare_axis import Axes, bare_axes
-from core.calibration.identify import Identification, identify_joint, moving_data
+from core.calibration.identify import Downs, Identification, identify_joint, moving_data
 from core.calibration.joint_axis import heading_from_axes
 from core.calibration.joint_centre import MAX_SD_M, nearest_to_sensors
 from core.calibration.knees_help import helped_by_knee
@@ -16,7 +17,8 @@ from core.calibration.validity import Basis
 from core.published.identify import identify_as_published
 from core.published.joint_centre import shifted_to_sensors
 from core.results import AxisSource, Method
-from core.samples import FloatArray, Recording
+from core.samples import Recording
+from core.signal.datasets import Datasets
 from core.signal.pair import Pair
 from core.signal.sensors import SensorTracks
 
@@ -123,15 +125,14 @@ def _robustly(tracks: SensorTracks, basis: Basis, tau_s: float, knee: Identified
         lambda lag_s: _pairs(tracks, joint, free if free != names else (), lag_s),
         is_knee=joint.is_knee,
         is_from_walking=basis.free_motion is None,
-        downs=_downs(tracks, basis),
+        downs=downs_of(tracks, basis),
     )
     if found is None:
         return None
     centre_1, centre_2 = found.centre.proximal_m, found.centre.distal_m
     if joint.is_knee:
         centre_1, centre_2 = nearest_to_sensors(found.centre, found.axis_1, found.axis_2)
-    bare = _bare_axes(tracks, basis, found)
-    axis_1, axis_2 = bare or _helped_axes(tracks, basis, found, knee) or (found.axis_1, found.axis_2)
+    (axis_1, axis_2), is_bare = _walked_axes(tracks, basis, found, knee)
     # a walking person's centre is not in the data; a hinge's is
     is_centre_known = found.centre_sd_m < MAX_SD_M and (found.is_hinge or basis.free_motion is not None)
     return Identified(
@@ -154,32 +155,51 @@ def _robustly(tracks: SensorTracks, basis: Basis, tau_s: float, knee: Identified
         hinge_residual_rad_s=found.hinge_residual_rad_s,
         is_hinge=found.is_hinge,
         robust=found,
-        is_bare=bare is not None,
+        is_bare=is_bare,
     )
 
 
-def _bare_axes(tracks: SensorTracks, basis: Basis, found: Identification) -> Axes | None:
-    """Axes of an ankle that walks without tissue, None of any other joint."""
+class WalkedAxes(NamedTuple):
+    """Axes (3,) of a joint; `is_bare`: of an ankle that walks without tissue."""
+
+    axes: Axes
+    is_bare: bool = False
+
+
+def _walked_axes(tracks: SensorTracks, basis: Basis, found: Identification, knee: Identified | None) -> WalkedAxes:
     if basis.joint.is_knee or found.is_hinge or not found.did_flexion_dominate:
-        return None
+        return WalkedAxes((found.axis_1, found.axis_2))
     walked = moving_data(_pairs(tracks, basis.joint, basis.walks, found.lag.lag_s))
-    return bare_axes(walked, (found.axis_1, found.axis_2)) if walked else None
+    return walked_axes((found.axis_1, found.axis_2), basis, walked, knee, downs_of(tracks, basis))
 
 
-def _helped_axes(tracks: SensorTracks, basis: Basis, found: Identification, knee: Identified | None) -> Axes | None:
-    """Axes of a person's ankle that is known from walking alone, whose knee and whose standing are known.
+def walked_axes(
+    axes: Axes, basis: Basis, walked: Datasets | None, knee: Identified | None, downs: Downs | None
+) -> WalkedAxes:
+    """The axes of a person's ankle, where flexion dominates, as its walks correct them.
 
-    A free motion shows an ankle's own axis better than its knee does.
+    Without tissue they are those of the bare rates. One that is known from walking alone, whose knee and whose standing
+    are known, leans on its knee; a free motion shows an ankle's own axis better than its knee does.
+
+    Parameters
+    ----------
+    axes
+        Unit axes (3,) found so far.
+    walked
+        Moving samples of the walks; None where there are none.
+    downs
+        Specific forces (3,) of both sensors in standing.
     """
-    downs = _downs(tracks, basis)
-    if basis.joint.is_knee or basis.free_motion or found.is_hinge or knee is None or downs is None:
-        return None
-    if not found.did_flexion_dominate:
-        return None
-    return helped_by_knee((found.axis_1, found.axis_2), knee.geometry.axis_2, downs)
+    bare = bare_axes(walked, axes) if walked is not None else None
+    if bare is not None:
+        return WalkedAxes(bare, is_bare=True)
+    if basis.free_motion or knee is None or downs is None:
+        return WalkedAxes(axes)
+    return WalkedAxes(helped_by_knee(axes, knee.geometry.axis_2, downs) or axes)
 
 
-def _downs(tracks: SensorTracks, basis: Basis) -> tuple[FloatArray, FloatArray] | None:
+def downs_of(tracks: SensorTracks, basis: Basis) -> Downs | None:
+    """Specific forces (3,) of both sensors of a joint in its standing; None without one."""
     for recording in _by_name(tracks, (basis.standing,) if basis.standing else ()):
         rests = [tracks.rest(recording, site) for site in (basis.joint.proximal, basis.joint.distal)]
         if rests[0] is not None and rests[1] is not None:

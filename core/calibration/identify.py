@@ -246,7 +246,7 @@ def _refined(
         residual = _hinge_residual(turned, j1, j2)
     else:
         floor = certainty.AXIS_FLOOR_WALKING_RAD if is_from_walking else certainty.AXIS_FLOOR_HUMAN_RAD
-        axis_sd = certainty.axis_sd_rad(_axis_covariance(many, fit, residual_scales(many, fit)), floor)
+        axis_sd = certainty.axis_sd_rad(axis_covariance(many, fit, residual_scales(many, fit)), floor)
     if not is_hinge:
         centre = centre_by_lengths(free.thinned(POLISH_SAMPLES), centre.unknowns)
     elevation = float(_elevations(j1[None], j2[None], downs)[0].max()) if downs else None
@@ -301,7 +301,19 @@ def disagreement_about(data: Datasets, axis_1: FloatArray, axis_2: FloatArray) -
     return disagreement(forces, heading[0], fit_forces(forces, heading).unknowns[0])
 
 
-def _axis_covariance(data: Datasets, fit: Candidates, scales: tuple[float, float]) -> FloatArray:
+def axis_covariance(data: Datasets, fit: Candidates, scales: tuple[float, float]) -> FloatArray:
+    """Formal covariance (4, 4) of both axes' tangent coordinates under the first candidate, rad^2.
+
+    Parameters
+    ----------
+    scales
+        Of the off-axis rate, rad/s, and of the parting of the axes, rad.
+
+    Returns
+    -------
+    (4, 4)
+        What the fit's own residuals make of it, without a floor.
+    """
     r = residuals(data, fit.axis_1, fit.axis_2, data.heading(fit.knots_rad), *scales)
     _, weight = loss_and_weights(r.value)
     # the heading is a nuisance: one slope per sample is taken out of the axes' slopes

@@ -15,7 +15,7 @@ from core.gait.foot import FootMotion
 from core.gait.phases import phases_at
 from core.gait.shank import gait_of_shank
 from core.gait.spatiotemporal import parameters_of
-from core.gait.strides import Strides, strides_of_feet
+from core.gait.strides import strides_of_feet
 from core.parameters import EXCURSIONS, PEAK_WINDOWS
 from core.results import JointAngle, SideGait
 from core.samples import BoolArray, FloatArray, Patient, Recording
@@ -115,7 +115,7 @@ def gait_in(
         leaning = {site.segment: found for site, found in inclinations.items() if site.side is side}
         parameters = {
             **parameters_of(mine, other),
-            **_joint_parameters(mine, cycles),
+            **joint_parameters(cycles),
             **foot_measures(mine, time_s, pitch_rad[side]),
             **inclination_measures(mine, time_s, leaning),
         }
@@ -199,8 +199,19 @@ def _later(events: FootEvents, by_s: float) -> FootEvents:
     return replace(events, **{name: getattr(events, name) + by_s for name in times})
 
 
-def _joint_parameters(strides: Strides, cycles: Mapping[Joint, FloatArray]) -> dict[str, FloatArray]:
-    """Peaks, excursions, ranges and the angle at initial contact of each stride (k,), radians or percent."""
+def joint_parameters(cycles: Mapping[Joint, FloatArray]) -> dict[str, FloatArray]:
+    """Peaks, excursions, ranges and the angle at initial contact of each stride (k,), radians or percent.
+
+    Parameters
+    ----------
+    cycles
+        Of each joint (k, 101), rad; NaN throughout where a stride is not known.
+
+    Returns
+    -------
+    dict
+        By name, as in `SideGait.parameters`.
+    """
     parameters: dict[str, FloatArray] = {}
     for joint, windows in ((j, PEAK_WINDOWS[j.kind]) for j in cycles):
         kind, curves = joint.kind, cycles[joint]

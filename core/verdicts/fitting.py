@@ -50,7 +50,7 @@ MEASURES = (
     FittingMeasure(
         "knee_swing_peak_percent",
         "when the largest knee angle from 55 to 90 % of the stride comes",
-        "Contacts may be told early or late alike in every stride, and with them this instant",
+        "Contacts may be detected early or late alike in every stride, and with them this instant",
     ),
     FittingMeasure(
         "knee_terminal_extension_deg",
@@ -60,7 +60,7 @@ MEASURES = (
     FittingMeasure(
         "knee_extended_before_contact_percent",
         "how long before that contact the knee has come within 3 deg of its smallest angle, of the stride",
-        "Contacts may be told early or late alike in every stride, and with them this time",
+        "Contacts may be detected early or late alike in every stride, and with them this time",
     ),
     FittingMeasure(
         "foot_heel_rise_deg",
@@ -70,7 +70,7 @@ MEASURES = (
     FittingMeasure(
         "foot_pitch_at_contact_deg",
         "pitch of the foot at initial contact, toes up positive; zero is the foot as it stands in the same stance",
-        "A foot turns by up to 4 deg in 10 ms when it lands, and contacts may be told 25 ms late",
+        "A foot turns by up to 4 deg in 10 ms when it lands, and contacts may be detected 25 ms late",
     ),
     _cited(
         "foot_flat_percent",
@@ -89,7 +89,7 @@ MEASURES = (
     ),
     _cited(
         "shank_over_flat_foot_deg",
-        "by how much the shank turns forward from full contact to heel rise: the roll over a foot that stands",
+        "by how much the shank turns forward from full contact to heel rise: the roll over a flat foot",
         f"No roll-over shape: the centre of pressure is not measured. {_EVENTS}",
         _ROLL,
     ),

@@ -38,6 +38,9 @@ class GateLimits:
 
     pairing_margin: float = 1.5  # of the best hypothesis over its best rival, in motion below 4 Hz
     axis_sd_deg: tuple[float, float] = (6.5, 9.0)  # 15 deg of motion off the plane leak 15 sin sd: 1.7 and 2.3 deg
+    axis_halves_deg: tuple[float, float] = (10.0, 25.0)  # ranges differ by 2.6, 4.9 and beyond by 10 deg (54 legs)
+    # a person's axes in walking are 6 deg from those in free motion, which is 4 deg off: 3 sd of both are no fault
+    axis_motions_deg: tuple[float, float] = (24.0, 33.0)
     lag_sd_ms: tuple[float, float] = (2.0, 10.0)  # 400 deg/s for 10 ms are 4 deg
     knee_range_deg: tuple[float, float] = (5.0, 90.0)  # walking knees 62 +- 4, stiff ones to 5
     ankle_range_deg: tuple[float, float] = (3.0, 60.0)  # walking ankles 25 +- 5
@@ -119,6 +122,7 @@ def _joint_verdicts(
     shape = [
         *_labels(recording, joint.proximal, joint.distal),
         *_calibrated(calibration),
+        *_axis_halves(recording, joint),
         *_delivered(recording, joint.proximal, joint.distal),
         *_drifting(recording, Verdict.NOT_REPORTED, joint.proximal, joint.distal),
     ]
@@ -145,6 +149,7 @@ def _without_course(recording: RecordingAnalysis, reasons: Iterable[GateReason])
 def _hip_verdicts(recording: RecordingAnalysis, joint: Joint, knee: JointCalibration | None) -> JointVerdicts:
     """A hip has no axis of its own: its frames lean on the knee's, its sign on the knee's sign."""
     of_knee = [*_pairing(knee), *_axis(knee)] if knee is not None else [GateReason("axis", Verdict.NOT_REPORTED)]
+    of_knee += _axis_halves(recording, knee_of(joint.side))
     shape = [
         *_labels(recording, joint.proximal, joint.distal),
         *_adjacent(recording.hips[joint].identification),
@@ -271,6 +276,20 @@ def _axis(found: JointCalibration) -> Iterator[GateReason]:
         yield GateReason("axis", Verdict.NOT_REPORTED, _known(sd_deg), most, "deg")
     elif sd_deg > care:
         yield GateReason("axis", Verdict.CARE, sd_deg, care, "deg")
+
+
+def _axis_halves(recording: RecordingAnalysis, joint: Joint) -> Iterator[GateReason]:
+    """Whether two parts of the data, each by itself, show one axis: formally sure is not sure."""
+    found = recording.axis_halves.get(joint)
+    if found is None:
+        return
+    gate = "axis_motions" if found.is_free_motion else "axis_halves"
+    care, most = LIMITS.axis_motions_deg if found.is_free_motion else LIMITS.axis_halves_deg
+    apart_deg = float(np.rad2deg(found.apart_rad))
+    if apart_deg > most:
+        yield GateReason(gate, Verdict.NOT_REPORTED, apart_deg, most, "deg", joint=joint)
+    elif apart_deg > care:
+        yield GateReason(gate, Verdict.CARE, apart_deg, care, "deg", joint=joint)
 
 
 def _lag(found: JointCalibration) -> Iterator[GateReason]:

@@ -7,9 +7,10 @@ for a goal, which is without error itself, it is more than is needed, by up to t
 
 import math
 from enum import StrEnum
+from statistics import NormalDist
 
 from core.goals import Goal, GoalOf
-from core.verdicts.measurement_error import whisker
+from core.verdicts.measurement_error import Z95, whisker
 from core.verdicts.sigmas import ComparisonKind
 from core.verdicts.stride_means import MeanOfStrides
 
@@ -67,6 +68,26 @@ def standing(goal: Goal, value: float, error: float) -> GoalStanding:
     if abs(more) > error:
         return GoalStanding.REACHED if more > 0 else GoalStanding.SHORT
     return GoalStanding.REACHED_INSIDE if more >= 0 else GoalStanding.SHORT_INSIDE
+
+
+def share_at_goal(goal: Goal, value: float, error: float) -> float:
+    """In how many of 1 such measurements the true value is at the goal or beyond it, with a flat prior.
+
+    Parameters
+    ----------
+    error
+        What a difference of two means as sure has to exceed; the value's own SD is that over 1.96 sqrt(2).
+
+    Returns
+    -------
+    float
+        0 to 1; NaN where the error is not known.
+    """
+    if not (math.isfinite(value) and error > 0):
+        return math.nan
+    return NormalDist().cdf(
+        beyond(goal, value) / (error / (Z95 * (1.0 if goal.of is GoalOf.BETWEEN else math.sqrt(2))))
+    )
 
 
 def error_of_visit(column: str, found: MeanOfStrides, speed_m_s: float = math.nan) -> float:

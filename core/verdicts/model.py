@@ -30,7 +30,8 @@ class GateReason:
     """One gate that was not passed: what was found, what would have passed, both in `unit`.
 
     `value` and `limit` are None where the evidence is no figure. `verdict` is what this gate alone decides. `sites` are
-    the sensors it is about, where these are others than its place's. `app.wording.verdicts` has each gate's sentence.
+    the sensors it is about, where these are others than its place's, `joint` the joint that its sentence names.
+    `app.wording.verdicts` has each gate's sentence.
     """
 
     gate: str
@@ -39,6 +40,7 @@ class GateReason:
     limit: float | None = None
     unit: str = ""
     sites: tuple[Site, ...] = ()
+    joint: Joint | None = None
 
 
 @dataclass(frozen=True, slots=True)

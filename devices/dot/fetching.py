@@ -199,7 +199,9 @@ class Fetching:
         if is_cut:
             return DotRefusedError("Data from {sensor} arrive incomplete", "Use another Bluetooth adapter", sensor=name)
         return DotRefusedError(
-            "{sensor} does not send its recording", "Switch it off and on, then fetch it again", sensor=name
+            "{sensor} does not send its recording",
+            "Switch the sensor off and on, then fetch the recording again",
+            sensor=name,
         )
 
     def _required(self) -> range | None:

@@ -148,7 +148,7 @@ class DotSensor:
         try:
             return parsed(await self._read(characteristic))
         except DotMessageError as problem:
-            raise SourceLostError(f"{self.name} says too little") from problem
+            raise SourceLostError(f"{self.name} holds too little") from problem
 
     async def _write(self, characteristic: Characteristic, data: bytes) -> None:
         await self._link.write(characteristic.uuid, data)

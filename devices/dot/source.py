@@ -333,7 +333,7 @@ class DotSource:
             return ()
         if framer is None or self._turn != self.group.turn:
             self._keeps_link = True
-            raise SourceRestartedError(f"{self.sensor.name} sends anew")
+            raise SourceRestartedError(f"{self.sensor.name} sends again")
         radio.wait(self.sensor.arrived, READ_S)
         data = b"".join(frame for _, frame in self.sensor.taken())
         if not data:

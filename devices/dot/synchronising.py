@@ -69,10 +69,10 @@ class SyncFailure(StrEnum):
     SKEW_TOO_LARGE = "skew too large"
     START_FAILED = "start failed"
     NOT_STARTED = "not started"
-    UNKNOWN = "it does not tell"
+    UNKNOWN = "it does not answer"
     NOT_BACK = "it did not come back"
     SILENT = "it does not begin to measure"
-    NOT_RECEIVED = "it is not heard"
+    NOT_RECEIVED = "nothing is received from it"
     CUT = "what it sends arrives cut"
     OTHER_CLOCK = "its clock differs"
 
@@ -269,7 +269,7 @@ async def refuse_while_recording(sensor: DotSensor) -> None:
     if state is DotAnswer.RECORDING:
         raise DotRefusedError(
             "{sensor} is recording to its memory",
-            "Stop that recording in the program that started it, such as Movella's app, and fetch it there",
+            "Stop that recording in the program that started it, such as Movella's app. Fetch the recording there",
             sensor=sensor.name,
         )
     has_memory = sensor.info is not None and sensor.info.can_synchronise  # both came with the same firmware

@@ -167,7 +167,7 @@ class CsvSerial:
 
     def greet(self, channel: Channel) -> tuple[SourceInfo, SensorDetails]:
         if self._columns is None:
-            raise ValueError("nobody said what the columns mean")
+            raise ValueError("nobody stated what the columns mean")
         framer = CsvFramer(self._columns)
         listen(channel, framer, lambda received: b"enough" if len(received.rows) >= ENOUGH_ROWS else b"", STATES_S)
         if not framer.received.rows:

@@ -198,7 +198,7 @@ def sensors_of(stream: str, labels: Sequence[str], units: Sequence[str]) -> tupl
     if not sensors:
         raise OtherStreamError(
             "The stream {name} has no channels labelled as angular rate and acceleration",
-            "In the sending program, label them gyr_x to gyr_z and acc_x to acc_z, or send both",
+            "In the sending program, label the channels gyr_x to gyr_z and acc_x to acc_z, or send both quantities",
             name=stream,
         )
     return tuple(sensors)

@@ -232,7 +232,7 @@ def _registers(channel: Channel, framer: WitFramer, first: int) -> bytes:
 def _refusal(place: str, is_received: bool) -> SourceRefusedError:
     if is_received:
         return SourceRefusedError(
-            "The sensor at {place} sends no time, so lost samples would go unnoticed",
+            "The sensor at {place} sends no timestamps, so lost samples would go unnoticed",
             "Switch on its time output with the manufacturer's program",
             place=place,
         )

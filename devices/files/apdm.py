@@ -27,8 +27,8 @@ from devices.files.trial import ImportedSensor, ImportedTrial
 
 MONITORS, TEST_NAME, TIME = "Format=", "Test Name:", "Time"
 HEAD_LINES = 5  # at most, of either dialect
-EXPORT_AGAIN = "Export it again as CSV, from Moveo, Mobility Lab or Motion Studio"
-WITH_IT = "Export it again with these data"
+EXPORT_AGAIN = "Export the file again as CSV, from Moveo, Mobility Lab or Motion Studio"
+WITH_IT = "Export the file again, including the missing data"
 PER_MONITOR = {"Accelerometer": 3, "Gyroscope": 3, "Magnetometer": 3, "Orientation": 4}
 NAMED = {"Acceleration": "XYZ", "Angular Velocity": "XYZ", "Magnetic Field": "XYZ", "Orientation": "SXYZ"}
 UNITS = {"Acceleration": ("m/s^2", "m/s²"), "Angular Velocity": ("rad/s",)}
@@ -92,13 +92,13 @@ def read_apdm(path: Path) -> ApdmFile:
                 columns, first_row, rate_hz = _named(head, where)
                 ids, tick_s = {}, 1.0
             else:
-                raise FileRefusedError(where, "this is not an export from APDM software", EXPORT_AGAIN)
+                raise FileRefusedError(where, "the file is not an export from APDM software", EXPORT_AGAIN)
             rows = _numbers([*head[first_row:], *reader], len(head[first_row - 1]), first_row, where)
         except (csv.Error, UnicodeDecodeError) as error:
-            raise FileRefusedError(where, "this is not comma-separated text", EXPORT_AGAIN) from error
+            raise FileRefusedError(where, "the file is not comma-separated text", EXPORT_AGAIN) from error
     last = max((place for found in columns.values() for places in found for place in places), default=0)
     if last >= rows.shape[1]:
-        raise FileRefusedError(where, "its header lines differ in length", EXPORT_AGAIN)
+        raise FileRefusedError(where, "the header lines of the file differ in length", EXPORT_AGAIN)
     clock = _clock(rows[:, 0], tick_s, first_row, where)
     stamps = clock.stamps[clock.is_new]
     time_s = (stamps - stamps[:1]) * tick_s
@@ -157,7 +157,7 @@ def _of_hdf5(path: Path) -> Iterator[ImportedSensor]:
 def _monitors(head: list[list[str]], where: str) -> tuple[dict[str, Columns], dict[str, str]]:
     """Columns and numbers of the sensors of "Format=7", by their names."""
     if len(head) < 3:
-        raise FileRefusedError(where, "its header is cut off", EXPORT_AGAIN)
+        raise FileRefusedError(where, "the file header is cut off", EXPORT_AGAIN)
     sensors, quantities = head[0], head[1]
     cells = [k for k in range(1, len(sensors)) if sensors[k].strip()]
     columns: dict[str, Columns] = {}
@@ -173,7 +173,7 @@ def _monitors(head: list[list[str]], where: str) -> tuple[dict[str, Columns], di
         )
         ids[called] = sensors[number].strip()
     if not columns:
-        raise FileRefusedError(where, "it lists no sensors", EXPORT_AGAIN)
+        raise FileRefusedError(where, "the file lists no sensors", EXPORT_AGAIN)
     return columns, ids
 
 
@@ -196,7 +196,7 @@ def _named(head: list[list[str]], where: str) -> tuple[dict[str, Columns], int, 
                     raise FileRefusedError(
                         where,
                         "{name} is in {unit}, expected {required}",
-                        "Export it again in SI units",
+                        "Export the file again in SI units",
                         name=quoted(part),
                         unit=quoted(unit),
                         required=UNITS[quantity][0],
@@ -212,9 +212,9 @@ def _named(head: list[list[str]], where: str) -> tuple[dict[str, Columns], int, 
 
 def _found(columns: Sequence[tuple[int, ...]], sensor: str, where: str) -> Columns:
     if not columns[ACC]:
-        raise FileRefusedError(where, "{sensor} has no acceleration", WITH_IT, sensor=quoted(sensor))
+        raise FileRefusedError(where, "the file contains no acceleration of {sensor}", WITH_IT, sensor=quoted(sensor))
     if not columns[GYR]:
-        raise FileRefusedError(where, "{sensor} has no angular rates", WITH_IT, sensor=quoted(sensor))
+        raise FileRefusedError(where, "the file contains no angular rates of {sensor}", WITH_IT, sensor=quoted(sensor))
     return tuple(columns)
 
 
@@ -227,7 +227,7 @@ def _numbers(lines: list[list[str]], width: int, first_row: int, where: str) -> 
         if len(line) != width:
             raise FileRefusedError(
                 f"{where}, line {number}",
-                "it has {count} cells, the header {width}",
+                "the line has {count} cells, but the header has {width}",
                 "The file is cut off or damaged; export it again",
                 count=len(line),
                 width=width,

@@ -26,7 +26,7 @@ VERSION = "FileFormatVersion"
 CASE_IDS, LABELS, SENSORS, PROCESSED = "CaseIdList", "MonitorLabelList", "Sensors", "Processed"
 VERSIONS = (3, 4, 5)
 SAVE_AGAIN = "Save the recording again as HDF5, from Moveo, Mobility Lab or Motion Studio"
-RECORD_IT = "Switch on its accelerometer, gyroscope and timestamps in the APDM software before recording"
+RECORD_IT = "Switch on the sensor's accelerometer, gyroscope and timestamps in the APDM software before recording"
 TICK_S = 1e-6
 UNITS_ATTRIBUTE = "Units"
 SI = {"acceleration": ("m/s^2", "m/s²"), "angular rate": ("rad/s",)}
@@ -99,7 +99,7 @@ def read_apdm_hdf5(path: Path) -> tuple[RecordedOpal, ...]:
             )
         layouts = list(_of_version_5(file) if version == VERSIONS[-1] else _of_version_3(file))
         if not layouts or len(layouts) > MOST_SENSORS:
-            raise FileRefusedError(file.where, "it lists no sensors", SAVE_AGAIN)
+            raise FileRefusedError(file.where, "the file lists no sensors", SAVE_AGAIN)
         return tuple(_read(file, layout) for layout in layouts)
 
 
@@ -139,14 +139,20 @@ def _of_version_5(file: Hdf5File) -> Iterator[_Layout]:
 def _read(file: Hdf5File, layout: _Layout) -> RecordedOpal:
     stamps = file.numbers(layout.time)
     if stamps is None:
-        raise FileRefusedError(file.where, "{sensor} has no timestamps", RECORD_IT, sensor=quoted(layout.name))
+        raise FileRefusedError(
+            file.where, "the file contains no timestamps of {sensor}", RECORD_IT, sensor=quoted(layout.name)
+        )
     stamps = stamps.reshape(-1)
     n = len(stamps)
     acc, gyr = _matrix(file, layout.acc, (n, 3)), _matrix(file, layout.gyr, (n, 3))
     if acc is None:
-        raise FileRefusedError(file.where, "{sensor} has no acceleration", RECORD_IT, sensor=quoted(layout.name))
+        raise FileRefusedError(
+            file.where, "the file contains no acceleration of {sensor}", RECORD_IT, sensor=quoted(layout.name)
+        )
     if gyr is None:
-        raise FileRefusedError(file.where, "{sensor} has no angular rates", RECORD_IT, sensor=quoted(layout.name))
+        raise FileRefusedError(
+            file.where, "the file contains no angular rates of {sensor}", RECORD_IT, sensor=quoted(layout.name)
+        )
     for place, quantity in ((layout.acc, "acceleration"), (layout.gyr, "angular rate")):
         _check_unit(file, place, quantity)
     orientation, mag = _matrix(file, layout.orientation, (n, 4)), _matrix(file, layout.mag, (n, 3))
@@ -175,7 +181,7 @@ def _matrix(file: Hdf5File, place: str, shape: tuple[int, int]) -> FloatArray | 
     if values.shape != shape:
         raise FileRefusedError(
             f"{file.where}, {place}",
-            "its values have shape {shape}, expected {required}",
+            "the values have the shape {shape} instead of {required}",
             SAVE_AGAIN,
             shape=values.shape,
             required=shape,
@@ -206,7 +212,7 @@ def _check_unit(file: Hdf5File, place: str, quantity: str) -> None:
         if unit not in SI[quantity]:
             raise FileRefusedError(
                 f"{file.where}, {place}",
-                "it is in {unit}, expected {required}",
+                "the values are in {unit}, expected {required}",
                 "Save the recording again in SI units, in the APDM software",
                 unit=quoted(unit),
                 required=SI[quantity][0],

@@ -75,7 +75,7 @@ def bids_motion_trial(files: Sequence[Path], rate_hz: float | None = None) -> Im
     if len({bids_recording(path) for path in files}) > 1:
         raise FileRefusedError(
             ", ".join(path.name for path in files),
-            "they belong to several recordings",
+            "the files belong to several recordings",
             "Import one recording at a time",
         )
     systems: list[MotionSystem] = []
@@ -109,7 +109,7 @@ def _read_sensors(system: MotionSystem, asked_hz: float | None) -> list[UnreadFi
             refusal = FileRefusedError(
                 system.base.name,
                 "{point} has no {lacking} channels",
-                "Leave it out, or export both",
+                "Leave this tracked point out, or export both ACCEL and GYRO",
                 point=quoted(point),
                 lacking=lacking,
             )
@@ -200,7 +200,9 @@ def _times(
     rate_hz = system.rate_hz or asked_hz
     if not common:
         if rate_hz is None:
-            raise FileRefusedError(where, "its sampling frequency is missing", "Give it in Hz (--rate)")
+            raise FileRefusedError(
+                where, "the sampling frequency of the recording is missing", "Give the rate in Hz (--rate)"
+            )
         return RepairedClock(np.arange(n) / rate_hz, np.ones(n, dtype=bool), ()), rate_hz
     time_s = system.rows[:, (own or common)[0]]
     steps_s = np.diff(time_s)
@@ -211,7 +213,7 @@ def _times(
     if rate_hz is not None and np.isfinite(step_s) and not 0.5 < step_s * rate_hz < 2.0:
         raise FileRefusedError(
             where,
-            "its latency step of {step} does not match {rate} samples per second",
+            "the file's latency step of {step} does not match {rate} samples per second",
             "Give latencies in seconds, as BIDS requires",
             step=f"{step_s:g}",
             rate=f"{rate_hz:g}",
@@ -237,7 +239,7 @@ def _check_axes(acc_m_s2: FloatArray, gyr_rad_s: FloatArray, rate_hz: float, poi
     if float(np.sum(expected[is_there] * seen[is_there])) < 0.4 * weight:
         raise FileRefusedError(
             where,
-            "the acceleration of {sensor} does not rotate with it, so it is in global axes",
+            "the acceleration of {sensor} does not rotate with the sensor, so it is in global axes",
             IN_SENSOR_AXES,
             sensor=quoted(point),
         )

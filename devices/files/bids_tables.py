@@ -104,7 +104,9 @@ def read_system(base: Path) -> MotionSystem:
     for path in (channels_path, motion_path):
         if not path.is_file():
             raise FileRefusedError(
-                path.name, "this file of the recording is missing", "Put it in the same folder as the others"
+                path.name,
+                "a file of the recording is missing",
+                "Put the missing file in the same folder as the other files",
             )
     points, channels = _read_channels(channels_path)
     settings = _read_settings(_beside(base, SETTINGS))
@@ -142,7 +144,11 @@ def _read_channels(path: Path) -> tuple[dict[str, dict[tuple[str, str], int]], l
             continue
         if len(cells) != len(names):
             raise FileRefusedError(
-                here, "it has {count} cells, the header {width}", EXPORT_AGAIN, count=len(cells), width=len(names)
+                here,
+                "the line has {count} cells, but the header has {width}",
+                EXPORT_AGAIN,
+                count=len(cells),
+                width=len(names),
             )
         row = {name: "" if cell == "n/a" else cell for name, cell in zip(names, cells, strict=True)}
         one = MotionChannel(
@@ -178,9 +184,9 @@ def _read_settings(path: Path) -> Mapping[str, object]:
     try:
         settings = json.loads(content)
     except (ValueError, RecursionError) as error:
-        raise FileRefusedError(path.name, "this is not readable JSON", EXPORT_AGAIN) from error
+        raise FileRefusedError(path.name, "the file is not readable JSON", EXPORT_AGAIN) from error
     if not isinstance(settings, dict):
-        raise FileRefusedError(path.name, "this is not a table of settings", EXPORT_AGAIN)
+        raise FileRefusedError(path.name, "the file is not a table of settings", EXPORT_AGAIN)
     return settings
 
 
@@ -195,7 +201,7 @@ def _read_rows(path: Path, width: int) -> FloatArray:
         if len(cells) != width:
             raise FileRefusedError(
                 here,
-                "it has {count} cells, but the channel table has {width} channels",
+                "the line has {count} cells, but the channel table has {width} channels",
                 EXPORT_AGAIN,
                 count=len(cells),
                 width=width,
@@ -208,13 +214,11 @@ def _read_rows(path: Path, width: int) -> FloatArray:
             if number == 1:
                 raise FileRefusedError(
                     here,
-                    "it contains a value that is not a number ({why})",
-                    "Remove its header line: BIDS has none there",
+                    "a value is not a number ({why})",
+                    "Remove the header line: BIDS has none in this file",
                     why=quoted(error),
                 ) from error
-            raise FileRefusedError(
-                here, "it contains a value that is not a number ({why})", EXPORT_AGAIN, why=quoted(error)
-            ) from error
+            raise FileRefusedError(here, "a value is not a number ({why})", EXPORT_AGAIN, why=quoted(error)) from error
     values = np.array(rows, dtype=np.float64).reshape(len(rows), width)
     values[~np.isfinite(values)] = np.nan
     return values
@@ -227,7 +231,9 @@ def _lines(path: Path) -> Iterator[tuple[int, str]]:
             try:
                 yield number, raw.decode("utf-8-sig" if number == 1 else "utf-8").rstrip("\r\n")
             except UnicodeDecodeError as error:
-                raise FileRefusedError(f"{path.name}, line {number}", "this is not UTF-8 text", EXPORT_AGAIN) from error
+                raise FileRefusedError(
+                    f"{path.name}, line {number}", "the file is not UTF-8 text", EXPORT_AGAIN
+                ) from error
 
 
 def _acquired(base: Path) -> str:

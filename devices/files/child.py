@@ -127,7 +127,7 @@ def _answer(asked: "Details", arrays: "list[Array]") -> "Details":
     except OSError as problem:
         why = problem.strerror or type(problem).__name__
         where = str(problem.filename or asked["where"])
-        unread = FileRefusedError(where, "this cannot be read ({why})", "Check its permissions", why=why)
+        unread = FileRefusedError(where, "the file or folder cannot be read ({why})", "Check the permissions", why=why)
         return {"what": REFUSED, "details": details_of_refusal(unread)}
     except MemoryError:
         arrays.clear()

@@ -228,7 +228,7 @@ def _one_time(
 def _refuse_both(names: Sequence[str]) -> None:
     if len(names) > 1:
         raise FileRefusedError(
-            "", "the columns {names} have the same meaning", "Remove all but one of them", names=listed(names)
+            "", "the columns {names} have the same meaning", "Remove all but one of these columns", names=listed(names)
         )
 
 

@@ -92,8 +92,8 @@ def recognised(files: Sequence[Path]) -> str:
         if name is None:
             raise FileRefusedError(
                 path.name,
-                "its format is not recognised",
-                "Supported formats: {formats}; if the file has one of these, name it with --as",
+                "the file format is not recognised",
+                "Supported formats: {formats}. If the file has one of these formats, give the format with --as",
                 formats=", ".join(FORMATS),
             )
         found.setdefault(name, path)
@@ -138,4 +138,4 @@ def _is_of_simulated_session(path: Path) -> bool:
 
 def _refuse_missing(path: Path) -> None:
     if not path.exists():
-        raise FileRefusedError(str(path), "this file does not exist", "Check its name")
+        raise FileRefusedError(str(path), "this file does not exist", "Check the file's name")

@@ -27,16 +27,20 @@ def gather(paths: Sequence[Path]) -> Gathered:
             name = SESSION if (path / FILE_NAME).is_file() else format_of(path)
         except OSError as problem:
             why = problem.strerror or type(problem).__name__
-            refused.append(FileRefusedError(path.name, "this cannot be read ({why})", "Check its permissions", why=why))
+            refused.append(
+                FileRefusedError(
+                    path.name, "the file or folder cannot be read ({why})", "Check the permissions", why=why
+                )
+            )
             continue
         if name is None:
-            refused.append(FileRefusedError(path.name, "this file format is not supported", "Leave it out"))
+            refused.append(FileRefusedError(path.name, "this file format is not supported", "Leave this file out"))
             continue
         found.setdefault((name, path.parent, _common(name, path)), []).append(str(path))
     if not found and not refused:
         raise FileRefusedError(
             paths[0].name,
-            "it contains neither session.toml nor a file that can be imported",
+            "the folder contains neither session.toml nor a file that can be imported",
             "Choose the folder with the recordings",
         )
     trials = tuple(

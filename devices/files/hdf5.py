@@ -43,7 +43,7 @@ class Hdf5File:
     def __init__(self, path: Path, where: str) -> None:
         if find_spec(LIBRARY) is None:
             raise FileRefusedError(
-                where, "reading it needs {library}, which is not installed", INSTALL_IT, library=LIBRARY
+                where, "reading the file needs {library}, which is not installed", INSTALL_IT, library=LIBRARY
             )
         import h5py  # an extra, and slow to import
 
@@ -131,7 +131,7 @@ class Hdf5File:
         except DAMAGES as error:
             raise FileRefusedError(
                 f"{self.where}, {place}" if place.strip("/") else self.where,
-                "this cannot be read as HDF5; the file may be damaged",
+                "the file cannot be read as HDF5 and may be damaged",
                 COPY_AGAIN,
             ) from error
 

@@ -15,7 +15,7 @@ from devices.files.site_files import sensor_changes
 from devices.files.trial import ImportedSensor, ImportedTrial
 
 MAP = "--map"
-AS_IN = "Write it as left_thigh=FILE_OR_SENSOR_ID,left_shank=FILE_OR_SENSOR_ID"
+AS_IN = "Write the assignment as left_thigh=FILE_OR_SENSOR_ID,left_shank=FILE_OR_SENSOR_ID"
 
 
 @dataclass(frozen=True, slots=True)
@@ -40,12 +40,14 @@ def parse_map(text: str) -> dict[Site, str]:
     for part in re.split(r",(?=\s*\w+\s*=)", text):
         site, equals, value = (piece.strip() for piece in part.partition("="))
         if not equals or not value:
-            raise FileRefusedError(MAP, "{part} does not assign a file to a site", AS_IN, part=quoted(part))
+            raise FileRefusedError(MAP, "{part} does not assign a file to a sensor position", AS_IN, part=quoted(part))
         if site not in list(Site):
             sites = ", ".join(Site)
-            raise FileRefusedError(MAP, "{site} is not a site", "Sites are {sites}", site=quoted(site), sites=sites)
+            raise FileRefusedError(
+                MAP, "{site} is not a sensor position", "Sensor positions are {sites}", site=quoted(site), sites=sites
+            )
         if site in placement:
-            raise FileRefusedError(MAP, "{site} is given twice", "Name each site once", site=site)
+            raise FileRefusedError(MAP, "{site} is given twice", "Name each sensor position once", site=site)
         placement[Site(site)] = value
     return placement
 
@@ -77,10 +79,10 @@ def place_sensors(trial: ImportedTrial, placed: Sequence[tuple[Site, ImportedSen
     for number, (site, sensor) in enumerate(placed):
         if any(sensor is other for _, other in placed[:number]):
             raise FileRefusedError(
-                f"{MAP} {site}", "{name} is assigned to two sites", "Name each sensor once", name=sensor.name
+                f"{MAP} {site}", "{name} is assigned to two sensor positions", "Name each sensor once", name=sensor.name
             )
         if site in [other for other, _ in placed[:number]]:
-            raise FileRefusedError(recording, "{site} is given twice", "Name each site once", site=site)
+            raise FileRefusedError(recording, "{site} is given twice", "Name each sensor position once", site=site)
     sensors = [sensor for _, sensor in placed]
     _refuse_apart(sensors)
     _refuse_jumps(sensors)
@@ -142,7 +144,7 @@ def _refuse_apart(sensors: Sequence[ImportedSensor]) -> None:
     if last.block.time_s[0] > first.block.time_s[-1]:
         raise FileRefusedError(
             last.name,
-            "it starts after the last sample of {other}, so they do not belong to one trial",
+            "one sensor's data start after the last sample of {other}, so both do not belong to one trial",
             "Import the files of one trial at a time",
             other=first.name,
         )
@@ -156,7 +158,8 @@ def _refuse_jumps(sensors: Sequence[ImportedSensor]) -> None:
         if jump is not None:
             raise FileRefusedError(
                 sensor.name,
-                "its clock jumps forward by {jump} s, {after} s after it began, while no other sensor measured so long",
+                "the sensor's clock jumps forward by {jump} s, {after} s after the start; no other sensor "
+                "measured that long",
                 SPLIT_IT,
                 jump=f"{jump.by_s:.6g}",
                 after=f"{jump.after_s:.6g}",
@@ -184,7 +187,7 @@ def add_recording(
         raise FileRefusedError(
             recording.name,
             "these files are simulated, and the session is not",
-            "Import them into a session of their own",
+            "Import the simulated files into a separate session",
         )
     for other in session.recordings:
         if other.name == recording.name:

@@ -60,10 +60,14 @@ Waiting = Callable[[], object]
 TIME, CRASH = "time", "crash"
 ENDINGS = {  # refusals that lack only their place
     child.MEMORY: FileRefusedError(
-        "", "reading this takes more memory than a recording should need", "Export it again, or in shorter parts"
+        "",
+        "reading the data takes more memory than a recording should need",
+        "Export the recording again, or in shorter parts",
     ),
     TIME: FileRefusedError(
-        "", "reading this takes longer than a recording should need", "Export it again, or in shorter parts"
+        "",
+        "reading the data takes longer than a recording should need",
+        "Export the recording again, or in shorter parts",
     ),
     CRASH: FileRefusedError(
         "", "reading stopped early; the file may be damaged", "Copy the file again from where it was recorded"

@@ -54,8 +54,9 @@ def check_magnitudes(
     if is_export and LIKE_G[0] < middle < LIKE_G[1]:
         raise FileRefusedError(
             where,
-            "the median acceleration of {sensor} is {middle}, not gravity in m/s2; it looks like g",
-            "Export it again in m/s2, or correct the unit",
+            "the median acceleration of {sensor} is {middle}, which does not match gravity in m/s2; the "
+            "unit seems to be g",
+            "Export the file again in m/s2, or correct the unit",
             sensor=quoted(sensor),
             middle=f"{middle:.2f}",
         )
@@ -63,14 +64,14 @@ def check_magnitudes(
         if is_export:
             raise FileRefusedError(
                 where,
-                "the median acceleration of {sensor} is {middle}, not gravity in m/s2",
-                "Export it again in m/s2, with gravity included",
+                "the median acceleration of {sensor} is {middle}, which does not match gravity in m/s2",
+                "Export the file again in m/s2, with gravity included",
                 sensor=quoted(sensor),
                 middle=f"{middle:.2f}",
             )
         raise FileRefusedError(
             where,
-            "the median acceleration of {sensor} is {middle}, not gravity in m/s2",
+            "the median acceleration of {sensor} is {middle}, which does not match gravity in m/s2",
             "Check the sensor's range and calibration with the manufacturer's program, and record again",
             sensor=quoted(sensor),
             middle=f"{middle:.2f}",
@@ -88,14 +89,14 @@ def _check_rates(gyr_rad_s: FloatArray, sensor: str, where: str, gyr_unit: str, 
         raise FileRefusedError(
             where,
             "the angular rates of {sensor} are in deg/s, not in rad/s",
-            "Export it again in rad/s, or correct the unit",
+            "Export the file again in rad/s, or correct the unit",
             sensor=quoted(sensor),
         )
     if is_export:
         raise FileRefusedError(
             where,
             "the angular rates of {sensor} reach {largest} deg/s, beyond the range of any sensor",
-            "Export it again in deg/s, or correct the unit",
+            "Export the file again in deg/s, or correct the unit",
             sensor=quoted(sensor),
             largest=f"{np.degrees(largest):.0f}",
         )

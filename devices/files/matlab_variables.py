@@ -25,7 +25,7 @@ MOST_DEPTH = 12  # of structures in structures, and of references that lead in a
 MOST_VALUES = 100_000
 CLASS, EMPTY, OBJECT = "MATLAB_class", "MATLAB_empty", "MATLAB_object_decode"
 OWN = "#"  # names that MATLAB keeps to itself in HDF5
-SAVE_AGAIN = "Save it again in MATLAB, with save and the option -v7"
+SAVE_AGAIN = "Save the file again in MATLAB, with save and the option -v7"
 DAMAGES = (
     ValueError,
     TypeError,
@@ -70,7 +70,7 @@ def read_matlab(path: Path) -> dict[str, Variable]:
     with path.open("rb") as file:
         head = file.read(HDF5_AT + len(SIGNATURE))
     if not is_matlab(path, head):
-        raise FileRefusedError(path.name, "this is not a MATLAB file of version 5 or later", SAVE_AGAIN)
+        raise FileRefusedError(path.name, "the file is not a MATLAB file of version 5 or later", SAVE_AGAIN)
     if head[VERSION_PLACE] in VERSIONS_5:
         return _Version5(path).variables()
     with Hdf5File(path, path.name) as opened:
@@ -89,7 +89,7 @@ class _MatlabFile:
         if depth > MOST_DEPTH or self._values > MOST_VALUES:
             raise FileRefusedError(
                 self._where,
-                "its data are nested too deeply or are too large for a recording",
+                "the data in the file are nested too deeply or are too large for a recording",
                 "Save only the sensor variables",
             )
 
@@ -117,7 +117,7 @@ class _Version5(_MatlabFile):
             return variables
         except (*DAMAGES, MatReadError) as error:
             raise FileRefusedError(
-                self._where, "this cannot be read as a MATLAB file; it may be damaged", SAVE_AGAIN
+                self._where, "the file cannot be read as a MATLAB file and may be damaged", SAVE_AGAIN
             ) from error
 
     def _plain(self, value: Any, depth: int) -> Variable:

@@ -57,7 +57,7 @@ WRONG_UNIT = 0.05  # of the orientation's turning; rates in rad/s that are taken
 MEASURE_AGAIN = (
     'Record again in "Custom mode 5" or, to sensor memory, with orientation, acceleration and angular velocity'
 )
-EXPORT_AGAIN = "Export it again from the Movella DOT app"
+EXPORT_AGAIN = "Export the file again from the Movella DOT app"
 
 
 @dataclass(frozen=True, slots=True)
@@ -249,15 +249,16 @@ def _clock(steps: Numbers, reported_hz: float | None, where: str) -> tuple[float
                 return tick_s, reported_hz
         raise FileRefusedError(
             where,
-            "its time step of {step} does not match {rate} samples per second",
-            "Give its recording rate in Hz (--rate), or export it again",
+            "the file's time step of {step} does not match {rate} samples per second",
+            "Give the recording rate in Hz (--rate), or export the file again",
             step=f"{step:.0f}",
             rate=f"{reported_hz:g}",
         )
     raise FileRefusedError(
         where,
-        "its time step of {step} matches no rate of these sensors, in microseconds or tenths of a millisecond",
-        "Give its recording rate in Hz (--rate)",
+        "the file's time step of {step} matches no rate of these sensors, neither in microseconds nor "
+        "in tenths of a millisecond",
+        "Give the recording rate in Hz (--rate)",
         step=f"{step:.0f}",
     )
 
@@ -333,7 +334,7 @@ def _specific_force(
     if q is None:
         raise FileRefusedError(
             where,
-            "its acceleration is without gravity (FreeAcc_X), and there is no orientation to restore it",
+            "the acceleration in the file is without gravity (FreeAcc_X). There is no orientation to restore gravity",
             MEASURE_AGAIN,
         )
     return with_gravity(table.matrix(FREE_ACC)[is_new], q, GRAVITY_M_S2), True

@@ -119,10 +119,12 @@ def read_mti_stream(path: Path) -> MtiStream:
     rows.take(framer.flush())
     if not rows.rows and rows.is_old:
         raise FileRefusedError(
-            path.name, "its messages are of the older type MTData, which does not describe its content", SET_OUTPUT
+            path.name,
+            "the file's messages are of the older type MTData, which does not describe its content",
+            SET_OUTPUT,
         )
     if not rows.rows:
-        raise FileRefusedError(path.name, "it contains no rate of turn, acceleration or orientation", SET_OUTPUT)
+        raise FileRefusedError(path.name, "the file contains no rate of turn, acceleration or orientation", SET_OUTPUT)
     parts = np.split(np.array(rows.rows), np.cumsum([1, 1, 3, 3, 4, 3, 3, 4]), axis=1)
     ticks, counter, rate, force, turn, velocity, free, q, mag = parts
     return MtiStream(
@@ -240,7 +242,7 @@ def _times(stream: MtiStream, asked_hz: float | None, where: str) -> RepairedClo
     elif np.isfinite(stream.counter).all():
         time_s = np.unwrap(stream.counter, period=2.0**COUNTER_BITS) / asked_hz
     else:
-        raise FileRefusedError(where, "its messages contain neither time nor packet counter", SET_OUTPUT)
+        raise FileRefusedError(where, "the file's messages contain neither time nor packet counter", SET_OUTPUT)
     return repaired(time_s, FileClock(where, lambda row: f"sample {row + 1}", "its clock"))
 
 
@@ -277,7 +279,7 @@ def _forces(
     if q is None:
         raise FileRefusedError(
             where,
-            "its acceleration is without gravity, and there is no orientation to restore it",
+            "the acceleration in the file is without gravity. There is no orientation to restore gravity",
             SET_OUTPUT,
         )
     return with_gravity(stream.free[is_new], q), True

@@ -31,8 +31,8 @@ CLOCK = "Xsens MVN"  # one station stamps all sensors
 LARGEST_FRAME = 2**40  # beyond, a frame's number is damaged
 LEAST_RATE_HZ, MOST_RATE_HZ = 1.0, 2000.0  # beyond, it is damaged
 ROTATION_ERROR = 0.01
-EXPORT_AGAIN = "Export it again from MVN as MVNX"
-WITH_THEM = "Export it again from MVN as MVNX, with sensor orientation and sensor free acceleration"
+EXPORT_AGAIN = "Export the file again from MVN as MVNX"
+WITH_THEM = "Export the file again from MVN as MVNX, with sensor orientation and sensor free acceleration"
 
 
 @dataclass(slots=True)
@@ -81,12 +81,12 @@ def read_mvnx(path: Path) -> MvnxFile:
     except (ET.ParseError, LookupError, ValueError) as error:  # the last two of encodings
         raise FileRefusedError(
             found.where,
-            "this is not a complete XML file ({why})",
+            "the file is not a complete XML file ({why})",
             "Copy or export the file again",
             why=quoted(error),
         ) from error
     if not found.sensors:
-        raise FileRefusedError(found.where, "it lists no sensors", WITH_THEM)
+        raise FileRefusedError(found.where, "the file lists no sensors", WITH_THEM)
     return found
 
 
@@ -113,7 +113,7 @@ def mvnx_trial(files: Sequence[Path], rate_hz: float | None = None) -> ImportedT
     file = read_mvnx(files[0])
     rate_hz = file.rate_hz or rate_hz
     if rate_hz is None:
-        raise FileRefusedError(file.where, "its frame rate is missing", "Give it in Hz (--rate)")
+        raise FileRefusedError(file.where, "the frame rate of the file is missing", "Give the rate in Hz (--rate)")
     frames = np.array(file.index, dtype=np.int64)
     clock = repaired(frames, FileClock(file.where, lambda row: f"frame {row + 1}", "index", 1.0 / rate_hz), step=1.0)
     is_new = clock.is_new
@@ -142,7 +142,7 @@ def mvnx_trial(files: Sequence[Path], rate_hz: float | None = None) -> ImportedT
 
 def _note_subject(found: MvnxFile, subject: ET.Element, number: int) -> None:
     if number > 1:
-        raise FileRefusedError(found.where, "it contains several people", "Export each person to a separate file")
+        raise FileRefusedError(found.where, "the file contains several people", "Export each person to a separate file")
     found.started = subject.get("recDate", "")
     try:
         rate_hz = float(subject.get("frameRate", "nan"))
@@ -184,14 +184,14 @@ def _numbers(found: MvnxFile, text: str, width: int, frame: str) -> FloatArray:
     except ValueError as error:
         raise FileRefusedError(
             f"{found.where}, frame {frame}",
-            "it contains a value that is not a number ({why})",
+            "a value is not a number ({why})",
             EXPORT_AGAIN,
             why=quoted(error),
         ) from error
     if len(values) != width * len(found.sensors):
         raise FileRefusedError(
             f"{found.where}, frame {frame}",
-            "it has {count} values for {sensors} sensors, expected {required}",
+            "the frame has {count} values for {sensors} sensors, expected {required}",
             EXPORT_AGAIN,
             count=len(values),
             sensors=len(found.sensors),
@@ -209,7 +209,7 @@ def _check_stamps(file: MvnxFile, index: Numbers, rate_hz: float) -> None:
     if by_frames > 1.0 and abs(by_stamps - by_frames) > 0.02 * by_frames + 0.1:
         raise FileRefusedError(
             file.where,
-            "its frames take {frames} s at {rate} Hz, but its timestamps {stamps} s",
+            "the frames of the file take {frames} s at {rate} Hz, but its timestamps take {stamps} s",
             EXPORT_AGAIN,
             frames=f"{by_frames:.1f}",
             rate=f"{rate_hz:g}",

@@ -34,7 +34,7 @@ GRAVITY_M_S2 = (7.0, 14.0)  # the middle of what a sensor on a leg at rest or wa
 UP = 0.95  # cosine of the angle to the vertical at which an orientation turns the mean specific force
 
 NAME_THEM = (
-    "Name its columns acc_x, acc_y, acc_z and gyr_x, gyr_y, gyr_z, with units as in acc_x_m_s2 "
+    "Name the columns acc_x, acc_y, acc_z and gyr_x, gyr_y, gyr_z, with units as in acc_x_m_s2 "
     "and gyr_x_deg_s; with several sensors left_shank_acc_x and so on"
 )
 
@@ -60,7 +60,7 @@ def sensors_of_table(table: NamedTable, rate_hz: float | None) -> list[ImportedS
     if not found:
         raise FileRefusedError(
             table.where,
-            "its columns do not identify acceleration and angular rates on three axes each: {names}",
+            "the file's columns do not identify acceleration and angular rates on three axes each: {names}",
             NAME_THEM,
             names=listed([*table.columns, *table.left_out]) or "-",
         )
@@ -98,7 +98,7 @@ def _sensor(table: NamedTable, named: SensorColumns, asked_hz: float | None, oth
         raise FileRefusedError(
             table.where,
             "the columns of {sensor} differ in length",
-            "Save them with one row per sample",
+            "Save the columns with one row per sample",
             sensor=quoted(name),
         )
     findings = list(table.findings)
@@ -148,8 +148,8 @@ def _acc_unit(table: NamedTable, named: SensorColumns, acc: FloatArray, findings
     if reported and fits:
         raise FileRefusedError(
             table.where,
-            "the acceleration {names} is labelled {reported}, but its median of {middle} is gravity in {unit}",
-            "Correct the unit, or export it again in m/s2",
+            "the acceleration {names} is labelled {reported}, but its median of {middle} matches gravity in {unit}",
+            "Correct the unit, or export the data again in m/s2",
             names=listed(named.acc),
             reported=reported,
             middle=f"{middle:.3g}",
@@ -158,7 +158,7 @@ def _acc_unit(table: NamedTable, named: SensorColumns, acc: FloatArray, findings
     if not fits:
         raise FileRefusedError(
             table.where,
-            "the median acceleration {names} is {middle}, not gravity in {units}",
+            "the median of the acceleration {names} is {middle}, which does not match gravity in {units}",
             "Export acceleration in m/s2 with gravity, not free or linear acceleration",
             names=listed(named.acc),
             middle=f"{middle:.3g}",
@@ -178,7 +178,7 @@ def _gyr_unit(table: NamedTable, named: SensorColumns, gyr: FloatArray, findings
                 table.where,
                 "the angular rates {names} are labelled {reported}, but reach {largest}, beyond the range of "
                 "any sensor",
-                "Correct the unit, or export them again in rad/s",
+                "Correct the unit, or export the angular rates again in rad/s",
                 names=listed(named.gyr),
                 reported=reported,
                 largest=f"{largest:.3g}",
@@ -216,7 +216,7 @@ def _reported_unit(table: NamedTable, names: Sequence[str], quantity: Quantity) 
                 raise FileRefusedError(
                     table.where,
                     "{name} is in {unit}, expected one of {required}",
-                    "Export it again in one of these, or correct the unit",
+                    "Export the file again in one of these units, or correct the unit",
                     name=quoted(name),
                     unit=quoted(text),
                     required=", ".join(SCALES[quantity]),
@@ -225,7 +225,7 @@ def _reported_unit(table: NamedTable, names: Sequence[str], quantity: Quantity) 
         raise FileRefusedError(
             table.where,
             "the columns {names} have different units",
-            "Export them again in one unit",
+            "Export the columns again in one unit",
             names=listed(names),
         )
     return units.pop()

@@ -63,7 +63,7 @@ def stamps_of(
     elif reported_hz is None:
         raise FileRefusedError(
             table.where,
-            "its samples have no times",
+            "the samples in the file have no times",
             "Add a column time_s, time_ms or time_us, or give the samples per second with --rate",
         )
     elif named.counter and len(table.columns[named.counter]) == len(is_there):
@@ -80,7 +80,7 @@ def stamps_of(
     if clock.doubled > MOST_DOUBLED * len(values):
         raise FileRefusedError(
             table.where,
-            "{doubled} of {count} samples repeat the previous time",
+            "{doubled} of {count} samples have the same time as the sample before",
             "Export the times with more digits",
             count=len(values),
             doubled=clock.doubled,
@@ -113,7 +113,7 @@ def _checked_rate(table: NamedTable, time_s: FloatArray, reported_hz: float | No
     if not least < found_hz < most or (reported_hz is not None and abs(found_hz - reported_hz) > 0.05 * reported_hz):
         raise FileRefusedError(
             table.where,
-            "its times give {found} samples per second, expected {reported}",
+            "the times in the file give {found} samples per second, expected {reported}",
             "Name the time column with its unit, such as time_ms, or correct the rate",
             found=f"{found_hz:.4g}",
             reported=f"{least:g} to {most:g}" if reported_hz is None else f"{reported_hz:g}",
@@ -170,7 +170,8 @@ def _time_unit(
         raise FileRefusedError(
             table.where,
             "the unit of {name} is unclear; its step between samples is {step}",
-            "Name it with its unit, such as time_s, time_ms or time_us, or give the samples per second with --rate",
+            "Name the column with its unit, such as time_s, time_ms or time_us, or give the samples per "
+            "second with --rate",
             name=quoted(name),
             step=f"{usual:.6g}",
         )

@@ -28,7 +28,7 @@ LONGEST_LINE = 100_000  # bytes
 HEAD_WITHIN = 100  # lines
 ROTATION_ERROR = 0.01
 UNEVEN = 0.2  # of a step: rates derived over uneven steps would be wrong by as much
-EXPORT_AGAIN = "Export it again from OpenSim"
+EXPORT_AGAIN = "Export the file again from OpenSim"
 
 
 @dataclass(frozen=True, slots=True)
@@ -66,7 +66,7 @@ def read_opensim_orientations(path: Path) -> OrientationTable:
             try:
                 text = raw.decode("utf-8-sig" if number == 1 else "utf-8").strip()
             except UnicodeDecodeError as error:
-                raise FileRefusedError(here, "this is not UTF-8 text", EXPORT_AGAIN) from error
+                raise FileRefusedError(here, "the file is not UTF-8 text", EXPORT_AGAIN) from error
             if not has_head:
                 has_head = text == END_OF_HEAD.decode()
                 if number > HEAD_WITHIN:
@@ -153,7 +153,11 @@ def _row(text: str, columns: int, here: str) -> list[float]:
     cells = [cell.strip() for cell in (text.split("\t") if "\t" in text else text.split())]
     if len(cells) != columns:
         raise FileRefusedError(
-            here, "it has {count} cells, the header {width}", EXPORT_AGAIN, count=len(cells), width=columns
+            here,
+            "the line has {count} cells, but the header has {width}",
+            EXPORT_AGAIN,
+            count=len(cells),
+            width=columns,
         )
     try:
         row = [float(cells[0])]
@@ -165,9 +169,7 @@ def _row(text: str, columns: int, here: str) -> list[float]:
                 )
             row += four
     except ValueError as error:
-        raise FileRefusedError(
-            here, "it contains a value that is not a number ({why})", EXPORT_AGAIN, why=quoted(error)
-        ) from error
+        raise FileRefusedError(here, "a value is not a number ({why})", EXPORT_AGAIN, why=quoted(error)) from error
     return row
 
 
@@ -179,8 +181,8 @@ def _counter(time_s: FloatArray, rate_hz: float, where: str) -> Numbers:
     if is_uneven.any() or np.any(steps > 1e9):
         raise FileRefusedError(
             where,
-            "its times are not evenly spaced, so angular rates cannot be derived from the orientation",
-            "Export it again at a constant rate",
+            "the times in the file are not evenly spaced, so angular rates cannot be derived from the orientation",
+            "Export the file again at a constant rate",
         )
     counter: Numbers = np.concatenate([np.zeros(len(time_s[:1])), np.cumsum(whole)]).astype(np.int64)
     return counter

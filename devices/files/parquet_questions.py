@@ -31,7 +31,7 @@ ZONED_TIME = "TIMESTAMP WITH TIME ZONE"
 KIND = re.compile(r"^[A-Z]\w*(?: \w+){0,2} Error: ")  # what DuckDB calls it, before what is wrong
 HINTS = ("Candidate bindings", "Did you mean")  # how DuckDB's second line begins where it helps
 MOST_FOUND_BYTES = 500_000_000
-WITH_ZONE = "the column {name} is a time with its zone, which has no one text"
+WITH_ZONE = "the column {name} contains times with a time zone, which have no unique text"
 NO_SELECT = "{kind} is not allowed: the table is read-only"
 TOO_LARGE = "this query exceeds the memory limit ({limit})"
 LIST_COLUMNS = "gaitwright query --columns lists the table's columns"
@@ -68,7 +68,7 @@ def answer(path: Path, sql: str, is_typed: bool, arrays: "list[Array]") -> "Deta
             described = [(str(name), str(kind)) for name, kind in zip(asked.columns, asked.types, strict=True)]
             for name, kind in described:
                 if kind == ZONED_TIME:
-                    raise FileRefusedError("SQL", WITH_ZONE, "Write it as {name}::VARCHAR", name=name)
+                    raise FileRefusedError("SQL", WITH_ZONE, "Write the column as {name}::VARCHAR", name=name)
             arrays.append(_stream(asked))
         except (duckdb.Error, pa.ArrowException) as problem:
             raise _refused(problem) from None
@@ -101,7 +101,7 @@ def _opened(file: Path) -> "Iterator[DuckDBPyConnection]":
         except (duckdb.Error, pa.ArrowException, OSError) as problem:
             raise FileRefusedError(
                 str(file),
-                "this is not a readable Parquet file ({why})",
+                "the file is not a readable Parquet file ({why})",
                 "Choose the parameters.parquet written by gaitwright batch",
                 why=_reason(problem),
             ) from None
@@ -111,7 +111,9 @@ def _opened(file: Path) -> "Iterator[DuckDBPyConnection]":
 def _refuse_other_than_one_select(connection: "DuckDBPyConnection", sql: str) -> None:
     statements = connection.extract_statements(sql)
     if len(statements) != 1:
-        raise FileRefusedError("SQL", "{count} statements", "Enter one query at a time", count=len(statements))
+        raise FileRefusedError(
+            "SQL", "the query contains {count} statements", "Enter one query at a time", count=len(statements)
+        )
     if statements[0].type != duckdb.StatementType.SELECT:
         kind = statements[0].type.name
         stated = "PIVOT without IN" if kind == "MULTI" else kind

@@ -63,7 +63,7 @@ def _columns(path: Path) -> dict[str, str]:
         raise
     except (pa.ArrowException, OSError, ValueError, OverflowError) as error:
         raise FileRefusedError(
-            path.name, "this is not a readable Parquet file ({why})", COPY_AGAIN, why=error
+            path.name, "the file is not a readable Parquet file ({why})", COPY_AGAIN, why=error
         ) from error
 
 

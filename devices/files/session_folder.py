@@ -48,7 +48,7 @@ class InThisProcess:
             return parse_toml(path.read_bytes().decode("utf-8-sig"))
         except UnicodeDecodeError as error:
             raise FileRefusedError(
-                FILE_NAME, "this is not UTF-8 text", "Save {file} as UTF-8", file=FILE_NAME
+                FILE_NAME, "the file is not UTF-8 text", "Save {file} as UTF-8", file=FILE_NAME
             ) from error
 
     def read_site(self, file: SiteFile) -> ReadSite:
@@ -94,7 +94,7 @@ def read_session(folder: Path, reader: SessionReader = IN_THIS_PROCESS) -> Sessi
     except OSError as error:
         raise FileRefusedError(
             str(error.filename or folder),
-            "this cannot be read ({why})",
+            "the file or folder cannot be read ({why})",
             "Check the folder and its permissions",
             why=error.strerror,
         ) from error
@@ -143,7 +143,7 @@ def _read(folder: Path, reader: SessionReader) -> Session:
     if not any(files.values()):
         raise FileRefusedError(
             FILE_NAME,
-            "no recording has a file named after a site",
+            "no recording has a file named after a sensor position",
             "Name the files left_thigh.csv, left_shank.csv and so on",
         )
     shelf = Shelf(reader.read_site) if _size(files) > HELD_BYTES else None
@@ -155,7 +155,7 @@ def _read(folder: Path, reader: SessionReader) -> Session:
             if held_bytes > MOST_HELD_BYTES:  # a kilobyte of Parquet can hold one number a billion times
                 raise FileRefusedError(
                     plan.recording.name,
-                    "its files contain more samples than their size allows",
+                    "the recording's files contain more samples than their size allows",
                     "Export the recordings again",
                 )
         recordings.append(replace(plan.recording, imu=imu))
@@ -171,7 +171,7 @@ def _read_toml(folder: Path, reader: SessionReader) -> Mapping[str, object]:
     if not path.is_file():
         raise FileRefusedError(
             str(folder),
-            "this is not a session folder; it contains no {file}",
+            "this folder is not a session folder; it contains no {file}",
             "Choose the folder with {file}, or import the recordings first",
             file=FILE_NAME,
         )
@@ -187,7 +187,7 @@ def _site_files(folder: Path, plan: Plan, session: Session) -> dict[Site, SiteFi
         raise FileRefusedError(
             recording.name,
             "the folder of this recording is missing ({folder})",
-            "Put it back, or remove the recording from {file}",
+            "Put the folder back, or remove the recording from {file}",
             folder=recording.folder,
             file=FILE_NAME,
         )
@@ -206,7 +206,7 @@ def _site_files(folder: Path, plan: Plan, session: Session) -> dict[Site, SiteFi
             path, where = folder / recording.folder / name, f"{recording.folder}/{name}"
             _check_inside(path, folder, where)
             if not path.is_file():
-                raise FileRefusedError(where, "this is not a file", "Put the sensor's file in its place")
+                raise FileRefusedError(where, "the path does not lead to a file", "Put the sensor's file there")
             sensor = plan.sensors.get(site) or default_sensor(session, site)
             place = f"{recording.name}, {site}"
             files[site] = SiteFile(path, where, place, sensor, site in plan.rates_derived)
@@ -220,7 +220,9 @@ def _check_inside(path: Path, folder: Path, where: str) -> None:
     except (OSError, RuntimeError):
         is_inside = False  # a link that leads to itself
     if not is_inside:
-        raise FileRefusedError(where, "this leads out of the session folder", "Copy the files into the folder")
+        raise FileRefusedError(
+            where, "the path leads out of the session folder", "Copy the files into the session folder"
+        )
 
 
 def _size(files: Mapping[str, Mapping[Site, SiteFile]]) -> int:
@@ -262,7 +264,9 @@ def _strays(folder: Path, reader: SessionReader) -> Sequence[Path]:
     if not folder.exists() or (folder.is_dir() and not any(folder.iterdir())):
         return []
     if not (folder / FILE_NAME).is_file():
-        raise FileRefusedError(str(folder), "this already exists and is not a session folder", "Choose another folder")
+        raise FileRefusedError(
+            str(folder), "the target already exists and is not a session folder", "Choose another folder"
+        )
     session, plans = parse_document(_read_toml(folder, reader))
     sites = {file.path for plan in plans for file in _site_files(folder, plan, session).values()}
     return [

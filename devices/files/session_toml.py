@@ -207,9 +207,9 @@ def parse_toml(text: str) -> dict[str, object]:
     try:
         document: dict[str, object] = tomllib.loads(text)
     except (ValueError, RecursionError) as error:
-        raise FileRefusedError(FILE_NAME, "this is not TOML ({why})", CORRECT_IT, why=error) from error
+        raise FileRefusedError(FILE_NAME, "the file is not TOML ({why})", CORRECT_IT, why=error) from error
     if _is_deeper(document, DEEPEST):
-        raise FileRefusedError(FILE_NAME, "its tables are nested too deeply", CORRECT_IT)
+        raise FileRefusedError(FILE_NAME, "the tables in the file are nested too deeply", CORRECT_IT)
     return document
 
 
@@ -317,7 +317,7 @@ def _check_format(document: Table) -> None:
         raise FileRefusedError(
             FILE_NAME,
             "this session was written by a later version ({version})",
-            "Update Gaitwright, then open it again",
+            "Update Gaitwright, then open the session again",
             version=quoted(name),
         )
     if name is None:
@@ -327,10 +327,12 @@ def _check_format(document: Table) -> None:
 
 def _plans(tables: object) -> tuple[Plan, ...]:
     if not isinstance(tables, list) or not all(isinstance(table, dict) for table in tables):
-        raise FileRefusedError(FILE_NAME, "recordings is not a list of tables", "Start each one with [[recordings]]")
+        raise FileRefusedError(
+            FILE_NAME, "recordings is not a list of tables", "Start each recording with [[recordings]]"
+        )
     if not tables:
         raise FileRefusedError(
-            FILE_NAME, "there is no recording", "Add one with [[recordings]] and its name, kind and folder"
+            FILE_NAME, "there is no recording", "Add a recording with [[recordings]] and its name, kind and folder"
         )
     plans: list[Plan] = []
     for number, table in enumerate(tables, 1):
@@ -377,7 +379,7 @@ def _sensor(sensors: Table, site: Site) -> SensorInfo:
 def _table(document: Table, name: str, where: str) -> Table:
     table = document.get(name, {})
     if not isinstance(table, dict):
-        raise FileRefusedError(f"{FILE_NAME}, {where}", "this is not a table of keys and values", CORRECT_IT)
+        raise FileRefusedError(f"{FILE_NAME}, {where}", "this part is not a table of keys and values", CORRECT_IT)
     return table
 
 

@@ -124,7 +124,7 @@ def read_card(files: Sequence[Path]) -> ImportedSensor:
     name, first = card_recording(files[0]), parts[0]
     if any(part.period != first.period or part.is_synced != first.is_synced for part in parts):
         raise FileRefusedError(
-            name, "its parts were recorded with different settings", "Import each recording separately"
+            name, "the parts of the recording were made with different settings", "Import each recording separately"
         )
     ticks = np.concatenate([part.ticks for part in parts])
     clock = repaired(ticks / TICK_HZ, FileClock(name, lambda row: f"sample {row + 1}", "its clock"))
@@ -156,7 +156,9 @@ def _part(path: Path) -> CardPart:
     data = path.read_bytes()
     head = data[:HEAD]
     if len(head) < HEAD:
-        raise FileRefusedError(path.name, "the file ends within its header", "Copy the file again from the card")
+        raise FileRefusedError(
+            path.name, "the file ends before its header is complete", "Copy the file again from the card"
+        )
     period, switches = _head(head)
     is_synced, size = _is_synced(head), _size(switches)
     places, at = {}, TIME_SIZE
@@ -169,7 +171,7 @@ def _part(path: Path) -> CardPart:
         raise FileRefusedError(path.name, "the gyroscope or the accelerometer was not switched on", SET_IT)
     samples, offsets = _samples(np.frombuffer(data, np.uint8, offset=HEAD), size, is_synced)
     if not len(samples):
-        raise FileRefusedError(path.name, "it contains no samples", "Choose another recording on the card")
+        raise FileRefusedError(path.name, "the file contains no samples", "Choose another recording on the card")
     times = samples[:, :TIME_SIZE].astype(np.int64)
     raw: Ticks = times[:, 0] | times[:, 1] << 8 | times[:, 2] << 16
     begun = int.from_bytes(head[START + 1 : START + 5] + head[START : START + 1], "little")
@@ -211,7 +213,7 @@ def _ahead(name: str, offsets: Sequence[tuple[int, int]], count: int, period: in
     if abs(slope) > MOST_OFF_RATE * period:
         raise FileRefusedError(
             name,
-            "its times give {found} samples per second, expected {reported}",
+            "the times in the file give {found} samples per second, expected {reported}",
             "Synchronise the sensors again in Consensys, then record again",
             found=f"{TICK_HZ / (period - slope):.4g}",
             reported=f"{TICK_HZ / period:.4g}",
@@ -241,7 +243,7 @@ def _vector(path: Path, head: bytes, samples: Bytes, what: str, place: int, numb
         offset, matrix = calibrating(head[CALIBRATIONS[what] :][:CALIBRATION_SIZE], scale)
     except ValueError as problem:
         raise FileRefusedError(
-            path.name, "it contains no calibration", "Calibrate the sensor in Consensys, and record again"
+            path.name, "the file contains no calibration", "Calibrate the sensor in Consensys, and record again"
         ) from problem
     raw = np.ascontiguousarray(samples[:, place : place + 6]).view(numbers).astype(float)
     return np.asarray((raw - offset) @ matrix.T)

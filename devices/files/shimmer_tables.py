@@ -40,7 +40,9 @@ MS_PER_S = 1000.0
 DELIMITERS = ",;\t"
 MOST_HEAD = 1 << 16  # bytes
 NOT_CALIBRATED = "no sensor has calibrated acceleration, angular rates and Unix time"
-EXPORT_AGAIN = "Export it again from Consensys, calibrated, with Unix time in milliseconds, accelerometer and gyroscope"
+EXPORT_AGAIN = (
+    "Export the file again from Consensys, calibrated, with Unix time in milliseconds, accelerometer and gyroscope"
+)
 
 
 @dataclass(slots=True)

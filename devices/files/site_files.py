@@ -47,7 +47,7 @@ def read_site(
         table = read_parquet(path, where, NUMERIC) if path.suffix == ".parquet" else read_csv(path, where, NUMERIC)
     except OSError as error:
         why = error.strerror
-        raise FileRefusedError(where, "the file cannot be read ({why})", "Check its permissions", why=why) from error
+        raise FileRefusedError(where, "the file cannot be read ({why})", "Check the permissions", why=why) from error
     missing = [name for name in REQUIRED if name not in table.numbers]
     if missing:
         names = ", ".join(missing)

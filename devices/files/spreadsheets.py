@@ -68,7 +68,7 @@ def read_xlsx(path: Path, where: str, numeric: Collection[str], header_names: st
     if find_spec("openpyxl") is None:
         raise FileRefusedError(
             where,
-            "reading it needs {library}, which is not installed",
+            "reading the file needs {library}, which is not installed",
             "Install gaitwright[imports]",
             library="openpyxl",
         )
@@ -84,7 +84,7 @@ def read_xlsx(path: Path, where: str, numeric: Collection[str], header_names: st
                     return found
     except DAMAGED as error:
         raise FileRefusedError(
-            where, "this is not a readable Excel file ({why})", COPY_AGAIN, why=quoted(error)
+            where, "the file is not a readable Excel file ({why})", COPY_AGAIN, why=quoted(error)
         ) from error
     raise FileRefusedError(where, "column {name} is missing", CORRECT_IT, name=header_names)
 
@@ -111,7 +111,7 @@ def _read_sheet(
     numbers: list[int] = []
     for number, row in enumerate(rows, first):
         if number > MOST_ROWS:
-            raise FileRefusedError(where, "it refers to rows beyond {most}", COPY_AGAIN, most=MOST_ROWS)
+            raise FileRefusedError(where, "the file refers to rows beyond row {most}", COPY_AGAIN, most=MOST_ROWS)
         cells = [row[place] if place < len(row) else None for place in places.values()]
         if any(cell not in (None, "") for cell in cells):
             values.append([_number(cell, f"{where}, row {number}") for cell in cells])

@@ -179,7 +179,9 @@ def read_parquet(path: Path, where: str, numeric: Collection[str]) -> Table:
     except pa.ArrowMemoryError:
         raise
     except (pa.ArrowException, OSError, ValueError, OverflowError) as error:
-        raise FileRefusedError(where, "this is not a readable Parquet file ({why})", COPY_AGAIN, why=error) from error
+        raise FileRefusedError(
+            where, "the file is not a readable Parquet file ({why})", COPY_AGAIN, why=error
+        ) from error
     return Table(numbers, texts, arrow.num_rows, lambda row: f"row {row + 1}")
 
 
@@ -212,11 +214,13 @@ def _read_header(
         try:
             text = raw.decode("utf-8-sig" if number == 1 else "utf-8").strip(" \r\n")
         except UnicodeDecodeError as error:
-            raise FileRefusedError(f"{where}, line {number}", "this is not UTF-8 text", CORRECT_IT) from error
+            raise FileRefusedError(f"{where}, line {number}", "the file is not UTF-8 text", CORRECT_IT) from error
         if "\r" in text:
-            raise FileRefusedError(f"{where}, line {number}", "there is a carriage return within the line", CORRECT_IT)
+            raise FileRefusedError(
+                f"{where}, line {number}", "the line contains a line break (carriage return)", CORRECT_IT
+            )
         if "\0" in text or len(raw) == LONGEST_HEADER:
-            raise FileRefusedError(f"{where}, line {number}", "this is not a table but binary data", CORRECT_IT)
+            raise FileRefusedError(f"{where}, line {number}", "the file is not a table but binary data", CORRECT_IT)
         if not text or (comment is not None and text.startswith(comment)):
             continue
         delimiter = max(delimiters, key=text.count)
@@ -333,7 +337,7 @@ def _refuse_line(
         try:
             text = line.decode()
         except UnicodeDecodeError as error:
-            raise FileRefusedError(here, "this is not UTF-8 text", COPY_AGAIN) from error
+            raise FileRefusedError(here, "the file is not UTF-8 text", COPY_AGAIN) from error
         if text.count('"') % 2:
             raise FileRefusedError(here, "a quotation mark is not closed", CORRECT_IT)
         try:
@@ -351,7 +355,7 @@ def _refuse_line(
         if len(cells) > len(names):
             raise FileRefusedError(
                 here,
-                "the line has {count} columns, the header {whole}",
+                "the line has {count} columns, but the header has {whole}",
                 CORRECT_IT,
                 count=len(cells),
                 whole=len(names),

@@ -199,7 +199,7 @@ def _straightened(stamp_s: FloatArray, rate_hz: float, clock: FileClock) -> Stra
     if straight is not None and abs(straight.rate_hz / rate_hz - 1.0) > MOST_OFF_RATE:
         raise FileRefusedError(
             f"{clock.where}, {clock.place(0).partition(',')[0]}",
-            "its times give {found} samples per second, expected {reported}",
+            "the times in the file give {found} samples per second, expected {reported}",
             SEND_RATE,
             found=f"{straight.rate_hz:.4g}",
             reported=f"{rate_hz:g}",

@@ -90,7 +90,7 @@ def read_xdf(path: Path) -> XdfRecording:
     """
     if find_spec(LIBRARY) is None:
         raise FileRefusedError(
-            path.name, "reading it needs {library}, which is not installed", INSTALL_IT, library=LIBRARY
+            path.name, "reading the file needs {library}, which is not installed", INSTALL_IT, library=LIBRARY
         )
     import pyxdf  # an extra
 
@@ -118,7 +118,7 @@ def read_xdf(path: Path) -> XdfRecording:
                 started,
             )
     except DAMAGES as error:
-        raise FileRefusedError(path.name, "this cannot be read as XDF; the file may be damaged", COPY_AGAIN) from error
+        raise FileRefusedError(path.name, "the file cannot be read as XDF and may be damaged", COPY_AGAIN) from error
 
 
 def _looked_through(file: BinaryIO, size: int) -> tuple[dict[int, Element], set[int], str]:

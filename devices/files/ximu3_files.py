@@ -70,7 +70,9 @@ def _sensor(path: Path) -> ImportedSensor:
     block, findings = _of_table(path / INERTIAL if path.is_dir() else path) if is_table else _of_bytes(path)
     if not len(block):
         raise FileRefusedError(
-            path.name, "it contains no inertial messages", "Set the sensor to send them, and record again"
+            path.name,
+            "the file contains no inertial messages",
+            "Set the sensor to send inertial messages, and record again",
         )
     check_magnitudes(block.acc_m_s2, block.gyr_rad_s, block.sensor, path.name, gyr_unit="deg/s", is_export=is_table)
     step_s = np.diff(block.time_s)

@@ -39,8 +39,8 @@ FINE_TICKS_PER_S = 10_000.0
 FINE_TURNS_AT = 2.0**32
 ROTATION_ERROR = 0.01  # of a matrix or norm; six decimals leave 1e-5
 LARGEST_RATE_RAD_S = 35.0  # 2000 deg/s, the widest range of these sensors
-EXPORT_AGAIN = "Export it again from MT Manager"
-WITH_IT = "Export it again from MT Manager with these data"
+EXPORT_AGAIN = "Export the file again from MT Manager"
+WITH_IT = "Export the file again from MT Manager, including the missing data"
 
 
 @dataclass(frozen=True, slots=True)
@@ -90,7 +90,7 @@ def read_mtmanager(path: Path) -> MtFile:
         raise FileRefusedError(
             where,
             "there are neither angular rates (Gyr_X) nor an orientation to derive them from",
-            "Export it again from MT Manager with one of them",
+            "Export the file again from MT Manager with angular rates or orientation",
         )
     settings = dict(line.split(":", 1) for line in comments if ":" in line)
     rate_hz = _header_rate(settings) or _fine_rate(table, counter)
@@ -215,8 +215,8 @@ def _common_rate(files: Sequence[MtFile], asked_hz: float | None) -> float:
     if not rates_hz:
         raise FileRefusedError(
             ", ".join(file.path.name for file in files),
-            "its sample rate is missing",
-            "Give it in Hz (--rate), as set in MT Manager for the recording",
+            "the sample rate is missing",
+            "Give the sample rate in Hz (--rate), as set in MT Manager for the recording",
         )
     (first, rate_hz), *others = rates_hz.items()
     for name, other_hz in others:
@@ -224,7 +224,7 @@ def _common_rate(files: Sequence[MtFile], asked_hz: float | None) -> float:
             raise FileRefusedError(
                 name,
                 "the update rate is {here} Hz, but {there} Hz in {other}",
-                "Import files of one trial, with its recording rate",
+                "Import files of one trial only, and give its recording rate",
                 here=f"{other_hz:g}",
                 other=first,
                 there=f"{rate_hz:g}",
@@ -276,7 +276,7 @@ def _check_units(file: MtFile) -> None:
     if 0.7 < median < 1.4:
         raise FileRefusedError(
             where,
-            "the median acceleration is {middle}, as if in g and not in m/s2",
+            "the median acceleration is {middle}; the unit seems to be g and not m/s2",
             EXPORT_AGAIN,
             middle=f"{median:.2f}",
         )
@@ -284,7 +284,7 @@ def _check_units(file: MtFile) -> None:
         raise FileRefusedError(
             where,
             "the median acceleration is {middle} m/s2, as if gravity had been removed",
-            "Export it again from MT Manager with Acc, not with FreeAcc",
+            "Export the file again from MT Manager with Acc, not with FreeAcc",
             middle=f"{median:.2f}",
         )
     if file.gyr_rad_s is None:

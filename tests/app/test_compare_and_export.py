@@ -226,4 +226,4 @@ def test_export_states_what_would_leave_and_writes_nothing(
     assert "Nothing was written." in stated[0]
     assert list(tmp_path.iterdir()) == listed
     assert main(["export", str(folders[1]), "--as", "xlsx", "--identified", "--preview"]) == 2
-    assert "identified data are exported unchanged" in capsys.readouterr().err
+    assert "data that identify the patient are exported unchanged" in capsys.readouterr().err

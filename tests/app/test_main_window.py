@@ -409,7 +409,7 @@ def test_the_wait_after_wrong_passphrases_outlives_the_program(qtbot: QtBot, ope
     for _ in range(6):
         with suppress(KeyRefusedError), delay.trying("hk"):
             raise KeyRefusedError(
-                "This passphrase does not open the library", "Enter it again, or use the recovery key"
+                "This passphrase does not open the library", "Enter the passphrase again, or use the recovery key"
             )
     window = open_window(folder)
     assert window.entry is not None

@@ -65,15 +65,20 @@ def found_share(name: str, kind: ComparisonKind, change: float, draws: int, seed
     """How often a true change is called larger than its error; with a change of 0, how often wrongly."""
     figure, sigma = FIGURES[name], sigma_of(name, kind)
     assert sigma is not None
-    spread = sigma.value * (0.01 * figure.mean if sigma.is_relative else 1.0)
+    spread = sigma.of(figure.mean, SPEED_M_S)
     rng, found = np.random.default_rng(seed), 0
     for _ in range(draws):
         one, other = (
             mean_of_strides(strides(figure, figure.mean + rng.normal(0.0, spread) + more, rng))
             for more in (change, 0.0)
         )
-        found += compare(name, kind, one, other, (READ, READ)).judgement is Judgement.EXCEEDS_ERROR
+        reported = compare(name, kind, one, other, (READ, READ), speeds_m_s=(SPEED_M_S, SPEED_M_S))
+        found += reported.is_worth_a_sentence if is_on_page_one else _is_marked(reported, kind)
     return found / draws
+
+
+def _is_marked(found: Difference, kind: ComparisonKind) -> bool:
+    return found.mark is Mark.HEALTHY if kind is ComparisonKind.LEGS else found.exceeds
 
 
 def smallest_found(name: str, kind: ComparisonKind, draws: int) -> float:

@@ -299,9 +299,9 @@ def _of_earlier_visits(request: ReportRequest) -> set[float]:
         for walked in visit.course.conditions if visit.course is not None else ():
             for figure in walked.figures:
                 now = last.course.conditions[0].figure(figure.column, figure.side) if last and last.course else None
-                values = [figure.found.mean, 2 * figure.whisker]
+                values = [figure.found.mean, 2 * figure.whisker_at(math.nan)]
                 if now is not None:
-                    error = math.hypot(2 * figure.whisker, 2 * now.whisker) / math.sqrt(2)
+                    error = math.hypot(2 * figure.whisker_at(math.nan), 2 * now.whisker_at(math.nan)) / math.sqrt(2)
                     rounded = abs(round(now.found.mean) - round(figure.found.mean))
                     values += [now.found.mean - figure.found.mean, error, math.ceil(error), rounded]
                 found |= {abs(value) for value in values if math.isfinite(value)}

@@ -122,7 +122,7 @@ def batch_at(out: Path) -> Iterator[BatchFolder]:
     mark = read_mark(out)
     if mark is None:
         if out.exists() and not (out.is_dir() and _is_begun_or_empty(out)):
-            raise FileRefusedError(str(out), "this already exists and is not a batch", "Choose another --out")
+            raise FileRefusedError(str(out), "this already exists and is not a batch analysis", "Choose another --out")
         (out / FOLDER).mkdir(parents=True, exist_ok=True)
     try:
         with held(out / FOLDER / LOCK):

@@ -64,7 +64,9 @@ def _session_folders(folder: Path, out: Path) -> Iterator[Path]:
 
 def _refuse(problem: OSError) -> None:
     what = f"this folder cannot be looked into ({problem.strerror})"
-    raise FileRefusedError(str(problem.filename), what, "Check its permissions, or move it elsewhere") from problem
+    raise FileRefusedError(
+        str(problem.filename), what, "Check the permissions of this folder, or move it elsewhere"
+    ) from problem
 
 
 def _own_name(place: Path) -> tuple[str, Path]:

@@ -31,7 +31,9 @@ class LibrarySessions:
         self._ids = {str(one.id): one.id for one in sorted(listed, key=lambda one: one.id) if one.recordings}
         self._without = len(listed) - len(self._ids)
         if not self._ids:
-            raise FileRefusedError(str(opened.folder), "no session in it has a recording", "Choose another library")
+            raise FileRefusedError(
+                str(opened.folder), "no session in this library has a recording", "Choose another library"
+            )
 
     @property
     def names(self) -> Sequence[str]:
@@ -66,7 +68,9 @@ class LibrarySessions:
         except JournalRefusedError as refusal:
             raise FileRefusedError(refusal.where, refusal.what, refusal.remedy) from refusal
         if not session.recordings:
-            raise FileRefusedError(name, "no recording of this session can be read", "Recover the library first")
+            raise FileRefusedError(
+                name, "no recording of this session can be read", "Recover the recordings of the library first"
+            )
         pseudonyms = Pseudonyms(opened.library.pseudonyms_key)
         reported = ReportedOf(
             pseudonyms.code(visit.patient_id, session.is_simulated),

@@ -133,7 +133,7 @@ def _check_worker(task: BatchTask) -> None:
     here = one_line(socket.gethostname())
     if software() != task.software:
         what = "the worker here has another version of Gaitwright"
-        raise FileRefusedError(here, what, "Install the same version on all of them")
+        raise FileRefusedError(here, what, "Install the same version on all computers")
     remedy = "FOLDER and OUT have to be on a disk that all workers see under the same path"
     if read_mark(task.batch.out) != task.batch.mark:
         raise FileRefusedError(here, "the worker here cannot access OUT", remedy)

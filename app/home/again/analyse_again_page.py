@@ -108,8 +108,8 @@ class AnalyseAgainPage(Themed):
         self._lead = Text(
             look,
             tr(
-                "Uses this version and all processors. Entries, corrections and exclusions are kept. Results "
-                "and progress are saved in the library."
+                "The sessions are analysed with this version, on all processors. Entries, corrections and "
+                "exclusions are kept. Results and progress across visits are saved in the library."
             ),
             tone="ink2",
             wraps=True,

@@ -281,7 +281,7 @@ def _more(found: GroupAnswer, drawn: int) -> str:
     """How many groups are not in sight, and where they are."""
     stated = []
     if len(found.reported) > drawn:
-        reported = tr("The chart shows the {drawn} groups with the most sessions, of {count}.")
+        reported = tr("Of {count} groups, the chart shows the {drawn} with the most sessions.")
         stated.append(reported.format(drawn=drawn, count=len(found.reported)))
     if len(found.rows) > MOST_ROWS:
         stated.append(

@@ -44,8 +44,8 @@ def _row(found: GroupAnswer, row: GroupRow, words: MeasureWords, longest: int) -
         (tr("Excluded"), str(out)),
     )
     reported = tr(
-        "{group}: excluded {withheld} not reported, {care} caution, {missing} not measured; sessions "
-        "without a value: {sessions}."
+        "{group}. Excluded (counted per leg and walk): {withheld} not reported, {care} rated caution, "
+        "{missing} not measured. Sessions without a value: {sessions}."
     )
     hint = reported.format(
         group=name,

@@ -111,7 +111,7 @@ def left_out(found: GroupAnswer) -> str:
         (missing, tr("{count} not measured")),
     ]
     reported = [words.format(count=count) for count, words in parts if count]
-    stated = [tr("Excluded (each one leg in one walk): {what}.").format(what=joined(reported))] if reported else []
+    stated = [tr("Excluded (counted per leg and walk): {what}.").format(what=joined(reported))] if reported else []
     if count := found.simulated_left_out:
         simulated = tr_n("{count} simulated session is excluded.", "{count} simulated sessions are excluded.", count)
         stated.append(simulated.format(count=count))

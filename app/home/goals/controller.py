@@ -129,7 +129,7 @@ class GoalsOfPatient(QObject):
             now = datetime.datetime.now().astimezone()
             what = tr("{goal} was changed in the meantime ({who}). That change stays.")
             stated = what.format(goal=field_word(contest.field), who=by_words(contest.by, contest.at, now))
-            self.reported.emit(stated, tr("Check the current value. Yours is in the history."))
+            self.reported.emit(stated, tr("Check the current value. Your value is in the history."))
         else:
             self.page.show_agreed()
         self.kept.emit()

@@ -73,7 +73,9 @@ class GoalsPage(TallPage):
         names = {GoalOf.LEFT: tr("Left"), GoalOf.RIGHT: tr("Right"), GoalOf.BETWEEN: tr("Left vs right")}
         self.whose = Segmented(look, tr("Side"), [(of.value, word, "") for of, word in names.items()])
         self.sense = Segmented(look, tr("Limit"), [(AT_LEAST, tr("At least"), ""), (AT_MOST, tr("At most"), "")])
-        self.apart = Text(look, tr("The legs should differ by no more than this, in either direction."), wraps=True)
+        self.apart = Text(
+            look, tr("The legs should differ by no more than the value entered, in either direction."), wraps=True
+        )
         self.value = NumberField(look, tr("Value"), low=LEAST, high=1.0, decimals=2)
         self.weeks = NumberField(look, tr("Within"), low=1, high=LONGEST_WEEKS, unit=tr("weeks"), is_optional=True)
         self.note = Field(look, tr("Note"), is_optional=True, most=MOST_NOTE)

@@ -259,7 +259,7 @@ class Importing(QObject):
         self._show_next()
         if imported.differing:
             self.reported.emit(
-                tr("{code}: the folder has other details ({what}).").format(
+                tr("{code}: details in the folder differ from the library ({what}).").format(
                     code=imported.patient.details.code, what=", ".join(_named(name) for name in imported.differing)
                 ),
                 tr("The library's details are kept."),

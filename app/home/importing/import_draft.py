@@ -198,7 +198,9 @@ class DraftCards(QWidget):
         if self._chains is not None:
             names = {row.sensor.key: sensor_name(row.sensor) for row in self._sensors}
             first = joined([names[key] for key in self._chains.legs[0].sensors])
-            asked = tr("By movement, {sensors} are on one leg, from the thigh down. Which leg is it?")
+            asked = tr(
+                "According to the movement, {sensors} are on one leg, listed from the thigh down. Which leg is it?"
+            )
             doubt = "" if self._chains.is_certain else tr("This is uncertain. Compare it with your notes.")
             self._question.setText(" ".join(filter(None, [asked.format(sensors=first), doubt])))
 

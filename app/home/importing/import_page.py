@@ -175,7 +175,9 @@ class ImportPage(Themed):
         self.findings.hide()
 
     def _on_day_edited(self, _text: str) -> None:
-        self.day_field.set_wrong("" if self.day is not None else tr("Enter it as year-month-day, such as 2026-03-09."))
+        self.day_field.set_wrong(
+            "" if self.day is not None else tr("Enter the date as year-month-day, such as 2026-03-09.")
+        )
         self.changed.emit()
 
     def _on_read_again(self) -> None:

@@ -79,7 +79,7 @@ def kind_origin_words(origin: "Origin") -> str:
     """Where the kind of a recording comes from."""
     return {
         "name": tr("by its name"),
-        "motion": tr("by movement: almost none"),
+        "motion": tr("detected: almost no movement"),
         "nothing": tr("assumed to be a walk: unclear from its name"),
     }[origin.value]
 

@@ -31,8 +31,8 @@ class JoinPage(EntryPage):
         self._hint = Text(
             look,
             tr(
-                "Enter the shared storage only if it has another name on this computer than on other "
-                "workstations. Log in with your passphrase for the clinic's library."
+                "Enter the shared storage only if its path on this computer differs from other workstations. "
+                "Log in with your passphrase for the clinic's library."
             ),
             tone="ink2",
             wraps=True,

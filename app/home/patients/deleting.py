@@ -94,7 +94,9 @@ class Deleting(QObject):
         def restore(opened: "OpenedLibrary") -> UUID:
             return opened.library.patients.restore(opened.library.patients.get(patient_id)).id
 
-        self._ask(tr("{code} is deleted, permanently in 30 days.").format(code=goes.code), delete, restore)
+        self._ask(
+            tr("{code} was deleted. The deletion becomes permanent in 30 days.").format(code=goes.code), delete, restore
+        )
 
     def session(self, session_id: UUID) -> None:
         def delete(opened: "OpenedLibrary") -> UUID:
@@ -107,7 +109,7 @@ class Deleting(QObject):
             opened.library.sessions.restore(session)
             return session.patient_id
 
-        self._ask(tr("The session is deleted, permanently in 30 days."), delete, restore)
+        self._ask(tr("The session was deleted. The deletion becomes permanent in 30 days."), delete, restore)
 
     def undo(self) -> None:
         last, self._last = self._last, None

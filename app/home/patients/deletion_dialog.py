@@ -32,10 +32,11 @@ class DeletionDialog(QDialog):
         self.setAttribute(Qt.WidgetAttribute.WA_DeleteOnClose)
         self._title = Text(look, title, size=20, weight=SEMIBOLD, wraps=True)
         self.goes = Text(look, _what_goes(goes), wraps=True)
-        until = tr("You can undo this now, or restore it in Settings until {day}. Then it is destroyed.").format(
-            day=date((now + KEPT_DELETED).date())
-        )
-        self.until = Text(look, f"{until} {tr('Earlier backups keep it longer.')}", wraps=True)
+        until = tr(
+            "You can undo the deletion right afterwards, or restore the data in Settings until {day}. "
+            "After that, the data are destroyed."
+        ).format(day=date((now + KEPT_DELETED).date()))
+        self.until = Text(look, f"{until} {tr('Earlier backups keep the data longer.')}", wraps=True)
         self.others = Notice(look, 16)
         self.others.setVisible(bool(words := _others(goes, now)))
         if words:

@@ -115,8 +115,8 @@ class StepsPreview(Themed):
             (tr("Stand still"), tr("{count} s").format(count=3)),
             (tr("Free motion"), tr("{count} s").format(count=20)),
             (tr("Walking"), tr("{count} s").format(count=60)),
-            (tr("Results"), tr("at once")),
-            (tr("Report"), tr("at once")),
+            (tr("Results"), tr("immediately")),
+            (tr("Report"), tr("immediately")),
         )
         self.setSizePolicy(QSizePolicy.Policy.Expanding, QSizePolicy.Policy.Fixed)
         self.setAccessibleName(tr("Steps of a session"))

@@ -79,7 +79,8 @@ class LibraryNotices(QObject):
                 tr("You are working offline, without the clinic's server."),
                 tr(
                     "New sessions stay on this computer. They move to the server at the first login after it "
-                    "responds again. Clinic patients are not shown. They are matched later by code."
+                    "responds again. Clinic patients are not shown. The sessions are matched to them later by "
+                    "patient code."
                 ),
             )
         elif state.still_away is not None:

@@ -146,7 +146,7 @@ class Recovering(QObject):
         for what, remedy in dict.fromkeys(outcome.refused):
             messages.append(_Message(f"{capitalised(tr(what))}.", f"{tr(remedy)}."))
         if self._lost:
-            one = tr("{time} of a recording are not assigned to a session.")
+            one = tr("A recording of {time} is not assigned to a session.")
             many = tr("{count} recordings, {time} in total, are not assigned to a session.")
             what = (one if len(self._lost) == 1 else many).format(
                 count=len(self._lost), time=length(sum(one.recorded_s for one in self._lost))
@@ -219,12 +219,15 @@ def _received_messages(received: "Sequence[Recovered]", names: Mapping[UUID, str
         what = tr("The program closed during recording. {time} of {name} was recovered.").format(
             time=length(received[0].recorded_s), name=_name(received[0].stored, names)
         )
-        whole, cut = tr("It is complete."), tr("It is complete up to the last record on disk.")
-        look = tr("Review it, then include or exclude it.")
+        whole, cut = (
+            tr("The recording is complete."),
+            tr("The recording is complete up to the last data record on disk."),
+        )
+        look = tr("Review the recording, then include or exclude it.")
     else:
         several = tr("The program closed during recording. {count} recordings, {time} in total, were recovered.")
         what = several.format(count=len(received), time=length(sum(one.recorded_s for one in received)))
-        whole, cut = tr("They are complete."), tr("They are complete up to the last record on disk.")
+        whole, cut = tr("They are complete."), tr("They are complete up to the last data record on disk.")
         look = tr("Review them, then include or exclude them.")
     kept = [whole, look] if is_whole else [cut, _missing(received), look, recovery_costs()]
     return [_Message(what, " ".join(filter(None, kept)))]
@@ -251,7 +254,7 @@ def _adopted_messages(adopted: "Sequence[Recovered]", names: Mapping[UUID, str])
         what = tr("{time} of {name} was recorded while the library did not respond.").format(
             time=length(adopted[0].recorded_s), name=_name(adopted[0].stored, names)
         )
-        return [_Message(what, tr("It is now in its session."))]
+        return [_Message(what, tr("The recording is now in its session."))]
     what = tr("{count} recordings were made while the library did not respond.").format(count=len(adopted))
     return [_Message(what, tr("They are now in their sessions."))]
 
@@ -294,4 +297,4 @@ def _asked_messages(
     if len(walks) > 1:
         return [_Message(of_many.format(count=len(walks)), tr("Review them, then include or exclude them."))]
     what = of_one.format(name=_name(walks[0].recording, names), code=walks[0].patient_code)
-    return [_Message(what, tr("Review it, then include or exclude it."))]
+    return [_Message(what, tr("Review the recording, then include or exclude it."))]

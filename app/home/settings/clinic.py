@@ -86,7 +86,7 @@ class ClinicSettings(QObject):
         self._page.station.show_copy(sentence, is_running=True)
 
     def _on_copied(self, moved: "Moved") -> None:
-        stated = tr("{what} are copied to {folder}. The same passphrases open the copy.")
+        stated = tr("{what} were copied to {folder}. The same passphrases open the copy.")
         self._page.station.show_copy(stated.format(what=_counted(moved), folder=self._copied_to))
 
     def _on_copy_refused(self, what: str, remedy: str) -> None:
@@ -122,8 +122,9 @@ class ClinicSettings(QObject):
     def _on_moved(self, moved: "Moved") -> None:
         self._show_moved()
         stated = tr(
-            "{what} are on the clinic's server, checked row by row. Other workstations can join now. The "
-            "previous library is kept as {file}. Remove it once you are sure."
+            "{what} are now on the clinic's server, checked row by row. Other workstations can join now. "
+            "The previous library is kept as {file}. Remove that file once you are sure that nothing is "
+            "missing."
         )
         self._page.station.show_copy(stated.format(what=_counted(moved), file=BEFORE))
 
@@ -141,8 +142,8 @@ class ClinicSettings(QObject):
     def _on_back(self, moved: "Moved") -> None:
         self._show_moved()
         stated = tr(
-            "{what} are on this computer again. The server library is closed to all workstations. Have "
-            "its database and recordings removed once you are sure."
+            "{what} are on this computer again. The library on the server is closed to all workstations. "
+            "Once you are sure that nothing is missing, have its database and recordings removed there."
         )
         self._page.more_stations.show_move(stated.format(what=_counted(moved)))
 

@@ -43,9 +43,9 @@ class StationCard(SettingsCard):
         self._copy_hint = Text(
             look,
             tr(
-                "The server's administrator backs it up with the server's own tools. First the database with "
-                "pg_dump, then the shared storage of the recordings as a copy. A copy in a folder is a "
-                "library that opens without the server."
+                "The server's administrator backs up the library with the server's own tools. First pg_dump "
+                "saves the database. Then the shared storage of the recordings is copied. A copy in a folder "
+                "is itself a library, which opens without the server."
             ),
             tone="ink2",
             wraps=True,
@@ -55,15 +55,15 @@ class StationCard(SettingsCard):
         self._back_hint = Text(
             look,
             tr(
-                "The library can also leave the server. It is then on this computer only, as before. No other "
-                "workstation can open it."
+                "The library can also be moved back from the server. It is then on this computer only, as "
+                "before. No other workstation can open it."
             ),
             tone="ink2",
             wraps=True,
         )
         self.back_stated = Text(look, weight=MEDIUM, wraps=True)
         self.back = Button(look, tr("Move back to a folder"))
-        self.sure = Button(look, tr("Move back and close it to all others"))
+        self.sure = Button(look, tr("Move library back, close to all others"))
         self.keep = Button(look, tr("Cancel"), ButtonKind.QUIET)
         self.fill(self.server, self.place, self.waiting, self._copy_hint, self.copy_stated)
         self.add_left(self.copy)
@@ -147,9 +147,9 @@ class MoreStationsCard(SettingsCard):
             look,
             tr(
                 "Several computers can share this library on your clinic's PostgreSQL server. The server's "
-                "administrator can read patient codes, user names and typed text. Recordings stay encrypted. "
-                "Every workstation then needs the server to save. It keeps recording if the server does not "
-                "respond."
+                "administrator can then read patient codes, user names and entered text. Recordings stay "
+                "encrypted. Every workstation then needs the server to save data. If the server does not "
+                "respond, the workstation keeps recording."
             ),
             tone="ink2",
             wraps=True,

@@ -231,10 +231,13 @@ class SettingsController(QObject):
         end = backup.checkpoint
         if backup.faults:
             count = len(backup.faults)
-            sentence = tr("Backed up. {count} recordings were already missing or damaged in the library.").format(
-                count=count
-            )
-        kept = tr("Its audit ends with entry {number}, {hash}. Note this to check later whether anything is missing.")
+            sentence = tr(
+                "The library is backed up. {count} of its recordings were already missing or damaged."
+            ).format(count=count)
+        kept = tr(
+            "The backup's audit log ends with entry {number}, {hash}. Note both to check later whether "
+            "any entry is missing."
+        )
         sentence = f"{sentence} {kept.format(number=end.number, hash=end.hash[:HASH_LETTERS])}"
         self.page.show_backup(sentence, self._backup_folder)
 
@@ -363,7 +366,7 @@ def _deleted_in(opened: "OpenedLibrary") -> tuple[DeletedLine, ...]:
             return ""
         until = date((at + KEPT_DELETED).astimezone().date())
         who = by_words(by.get(subject, ""), at, now)
-        return tr("Deleted: {who}. Can be restored until {day}.").format(who=who, day=until)
+        return tr("Deleted by: {who}. Can be restored until {day}.").format(who=who, day=until)
 
     return (
         *(

@@ -102,10 +102,11 @@ class OperatorsCard(SettingsCard):
         self._leaving = code
         self.show_key_change(
             tr(
-                "{code} can then no longer open this library, and it gets a new key. An old copy of its key "
-                "file, with the passphrase of {code}, then opens nothing on this computer. All other users "
-                "keep their passphrases. Earlier backups keep their old key: anyone who has one can still "
-                "read it with the old passphrase. Nothing can be recorded until the change is complete."
+                "After this, {code} can no longer open this library. The library gets a new key. An old copy "
+                "of its key file then opens nothing on this computer, even with the passphrase of {code}. All "
+                "other users keep their passphrases. Earlier backups keep their old key: anyone who has such "
+                "a backup can still read it with the old passphrase. Nothing can be recorded until the key "
+                "change is complete."
             ).format(code=code)
             if code
             else "",
@@ -122,7 +123,7 @@ class OperatorsCard(SettingsCard):
         self.code.set_text(operator.code)
         self.name.set_text(operator.name)
         self.role.setCurrentIndex(max(self.role.findText(operator.role), 0))
-        self.first.set_wrong(tr("Enter a first passphrase. The old one is no longer valid."))
+        self.first.set_wrong(tr("Enter an initial passphrase. The user's old passphrase is no longer valid."))
         self.first.setFocus()
 
     def _on_remove(self) -> None:

@@ -248,8 +248,8 @@ class SettingsPage(TallPage):
         self._is_backing_up = False
         self.backup_card = self._card(tr("Backup"))
         hint = tr(
-            "An encrypted second copy of all patients and recordings, best kept on another disk. Deleted "
-            "data stay in older copies for up to 90 days."
+            "A backup is an encrypted copy of all patient data and recordings. It is best kept on another "
+            "disk. Deleted data stay in older backups for up to 90 days."
         )
         self.backup_folder = Text(look, tone="ink2", wraps=True)
         self.backup_stated = Text(look, weight=MEDIUM, wraps=True)

@@ -47,9 +47,9 @@ from core.samples import Patient, Session
 TEMPLATE = files("resources") / "report" / "agreement.typ"
 NAME_LENGTH, SENTENCE_LENGTH = 40, 400
 OVER_TIME = {
-    JointKind.KNEE: later("Knee over time"),
-    JointKind.ANKLE: later("Ankle over time"),
-    JointKind.HIP: later("Hip over time"),
+    JointKind.KNEE: later("Knee while walking"),
+    JointKind.ANKLE: later("Ankle while walking"),
+    JointKind.HIP: later("Hip while walking"),
 }
 
 
@@ -132,7 +132,9 @@ def _pages(study: AgreementStudy, patient: Patient, pictures: Mapping[str, Pictu
 
 def _what_was_compared(study: AgreementStudy) -> str:
     names = dict.fromkeys(walk.reference.file for walk in study.walks if walk.reference is not None)
-    stated = tr("Measured minus reference. Reference: {files}. Walks, numbered as below: {walks}.").format(
+    stated = tr(
+        "Differences are measured minus reference. Reference: {files}. Walks, numbered as below: {walks}."
+    ).format(
         files=", ".join(typed(name, NAME_LENGTH) for name in names),
         walks=", ".join(f"{k} {typed(w.recording.name, NAME_LENGTH)}" for k, w in enumerate(study.walks, 1)),
     )
@@ -244,10 +246,10 @@ def _of_events(study: AgreementStudy) -> list[str]:
 
 def _what_is_not_shown() -> str:
     return tr(
-        "Z is the RMSE as measured. It includes the difference between the two zeros. M has the mean "
-        "removed. SD in both tables is between walks (n − 1), as in Table 1 of Seel, Raisch and "
-        "Schauer 2014, doi 10.3390/s140406891. Limits: bias ± 1.96 SD within and between walks. The "
-        "stated SD applies to the curve shape, not to the zero. Time offset and sign were found from "
-        "the rates of the same angles. A delay common to all joints is therefore not included in "
-        "these errors."
+        "Z is the RMSE as measured. It includes the difference between the zero angles of both "
+        "systems. M is the RMSE with the mean removed. SD in both tables is the SD between walks (n − "
+        "1), as in Table 1 of Seel, Raisch and Schauer 2014, doi 10.3390/s140406891. Limits of "
+        "agreement: bias ± 1.96 SD within and between walks. The stated SD applies to the curve "
+        "shape, not to the zero angle. Time offset and sign were found from the angular rates of the "
+        "same angles. A delay common to all joints is therefore not included in these errors."
     )

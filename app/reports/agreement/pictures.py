@@ -163,13 +163,13 @@ def caption(study: AgreementStudy, kind: JointKind) -> str:
     name = "" if walk is None else walk.recording.name
     if kind is JointKind.HIP:
         return tr(
-            "{walk}, the walk with the median error. Colour: angle from this program. Long dashes: "
-            "reference, matched in time and sign. Below: program minus reference, mean removed. Strip: "
-            "loading (black), foot flat, pre-swing, swing (white)."
+            "{walk}, the walk with the median error. Coloured line: angle from this program. Long dashes: "
+            "reference, matched in time and sign. Below: program minus reference, mean removed. Strip of "
+            "gait phases: loading (black), foot flat, pre-swing, swing (white)."
         ).format(walk=capitalised(name))
     return tr(
-        "{walk}, the walk with the median error. Colour: angle from this program. Long dashes: "
+        "{walk}, the walk with the median error. Coloured line: angle from this program. Long dashes: "
         "reference, matched in time and sign. Dots: published fusion (eq 15), same axes. Below: "
-        "program minus reference, mean removed. Strip: loading (black), foot flat, pre-swing, swing "
-        "(white)."
+        "program minus reference, mean removed. Strip of gait phases: loading (black), foot flat, "
+        "pre-swing, swing (white)."
     ).format(walk=capitalised(name))

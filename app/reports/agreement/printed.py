@@ -22,10 +22,11 @@ KINDS = {JointKind.KNEE: later("knee"), JointKind.ANKLE: later("ankle"), JointKi
 def optical_words() -> str:
     """What two optical systems would differ by, and where that is from."""
     return tr(
-        "Optical models applied to one walk differ by {low} to {high}° at the knee, and by 6 to 8° in "
-        "standing (measured by the developers on recordings of people, not published). Between two "
-        "sessions with one system, most reports give less than 5° (McGinley et al. 2009, Gait & "
-        "Posture 29:360, a review †). A smaller difference does not show which system is right."
+        "Different optical models applied to one walk differ by {low} to {high}° at the knee, and by "
+        "6 to 8° in standing (measured by the developers on recordings of people, not published). "
+        "Between two sessions with one system, most reports give differences below 5° (McGinley et "
+        "al. 2009, Gait & Posture 29:360, a review †). A smaller difference does not show which "
+        "system is right."
     ).format(low=OPTICAL_DEG[0], high=OPTICAL_DEG[1])
 
 
@@ -88,7 +89,7 @@ def printed(study: AgreementStudy, patient: Patient) -> Iterator[str]:
             yield f"  {number}: {clock_words(walk)}"
     yield from _events(study)
     for one in study.left_over:
-        yield f"- {tr('{name}: no walk and trial match, so it was not compared.').format(name=one_line(one))}"
+        yield f"- {tr('{name}: no matching counterpart, so it was not compared.').format(name=one_line(one))}"
     yield from (f"- {stated}" for stated in verdict_words(study))
     if walks:
         yield ""
@@ -108,8 +109,8 @@ def clock_words(walk: ComparedWalk) -> str:
     assert found is not None  # only walks with angles are reported
     stated = [
         tr(
-            "{walk}: the reference's clock shows {offset_s:+.4f} s (SD {offset_sd_ms:.1f} ms) and runs {rate:+.0f} ppm "
-            "(SD {rate_sd:.0f})"
+            "{walk}: the reference's clock differs by {offset_s:+.4f} s (SD {offset_sd_ms:.1f} ms) and "
+            "its rate by {rate:+.0f} ppm (SD {rate_sd:.0f})"
         ).format(
             walk=one_line(walk.recording.name),
             offset_s=found.clock.offset_s,
@@ -122,10 +123,10 @@ def clock_words(walk: ComparedWalk) -> str:
     if turned:
         stated.append(tr("sign reversed: {joints}").format(joints=", ".join(turned)))
     if not found.is_offset_certain:
-        stated.append(tr("another offset fits nearly as well, so it may be off by a stride"))
+        stated.append(tr("another time offset fits nearly as well, so this one may be wrong by one stride"))
     for trial, other in walk.more:
         name = ", ".join(filter(None, [trial.file, trial.trial.name]))
-        more = tr("offset of {name}: {offset_s:+.4f} s (SD {offset_sd_ms:.1f} ms)")
+        more = tr("time offset of {name}: {offset_s:+.4f} s (SD {offset_sd_ms:.1f} ms)")
         stated.append(
             more.format(name=one_line(name), offset_s=other.clock.offset_s, offset_sd_ms=1e3 * other.offset_sd_s)
         )
@@ -138,7 +139,7 @@ def used_words(study: AgreementStudy) -> list[str]:
     for joint in study.joints:
         walks = [walk.used[joint] for walk in study.with_angles if (joint, AngleKind.RESULT) in walk.figures]
         where = {
-            tr("{count} beyond the reference"): sum(one.outside for one in walks),
+            tr("{count} outside the reference's time span"): sum(one.outside for one in walks),
             tr("{count} in gaps"): sum(one.in_gaps for one in walks),
             tr("{count} after a strap moved"): sum(one.after_slip for one in walks),
         }
@@ -170,7 +171,7 @@ def verdict_words(study: AgreementStudy) -> list[str]:
         ]
         if names:
             stated.append(
-                tr("{joint}: not reported in {walks}. Its values are shown here as evidence.").format(
+                tr("{joint}: not reported in {walks}. Its values are shown here for checking only.").format(
                     joint=capitalised(name_of(joint)), walks=joined(names)
                 )
             )

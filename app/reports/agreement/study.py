@@ -381,20 +381,20 @@ def _refusal(
     theirs = sorted({str(joint) for one in trials for joint in one.trial.angles})
     ours = sorted({str(joint) for walk in walks for joint in walk.measured})
     if Misfit.NOT_ALIKE in misfits:
-        what = later("its angles move unlike those of any walk of the session")
+        what = later("its angles match no walk of the session")
         return FileRefusedError(
             where, what, "Give the reference of this session, and check that left and right are not swapped in it"
         )
     if Misfit.TOO_LITTLE_MOTION in misfits:
-        what = later("the joints hardly move in it, so its clock cannot be found")
-        return FileRefusedError(where, what, "Give the reference of a walk, not of standing, in degrees")
+        what = later("the joints hardly move in it, so its time offset cannot be found")
+        return FileRefusedError(where, what, "Give the reference of a walk, not of standing, with angles in degrees")
     if Misfit.TOO_SHORT in misfits:
-        what = later("there are not two seconds of motion without gaps that both systems saw")
+        what = later("both systems recorded less than two seconds of the same motion without gaps")
         return FileRefusedError(where, what, "Give the reference of a whole walk, at 20 or more samples a second")
     return FileRefusedError(
         where,
         "it contains {theirs} and the session contains {ours}, so there is nothing to compare",
-        "Give a reference of a joint with both sensors worn",
+        "Give the reference of a joint at which both sensors were worn",
         theirs=", ".join(theirs) or "no joint",
         ours=", ".join(ours) or "no joint",
     )

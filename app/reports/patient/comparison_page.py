@@ -14,6 +14,7 @@ from app.summary.comparison import Compared, Comparison, Contrast, Reservation
 from app.summary.conditions import Part, left_out_of_parts
 from app.summary.error_sources import sources_in_words
 from app.summary.facts import Facts, joint_of, part_of, role
+from app.summary.interval_words import interval_in_figures
 from app.summary.measures import MEASURES, Measure
 from app.summary.numbers_in_words import (
     CARE,
@@ -21,9 +22,9 @@ from app.summary.numbers_in_words import (
     dagger_note,
     fixed,
     judged_in_words,
+    least_error_in_words,
     marked,
     signed,
-    signed_error,
     spread,
 )
 from app.summary.plain_text import CONDITION_LENGTH, typed
@@ -37,7 +38,7 @@ from app.wording.verdicts import verdict_alone, verdict_word
 from core.body import JointKind, Side
 from core.parameters import KNEE_RANGE, STANCE
 from core.verdicts.model import Verdict, worst
-from core.verdicts.sigmas import ComparisonKind, sigma_of
+from core.verdicts.sigmas import ComparisonKind
 
 CHANGES_LENGTH = 300  # letters: three lines of the table
 PLOT_WIDTH = 53 * MM  # with the table of three parts, or a line more of words, this fills a Letter page
@@ -78,7 +79,8 @@ def not_compared_page(request: ReportRequest) -> list[Block]:
     stated = tr("The visit on {day} has no walk that can be compared.")
     if before:
         stated = tr(
-            "The visit on {day} has no walk in this condition ({condition}), so it is not compared. It has: {others}."
+            "The visit on {day} has no walk in this condition ({condition}), so it is not compared. Its "
+            "conditions: {others}."
         )
     words = stated.format(
         day=_day_of(earlier.session.started),
@@ -231,7 +233,7 @@ def _table(comparison: Comparison, shown: Facts, sides: Sequence[Side]) -> Block
     columns = [Column(tr("Measure, °"), "1fr", is_number=False), *(Column(part.letter) for part in comparison.parts)]
     for part in comparison.others:
         if is_visits:
-            columns += [Column(tr("Change 2 − 1")), Column(tr("Error")), Column(tr("Result"), is_number=False)]
+            columns += [Column(tr("Change 2 − 1")), Column(tr("likely between")), Column(tr("Result"), is_number=False)]
         else:
             base = comparison.base_of(part)
             against = tr("{this} vs {first}").format(this=part.letter, first=base.letter)
@@ -264,7 +266,8 @@ def _row(comparison: Comparison, side: Side, measure: Measure) -> list[Cell | st
         found, is_reported = compared.difference, compared.is_reported
         words = Cell(judged_in_words(found), is_bold=found.exceeds) if is_reported else _why_not(compared)
         decimals = measure.decimals
-        error = [fixed(found.error, decimals) if is_reported else NOTHING] if comparison.kind is Contrast.VISITS else []
+        is_visits = comparison.kind is Contrast.VISITS
+        error = [interval_in_figures(measure.column, found) if is_reported else NOTHING] if is_visits else []
         cells += [signed(found.difference, decimals) if is_reported else NOTHING, *error, words]
     return cells
 
@@ -290,7 +293,7 @@ def _what_else_changed(comparison: Comparison) -> str:
     else:
         stated = [tr("One session, sensors reattached between walks.")]
     if comparison.has_one_zero_throughout:
-        stated.append(tr("Same kind of standing reference in each."))
+        stated.append(tr("The standing reference is of the same kind throughout."))
     else:
         stated.append(
             tr("The standing reference is missing or of another kind: only range of motion and timing are compared.")
@@ -312,7 +315,7 @@ def _how_judged(comparison: Comparison) -> str:
     """What the error contains, with what was added for what lies between the walks."""
     kinds = {comparison.error_kind(part, comparison.base_of(part)) for part in comparison.others}
     kind = max(kinds, key=list(ComparisonKind).index)
-    knee, stance = (signed_error(sigma_of(name, kind)) for name in (KNEE_RANGE, STANCE))
+    knee, stance = (least_error_in_words(name, kind) for name in (KNEE_RANGE, STANCE))
     rows = [_compared(comparison, row.measure, row.side, row.part) for row in comparison.rows]
     reported = [row.difference for row in rows if row.is_reported and row.difference.error > 0]
     stated = tr(
@@ -320,7 +323,9 @@ def _how_judged(comparison: Comparison) -> str:
         "{sources}. Differences between walks alone account for {knee}° of knee range of motion and "
         "{stance} percentage points of stance."
     )
-    lines = tr("Vertical lines: toe\u2011off of each. {letters} mark the curves; the first is thin and pale.")
+    lines = tr(
+        "Vertical lines: toe\u2011off of each curve. {letters} name the curves; the first curve is thin and pale."
+    )
     parts = [
         *([stated.format(sources=sources_in_words(reported), knee=knee, stance=stance)] if reported else []),
         *([dagger_note()] if any(found.is_unverified for found in reported) else []),

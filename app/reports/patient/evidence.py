@@ -1,13 +1,14 @@
 """What each joint's verdict rests on, beside what it needs; and how large a difference has to be."""
 
 import math
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
+from functools import partial
 
 import numpy as np
 
 from app.reports.blocks import Block, Cell, Column, Row, heading, note, table
 from app.summary.facts import Facts, joint_of
-from app.summary.numbers_in_words import DAGGER, NOTHING, dagger_note, fixed, signed, signed_error
+from app.summary.numbers_in_words import NOTHING, dagger_note, fixed, least_error_in_words, signed
 from app.summary.quality import slipped_straps
 from app.wording.body import name_of, side_name
 from app.wording.translation import capitalised, tr
@@ -22,10 +23,12 @@ from core.samples import FloatArray
 from core.verdicts.gates import LIMITS, MIN_STRIDES_TO_SPLIT
 from core.verdicts.model import NOT_MEASURED, GateReason, JointVerdicts
 from core.verdicts.quantities import assessment_of, raw_values
-from core.verdicts.sigmas import ComparisonKind, sigma_of
+from core.verdicts.sigmas import ComparisonKind
 
 JOINT_WIDTH = "23mm"  # takes a verdict; a joint's longer name, as German has them, breaks before its side
 MARGIN_BEYOND = 100.0  # from here on, how many times better adds nothing
+Criterion = tuple[str, str, Callable[[Joint, JointCalibration], str], str]
+"""A gate, its name, what a joint has, what is required."""
 
 
 def evidence(facts: Facts) -> list[Block]:
@@ -50,30 +53,31 @@ def evidence_table(facts: Facts) -> list[Block]:
     ]
     care, most = LIMITS.axis_sd_deg
     knee, ankle = LIMITS.knee_range_deg, LIMITS.ankle_range_deg
-    gates: list[tuple[str, str, Callable[[Joint, JointCalibration], str], str]] = [
+    gates: list[Criterion] = [
         (
             "axis",
-            tr("Joint axis, 1 SD"),
+            tr("Joint axis, ± 1 SD"),
             _axis,
             tr("at most {care}°, caution up to {most}°").format(care=fixed(care, 1), most=fixed(most, 0)),
         ),
+        *_axis_of_parts(facts),
         (
             "pairing",
-            tr("Adjacent segments, margin"),
+            tr("Adjacent segments, clarity"),
             _pairing,
             tr("at least {limit}").format(limit=fixed(LIMITS.pairing_margin, 1)),
         ),
         (
             "disagreement",
-            tr("Disagreement at the joint"),
+            tr("Sensor disagreement at joint"),
             lambda _, found: NOTHING if found.disagreement is None else fixed(found.disagreement, 2),
-            tr("under {limit} to {most}, by margin").format(
+            tr("under {limit} to {most}, by clarity").format(
                 limit=fixed(DOUBTFUL_DISAGREEMENT, 2), most=fixed(MAX_DISAGREEMENT, 2)
             ),
         ),
         (
             "sign",
-            tr("Flexion or extension, margin"),
+            tr("Flexion or extension, clarity"),
             _sign,
             tr("at least {limit}, or by hand").format(limit=fixed(MIN_MARGIN, 1)),
         ),
@@ -93,7 +97,7 @@ def evidence_table(facts: Facts) -> list[Block]:
         ),
         (
             "halves",
-            tr("ROM, second half minus first"),
+            tr("ROM, second half of walk minus first"),
             lambda joint, _: _degrees(_farthest(halves_apart, facts, joint), is_signed=True),
             tr("at most {limit}°").format(limit=fixed(LIMITS.halves_deg, 0)),
         ),
@@ -137,7 +141,7 @@ def hips_table(facts: Facts) -> list[Block]:
     gates: list[tuple[str, str, Callable[[Joint, HipIdentification], str], str]] = [
         (
             "pairing",
-            tr("Adjacent segments, margin"),
+            tr("Adjacent segments, clarity"),
             lambda _, found: _margin(found.margin),
             tr("at least {limit}").format(limit=fixed(LIMITS.pairing_margin, 1)),
         ),
@@ -149,13 +153,13 @@ def hips_table(facts: Facts) -> list[Block]:
         ),
         (
             "hip_centre",
-            tr("Hip centre to pelvis, thigh sensor"),
+            tr("Hip centre to pelvis and thigh sensor"),
             lambda _, found: _cm(found.centre_proximal_m) + ", " + _cm(found.centre_distal_m),
             tr("{least} to {most} cm").format(least=fixed(100 * centre[0], 0), most=fixed(100 * centre[1], 0)),
         ),
         (
             "hips_apart",
-            tr("Left hip centre, left of the right by"),
+            tr("Hip centres apart, left from right"),
             lambda _, found: (
                 NOTHING if found.centres_apart_m is None else f"{fixed(100 * found.centres_apart_m, 0)} cm"
             ),
@@ -163,7 +167,7 @@ def hips_table(facts: Facts) -> list[Block]:
         ),
         (
             "hip_heading",
-            tr("Pelvis–thigh heading, 1 SD"),
+            tr("Pelvis–thigh heading, ± 1 SD"),
             lambda _, found: _degrees(math.degrees(found.heading_sd_rad)),
             tr("at most {limit}°, for abduction only").format(limit=fixed(LIMITS.hip_heading_sd_deg, 0)),
         ),
@@ -175,7 +179,7 @@ def hips_table(facts: Facts) -> list[Block]:
         ),
         (
             "halves",
-            tr("ROM, second half minus first"),
+            tr("ROM, second half of walk minus first"),
             lambda joint, _: _degrees(_farthest(halves_apart, facts, joint), is_signed=True),
             tr("at most {limit}°").format(limit=fixed(LIMITS.halves_deg, 0)),
         ),
@@ -210,18 +214,19 @@ def clocks_in_words(facts: Facts) -> str:
     if clock is None:
         return ""
     if clock.status is ClockStatus.PROVEN:
-        return tr("Left and right sensors: synchronised, confirmed.")
+        return tr("Left and right sensors: synchronisation confirmed.")
     if clock.status is ClockStatus.NOT_REPORTED:
-        return tr("Left and right sensors: hip movement does not show their time offset.")
+        return tr("Left and right sensors: their time offset cannot be found from hip movement.")
     side = Side.RIGHT if clock.offset_s > 0 else Side.LEFT
     pattern = (
         tr(
-            "Left and right sensors: offset found from hip movement. The {side} leg was {late} ms late, 1 "
-            "SD {sd} ms; corrected."
+            "Left and right sensors: time offset found from hip movement. The {side} leg was {late} ± "
+            "{sd} ms late (1 SD). This was corrected."
         )
         if clock.applied_s
         else tr(
-            "Left and right sensors: offset found from hip movement. The {side} leg was {late} ms late, 1 SD {sd} ms."
+            "Left and right sensors: time offset found from hip movement. The {side} leg was {late} ± "
+            "{sd} ms late (1 SD)."
         )
     )
     late, sd = fixed(1000 * abs(clock.offset_s), 0), fixed(1000 * clock.sd_s, 0)
@@ -240,27 +245,24 @@ def error_table() -> list[Block]:
     reported = (
         (
             ComparisonKind.ATTACHED,
-            tr("Two walks, same attachment"),
-            tr("strides, drift, synchronisation; walk to walk"),
+            tr("Two walks, sensors left in place"),
+            tr("variation of strides and walks, drift, synchronisation"),
         ),
-        (ComparisonKind.LEGS, tr("Left vs right"), tr("the same; attachment per leg, event bias")),
-        (ComparisonKind.STRAPPINGS, tr("Sensors reattached"), tr("the same; attachment")),
-        (ComparisonKind.VISITS, tr("Two visits"), tr("the same; attachment, another day")),
+        (ComparisonKind.LEGS, tr("Left vs right"), tr("as first row, plus attachment per leg, event bias")),
+        (ComparisonKind.STRAPPINGS, tr("Sensors reattached"), tr("as first row, plus attachment")),
+        (ComparisonKind.VISITS, tr("Two visits"), tr("as first row, plus attachment, another day")),
     )
     rows: list[Row] = []
     for kind, name, contains in reported:
-        cells = []
-        for column in (KNEE_RANGE, ANKLE_RANGE, STANCE):
-            sigma = sigma_of(column, kind)
-            cells.append(signed_error(sigma) + (DAGGER if sigma is not None and not sigma.is_verified else ""))
-        rows.append([name, contains, *cells])
+        least = (least_error_in_words(column, kind) for column in (KNEE_RANGE, ANKLE_RANGE, STANCE))
+        rows.append([name, contains, *least])
     stated = tr(
-        "Minimum values: variation between strides is added (1.96 standard deviations of the "
-        "difference). A sentence on page 1 needs 1.5 times as much, unless the error is a published "
-        "upper limit."
+        "Minimum values at usual means: variation between strides is added (1.96 standard deviations of the "
+        "difference). A change on page 1 needs 1.2 times as much, one with a goal as much; legs need more than "
+        "95 of 100 healthy people differ by."
     )
     return [
-        heading(tr("Measurement error by comparison")),
+        heading(tr("Measurement error by type of comparison")),
         table(columns, rows, is_dense=True),
         note(f"{stated} {dagger_note()}"),
     ]
@@ -308,6 +310,26 @@ def _axis(_: Joint, found: JointCalibration) -> str:
     return _degrees(math.nan if found.axis_sd_rad is None else math.degrees(found.axis_sd_rad))
 
 
+def _axis_of_parts(facts: Facts) -> list[Criterion]:
+    """How far the axes of two parts of the data are apart, a criterion for each way they were parted."""
+    found = facts.walk.axis_halves
+    ways = (
+        ("axis_halves", tr("Joint axis, halves of the walk"), False, LIMITS.axis_halves_deg),
+        ("axis_motions", tr("Joint axis, free motion and walk"), True, LIMITS.axis_motions_deg),
+    )
+    criteria: list[Criterion] = []
+    for gate, label, is_free_motion, (care, most) in ways:
+        apart = {joint: one.apart_rad for joint, one in found.items() if one.is_free_motion is is_free_motion}
+        if apart:
+            required = tr("at most {care}°, caution up to {most}°").format(care=fixed(care, 0), most=fixed(most, 0))
+            criteria.append((gate, label, partial(_apart, apart), required))
+    return criteria
+
+
+def _apart(apart_rad: Mapping[Joint, float], joint: Joint, _: JointCalibration) -> str:
+    return _degrees(math.degrees(apart_rad.get(joint, math.nan)))
+
+
 def _pairing(_: Joint, found: JointCalibration) -> str:
     return NOTHING if found.sign_margin is None else _margin(found.sign_margin)
 
@@ -336,7 +358,7 @@ def _lag(_: Joint, found: JointCalibration) -> str:
     if found.is_clock_shared:
         return tr("same clock")
     if found.lag_sd_s is None:
-        return tr("not resolvable")
+        return tr("not determinable")
     return f"{fixed(1000 * found.lag_s, 1)} ± {fixed(1000 * found.lag_sd_s, 1)} ms"
 
 

@@ -84,7 +84,9 @@ def what(request: ReportRequest, facts: Facts, comparison: Comparison | None) ->
     stated = [" · ".join(filter(None, parts))]
     if comparison is not None:
         names = " · ".join(f"{part.letter}\u00a0{typed(part.name, CONDITION_LENGTH)}" for part in comparison.parts)
-        stated.append(tr("Compared ({last} shown here): {parts}").format(parts=names, last=comparison.parts[-1].letter))
+        stated.append(
+            tr("Compared: {parts} (this page shows {last})").format(parts=names, last=comparison.parts[-1].letter)
+        )
     return ". ".join(stated)
 
 
@@ -164,9 +166,9 @@ def curves(facts: Facts, comparison: Comparison | None) -> dict[str, object]:
     """A panel for each joint that was measured, the band laid at the height of its curve, with its figures beside."""
     counts = {side.letter: facts.strides(side) for side in facts.gait}
     stated = [
-        tr("Mean of strides, {counts}; each leg over its own gait cycle, 0 and 100 % initial contact.").format(
-            counts=", ".join(f"{letter} n = {n}" for letter, n in counts.items())
-        )
+        tr(
+            "Mean of strides, {counts}. Each leg is drawn over its own gait cycle; 0 and 100 % are initial contact."
+        ).format(counts=", ".join(f"{letter} n = {n}" for letter, n in counts.items()))
         if counts
         else "",
         band_in_words(facts, is_at_height=True),
@@ -238,9 +240,11 @@ def _against_band(facts: Facts, joint: Joint) -> list[str]:
     away = {column: facts.away_sd(joint.side, column) for column in WINDOWS if column.startswith(joint.kind)}
     judged = {column: sd for column, sd in away.items() if math.isfinite(sd)}
     beyond = [
-        (tr("{peak}: more than 2\u00a0SD below") if sd < 0 else tr("{peak}: more than 2\u00a0SD above")).format(
-            peak=capitalised(panels.peak_name(column))
-        )
+        (
+            tr("{peak}: over 2\N{NO-BREAK SPACE}SD below reference")
+            if sd < 0
+            else tr("{peak}: over 2\N{NO-BREAK SPACE}SD above reference")
+        ).format(peak=capitalised(panels.peak_name(column)))
         for column, sd in judged.items()
         if abs(sd) > MAX_AWAY_SD
     ]

@@ -12,7 +12,7 @@ from collections import Counter
 
 from app.summary.error_figures import error_figures_in_words
 from app.summary.facts import Facts
-from app.summary.numbers_in_words import fixed, signed_error
+from app.summary.numbers_in_words import fixed, least_error_in_words
 from app.summary.plain_text import breakable, isolated, plain, shortened
 from app.wording.findings import WHOLE_SESSION
 from app.wording.translation import joined, tr
@@ -25,7 +25,7 @@ from core.samples import ImuBlock, RateKind, SensorInfo
 from core.signal.orientation import accelerometer_time_constant_s
 from core.signal.tracks import MAX_REPORTED_GAP_S, nominal_step_s
 from core.verdicts.norms import KNEE_OVERREAD
-from core.verdicts.sigmas import ComparisonKind, in_use, sigma_of
+from core.verdicts.sigmas import ComparisonKind, in_use
 
 MOST_MODELS = 2  # for more, their number is given
 MODEL_LENGTH = 32
@@ -173,8 +173,9 @@ def _hips() -> str:
     return tr(
         "The sacrum and thigh sensors show how each thigh turns relative to the pelvis, starting from "
         "standing. In four people, hip angles were compared with optical markers. With the mean "
-        "removed, they were off by 1 to 4° in walking and by 6° in deep squats. The constants were "
-        "set on the same four people. Absolute angles were about 5° too high. Abduction: 2.5° (1 SD)."
+        "removed, the hip angles were off by 1 to 4° in walking and by 6° in deep squats. The "
+        "constants of the method were set on the same four people. Absolute angles were about 5° too "
+        "high. Abduction was off by 2.5° (1 SD)."
     )
 
 
@@ -188,43 +189,42 @@ def _kind(facts: Facts) -> RateKind | None:
 
 def _strides(facts: Facts) -> str:
     source = (
-        tr("from foot pitch, or from the shank where a foot has no sensor")
+        tr("from the tilt of the foot, or of the shank where a foot has no sensor")
         if _findings(facts, "events_from_shank")
-        else tr("from foot pitch; for feet that hardly roll, from the path of the sole")
+        else tr("from the tilt of the foot; for feet that hardly roll, from the path of the sole")
     )
     return tr(
         "Initial contact and toe\u2011off: {source}. Speed and stride length: integrated from stance "
-        "to stance. Used: steady straight walking. Excluded: slow or short strides at either end, "
-        "turns, pauses, missing samples, uncertain contacts, strides unlike the others and strides "
-        "after a strap moved. Reasons are in the stride file. A peak at the edge of its window is "
-        "shown as “no peak”."
+        "to stance. Used: steady straight walking. Excluded: slow or short strides at the start and "
+        "end of a walk, turns, pauses, missing samples, uncertain contacts, strides unlike the others "
+        "and strides after a strap moved. Reasons are in the stride file. A peak at the edge of its "
+        "search window is shown as “no peak”."
     ).format(source=source)
 
 
 def _accuracy() -> str:
     # the figures of resources/help/accuracy.md; a test compares them
     return tr(
-        "Compared with optical systems (root mean square, mean removed): two mechanical hinges 0.31° "
-        "and 0.25°; walking of one person 4.3° and 3.1° at the knees, 2.1° at the ankles. Absolute "
-        "angles: knees about 5°, ankles 7 to 9° (unpublished recordings). 57 initial contacts and "
-        "toe\u2011offs of a healthy person: SD 7.7 and 7.2 ms, contacts 25 ms later than optical; "
-        "stride length 0.25 % too short, SD 1.5 cm. Not tested on patients, after knee replacement or "
-        "on real prostheses."
+        "Difference from optical systems (root mean square, mean removed): two mechanical hinges "
+        "0.31° and 0.25°; walking of one person 4.3° and 3.1° at the knees, 2.1° at the ankles. "
+        "Absolute angles differed by about 5° at the knees and 7 to 9° at the ankles (unpublished "
+        "recordings). 57 initial contacts and toe\u2011offs of a healthy person: SD 7.7 and 7.2 ms, "
+        "contacts 25 ms later than optical; stride length 0.25 % too short, SD 1.5 cm. Not tested on "
+        "patients, after knee replacement or on real prostheses."
     )
 
 
 def _words() -> str:
     return tr(
         "Reference: mean ± 1 and 2 SD of other, healthy people, measured with optical markers; not a "
-        "target. Error: measurement alone gives a smaller difference in 95 of 100 repeats. For knee "
-        "range of motion between legs and visits it is at least {knee_error}° (upper end of 3.4–9.2° "
-        "published, 15 volunteers; also used for the ankle). Beyond: larger than the error. This "
-        "shows how large a difference is, not whether it is good. Certainty of a joint axis is never "
+        "target. Likely between: 95 of 100 such measurements contain the true difference. For a knee range of "
+        "motion of 60° at two visits the error is at least {knee_error}° (people measured twice and simulated "
+        "strappings). This shows how large a difference is, not whether it is good. Certainty of a joint axis is never "
         "given below {floor}°, from walking alone never below {walking}°. Knees are measured 9 ± 4 % "
         "too flexed; they are judged as measured and divided by {overread}. Not reported: measured, "
         "but not reliable; the cause is named."
     ).format(
-        knee_error=signed_error(sigma_of(KNEE_RANGE, ComparisonKind.VISITS)),
+        knee_error=least_error_in_words(KNEE_RANGE, ComparisonKind.VISITS),
         floor=fixed(math.degrees(AXIS_FLOOR_HUMAN_RAD), 0),
         walking=fixed(math.degrees(AXIS_FLOOR_WALKING_RAD), 0),
         overread=fixed(KNEE_OVERREAD, 2),

@@ -6,13 +6,14 @@ from app.reports.patient.key_strips import strip
 from app.summary.comparison import Comparison
 from app.summary.facts import Facts
 from app.summary.goals import goal_mark
+from app.summary.interval_words import interval_in_figures
 from app.summary.numbers_in_words import (
-    DAGGER,
+    MARKS,
     NOTHING,
     band_in_figures,
     dagger_note,
-    fixed,
     marked,
+    marks_note,
     signed,
     spread,
 )
@@ -38,14 +39,14 @@ def key_numbers(facts: Facts, comparison: Comparison | None) -> list[Block]:
         Column(tr("Measure"), "1fr", is_number=False),
         *(Column(facts.counted(side)) for side in Side),
         Column(f"{one.letter} − {other.letter}"),
-        Column(tr("Error")),
+        Column(tr("likely between")),
         Column(tr("Reference")),
-        Column(tr("L above, R below, ± half the error"), "48mm", is_number=False),
+        Column(tr("L above, R below, ± half the error"), "42mm", is_number=False),
     ]
     cells: list[Row] = [_cells(row) for row in rows]
     stated = []
     if any(row.is_judged for row in rows):
-        stated.append(tr("Bold: difference between the legs beyond measurement error (95 %)."))
+        stated.append(marks_note())
     if any(row.is_judged and row.difference.is_unverified for row in rows):
         stated.append(dagger_note())
     notes = [note(" ".join(stated))] if stated else []
@@ -64,12 +65,12 @@ def _cells(row: LegsRow) -> list[Cell | str]:
     found = row.difference
     values = [_value(row, side) for side in Side]
     unit = row.unit.strip()
-    dagger = DAGGER if found.is_unverified else ""
+    apart = f"{MARKS[found.mark]} {signed(found.difference, row.decimals)}".strip()
     return [
         "; ".join([with_unit(row.name, unit), *map(goal_mark, row.goals)]),
         *values,
-        Cell(signed(found.difference, row.decimals) if found.is_reported else NOTHING, is_bold=found.exceeds),
-        f"{fixed(found.error, row.decimals)}{dagger}" if row.is_judged else NOTHING,
+        Cell(apart if found.is_reported else NOTHING, is_bold=found.exceeds),
+        interval_in_figures(row.column, found),
         _band(row),
         Cell("", picture=strip(row)),
     ]

@@ -94,8 +94,8 @@ def _sources(facts: Facts) -> list[str]:
         )
     if values is not None:
         pattern = tr(
-            "[2] Time and distance: {group}, optical markers and force plates; class “{speed_class}” of the Froude "
-            "number ({speed} m/s, n = {n}). {source}."
+            "[2] Time and distance: {group}, optical markers and force plates; speed class "
+            "“{speed_class}” by Froude number ({speed} m/s, n = {n}). {source}."
         )
         stated.append(
             pattern.format(

@@ -40,7 +40,7 @@ LEFT_NOW = later("Your left knee now bends {now} degrees. At your first visit it
 RIGHT_NOW = later("Your right knee now bends {now} degrees. At your first visit it was {first}.")
 LEFT_ALONE = later("Your left knee bends {now} degrees.")
 RIGHT_ALONE = later("Your right knee bends {now} degrees.")
-UNREADABLE = later("Today's measurement was not good enough for a number. It does not reflect how you walk.")
+UNREADABLE = later("Today's measurement was not good enough to give a number. This does not reflect how you walk.")
 MEANING = later("When you swing your leg, the knee must bend so that your foot clears the floor.")
 OFF_BY = later("Our measurement can be off by about {error} degrees.")
 MORE = later("Your knee now bends {change}° more than at the first visit.")
@@ -64,7 +64,7 @@ GOALS_OF = {
 AT_LEAST = later("{what}: at least {value}. We agreed this on {day}.")
 AT_MOST = later("{what}: at most {value}. We agreed this on {day}.")
 DEGREES, METRES = later("{value} degrees"), later("{value} metres in a second")
-REACHED = later("You have reached it.")
+REACHED = later("You have reached this goal.")
 LIMITS = later(
     "The sensors do not measure pain or strength. They cannot show how you will walk in a month. "
     "Your therapist looks at this together with everything else."

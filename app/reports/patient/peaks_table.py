@@ -9,30 +9,28 @@ from app.summary import quality
 from app.summary.comparison import compare_legs
 from app.summary.conditions import by_hand_in_words
 from app.summary.facts import Facts
+from app.summary.interval_words import interval_in_figures
 from app.summary.numbers_in_words import (
-    DAGGER,
     NOTHING,
     away_in_words,
     band_in_figures,
     care_note,
-    dagger_note,
     each_side,
     fixed,
     in_brief,
     marked,
+    marks_note,
     signed,
-    signed_error,
     spread,
 )
 from app.summary.panels import HEIGHTS, excursion_name, peak_name
 from app.wording.translation import capitalised, later, tr
 from app.wording.verdicts import verdict_word
 from core.body import JointKind, Side
-from core.parameters import KNEE_RANGE, MOVEMENTS
+from core.parameters import MOVEMENTS
 from core.verdicts.model import Verdict
 from core.verdicts.norms import KNEE_OVERREAD
 from core.verdicts.quantities import ABDUCTION, EXCURSIONS_BY_COLUMN, WINDOWS
-from core.verdicts.sigmas import ComparisonKind, sigma_of
 
 TIMES = {"hip": (), "knee": ("knee_swing_peak_percent",), "ankle": ()}
 HOW_FAR = {
@@ -102,16 +100,17 @@ def _notes(facts: Facts, kinds: Sequence[JointKind]) -> list[str]:
         *quality.caveats(facts, (Verdict.NOT_REPORTED,), is_of_joints=True)[: quality.MAX_SENTENCES],
     ]
     if len(facts.gait) == len(Side):
-        judged = tr("Beyond, within: the measurement error between legs, at least {error}°.")
-        stated.append(judged.format(error=signed_error(sigma_of(KNEE_RANGE, ComparisonKind.LEGS))))
-        stated.append(tr("The ankle uses the knee's error figure.") + " " + dagger_note())
+        stated.append(marks_note())
     if JointKind.HIP in kinds:
         stated.append(hips_note())
     shown = [
         (side, column) for side in facts.gait for kind in facts.kinds for column in (*MOVEMENTS[kind], *HEIGHTS[kind])
     ]
     if any(math.isfinite(facts.away_sd(side, column)) for side, column in shown):
-        judged = tr("Against reference: shifted to the level of each curve; knees as measured and divided by {by}.")
+        judged = tr(
+            "Against reference: the reference is shifted to the level of each curve. Knees are compared "
+            "both as measured and divided by {by}."
+        )
         stated.append(judged.format(by=fixed(KNEE_OVERREAD, 2)))
     if any(_verdict(facts, side, column) is Verdict.CARE for side, column in shown):
         stated.append(care_note())
@@ -135,7 +134,7 @@ def measure(column: str) -> str:
     if column.endswith("_range_deg"):
         return tr("Range of motion")
     if column.endswith("_percent"):
-        return tr("Time of peak flexion, swing, %")
+        return tr("Time of peak flexion in swing, %")
     if column in EXCURSIONS_BY_COLUMN:
         return capitalised(excursion_name(column))
     window = WINDOWS[column]
@@ -152,7 +151,7 @@ def _movements(kinds: Sequence[JointKind]) -> str:
             tr("{movement} ({high} minus {low})").format(movement=excursion_name(column), high=ends[0], low=ends[1])
         )
     stated = tr(
-        "Movement range: highest angle in one part of the gait cycle minus the lowest in another, in %: {each}."
+        "Movement range: highest angle in one part of the gait cycle minus the lowest in another (parts in %): {each}."
     )
     return stated.format(each=", ".join(each))
 
@@ -204,7 +203,5 @@ def _difference_cells(facts: Facts, column: str) -> list[Cell | str]:
     found = compare_legs(facts.part, column, facts.first_and_second)
     if not found.is_reported:
         return [NOTHING] * 3
-    dagger = DAGGER if found.is_unverified else ""
-    error = f"{fixed(found.error, 1)}{dagger}" if found.error > 0 else NOTHING
-    words = in_brief(found.judgement)
+    words, error = in_brief(found), interval_in_figures(column, found)
     return [Cell(signed(found.difference, 1), is_bold=found.exceeds), error, Cell(words, is_bold=found.exceeds)]

@@ -20,7 +20,10 @@ def pelvis_table(facts: Facts) -> list[Block]:
     ]
     rows: list[Row] = [[tr(name), *(value_cell(facts, side, column) for side in Side)] for column, name in PELVIS_ROWS]
     stated = [
-        tr("Drop: how far the side of the swinging leg drops below the other. Values over the strides of one leg."),
+        tr(
+            "Drop: how far the side of the swinging leg drops below the other side. Each column covers "
+            "the strides of one leg."
+        ),
         *pelvis_in_words(facts.part),
     ]
     if any(facts.assessment(side, column).verdict is Verdict.CARE for side in facts.gait for column, _ in PELVIS_ROWS):

@@ -16,9 +16,11 @@ from app.summary import panels
 from app.summary.comparison import compare_legs
 from app.summary.conditions import by_hand_in_words
 from app.summary.facts import Facts, joint_of
+from app.summary.interval_words import interval_in_figures
 from app.summary.numbers_in_words import (
     CARE,
     DAGGER,
+    MARKS,
     NOTHING,
     against_band,
     band_in_figures,
@@ -132,7 +134,7 @@ def _side_row(facts: Facts, column: str, label: str, decimals: int) -> list[Cell
     return [
         label,
         *cells,
-        *difference_cells(_between(facts, column), decimals),
+        *difference_cells(column, _between(facts, column), decimals),
         in_band,
         sides_against_band(judged, judged_band),
     ]
@@ -155,13 +157,12 @@ def _between(facts: Facts, column: str) -> Difference | None:
     return found if found.is_reported else None
 
 
-def difference_cells(found: Difference | None, decimals: int) -> list[Cell | str]:
-    """The difference, bold where it exceeds its error, and the error."""
+def difference_cells(column: str, found: Difference | None, decimals: int) -> list[Cell | str]:
+    """The difference, bold and marked where it exceeds its error, and where it is likely to be."""
     if found is None:
         return [NOTHING, NOTHING]
-    error = fixed(found.error, decimals) if found.error > 0 else NOTHING
-    mark = DAGGER if found.is_unverified and found.error > 0 else ""
-    return [Cell(signed(found.difference, decimals), is_bold=found.exceeds), f"{error}{mark}"]
+    apart = f"{MARKS[found.mark]} {signed(found.difference, decimals)}".strip()
+    return [Cell(apart, is_bold=found.exceeds), interval_in_figures(column, found)]
 
 
 def _single_support_row(facts: Facts) -> list[Cell | str]:
@@ -247,7 +248,7 @@ def _every_stride(facts: Facts) -> list[Block]:
     walk = typed(str(facts.visit.shown_names.get(facts.walk.name, facts.walk.name)), CONDITION_LENGTH)
     stated = [
         tr("Strides of {walk}.").format(walk=walk) if rails and len(facts.part.walks) > 1 else "",
-        tr("In order of time. Lines: means of the first and of the second half of the walk."),
+        tr("Strides are in order of time. Lines show the means of the first and second half of the walk."),
         reasons_in_words(facts),
         by_hand_in_words(*facts.part.walks),
     ]

@@ -73,17 +73,17 @@ def _course(request: ReportRequest, facts: Facts) -> tuple[list[Block], bool]:
     wording = [tr("Condition: {condition}. Several attempts: mean shown.").format(condition=stated)]
     error = error_between_visits(COLUMNS[TimedProtocol.TEN_METRES])
     if TimedProtocol.TEN_METRES in charts:
-        whisker = tr("Whisker: half the error of a speed change, {error} m/s {dagger}.")
+        whisker = tr("Error bar: half the measurement error of a speed change. That error is {error} m/s {dagger}.")
         wording.append(whisker.format(error=fixed(error, 2), dagger=DAGGER))
     if set(charts) - {TimedProtocol.TEN_METRES}:
         wording.append(
             tr(
-                "For distances in a set time and for chair tests the measurement error is not known: they are "
-                "not judged."
+                "The measurement error is not known for distances in a set time and for chair tests. Changes "
+                "in these tests are not judged."
             )
         )
     drawn = figures(list(charts.values()), columns=2)
-    return [heading(tr("Over the visits"), 2), note(" ".join(wording)), drawn], TimedProtocol.TEN_METRES in charts
+    return [heading(tr("Progress by visit"), 2), note(" ".join(wording)), drawn], TimedProtocol.TEN_METRES in charts
 
 
 def _name(request: ReportRequest, walk: RecordingAnalysis) -> str:

@@ -10,8 +10,9 @@ from app.reports.patient.trend_chart import trend_chart
 from app.summary.course_lanes import CourseVisit
 from app.summary.facts import Facts
 from app.summary.goals import goal_mark, goal_sentence, in_course
+from app.summary.interval_words import evidence, interval_in_figures
 from app.summary.measure_sentences import Reported, change_sentence, unit_and_decimals, who_of_role
-from app.summary.numbers_in_words import DAGGER, NOTHING, dagger_note, fixed, in_brief, signed
+from app.summary.numbers_in_words import NOTHING, dagger_note, fixed, in_brief, signed
 from app.summary.plain_text import CONDITION_LENGTH, shortened, typed
 from app.summary.trend_lines import TrendLine, trend_columns, trend_lines, walked_visits
 from app.summary.visits import condition_in_words
@@ -52,11 +53,13 @@ def trend_page(visits: Sequence[CourseVisit], condition: str, facts: Facts) -> l
     stated = typed(condition, CONDITION_LENGTH) if condition else condition_in_words("")
     wording = [
         tr("Condition: {condition}. Sensors reattached at each visit.").format(condition=stated),
-        tr("Whisker: half the error of a change. Whiskers that do not overlap show a change beyond error."),
-        tr("Dates to scale. Gap: not reported at that visit."),
+        tr("Error bar: half the measurement error of a change. Bars that do not overlap show a change beyond error."),
+        tr("The time axis is to scale. Gap: value not reported at that visit."),
     ]
     if without := len(visits) - len(walked):
-        wording.append(tr("Visits without a walk in this condition, or not calculated: {count}.").format(count=without))
+        wording.append(
+            tr("Visits not shown (no walk in this condition, or not calculated): {count}.").format(count=without)
+        )
     return [
         heading(title),
         note(" ".join(wording)),
@@ -155,19 +158,15 @@ def _sentence(line: TrendLine, facts: Facts, visits: int) -> str:
     changed = change_sentence(
         line.column, who, found.difference, Reported(now, last.value), Reported(before, first.value)
     )
-    error = tr("Error between visits: {error}.").format(error=fixed(found.error, decimals) + unit)
-    wording = f"{changed} {error}"
+    wording = f"{changed} {evidence(line.column, found)}"
     since = line.since_last
     if since is None or line.before == line.first:
         return wording
     if not since.error > 0:
         return wording
-    words = (
-        tr("Since visit {number} {change}: beyond error.")
-        if since.exceeds
-        else tr("Since visit {number} {change}: within error.")
-    )
-    return f"{wording} {words.format(number=line.before + 1, change=signed(since.difference, decimals) + unit)}"
+    words = tr("Since visit {number} {change}, likely {interval}.")
+    change, interval = signed(since.difference, decimals) + unit, interval_in_figures(line.column, since)
+    return f"{wording} {words.format(number=line.before + 1, change=change, interval=interval)}"
 
 
 def _table(lines: Sequence[TrendLine], visits: int) -> Block:
@@ -176,10 +175,10 @@ def _table(lines: Sequence[TrendLine], visits: int) -> Block:
         Column(tr("Measure"), "1fr", is_number=False),
         Column("", is_number=False),
         *(Column(str(visit + 1)) for visit in shown),
-        Column(tr("since last")),
+        Column(tr("since previous")),
         Column(tr("since first")),
-        Column(tr("Error")),
-        Column(tr("since first is"), is_number=False),
+        Column(tr("likely between")),
+        Column(tr("judged since first"), is_number=False),
     ]
     rows: list[Row] = []
     for line in lines:
@@ -195,11 +194,10 @@ def _table(lines: Sequence[TrendLine], visits: int) -> Block:
         if found is None or not is_reported:
             rows.append([*cells, NOTHING, NOTHING, NOTHING])
             continue
-        dagger = DAGGER if found.is_unverified else ""
         cells += [
             Cell(signed(found.difference, decimals), is_bold=found.exceeds),
-            f"{fixed(found.error, decimals)}{dagger}" if found.error > 0 else NOTHING,
-            Cell(in_brief(found.judgement), is_bold=found.exceeds),
+            interval_in_figures(line.column, found),
+            Cell(in_brief(found), is_bold=found.exceeds),
         ]
         rows.append(cells)
     return table(columns, rows, is_dense=True)
@@ -208,8 +206,8 @@ def _table(lines: Sequence[TrendLine], visits: int) -> Block:
 def _below(lines: Sequence[TrendLine]) -> str:
     wording = [
         tr(
-            "Absolute angles are not included: each visit has its own standing reference. First: first "
-            "visit with a reported value."
+            "Absolute angles are not included: each visit has its own standing reference. “First” is the "
+            "first visit with a reported value."
         )
     ]
     if any(line.since_first is not None and line.since_first.is_unverified for line in lines):

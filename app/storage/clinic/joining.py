@@ -50,7 +50,7 @@ def join(folder: Path, address: str, journals: str = "") -> Station:
     if not is_up_to_date(database):
         raise LibraryError(
             "No library was found on the clinic's server",
-            "Move a library there first, from the settings of the workstation that has it",
+            "First move a library to the server, in the settings of the workstation that has it",
         )
     with database.reading() as session:
         refuse_closed(session)

@@ -40,7 +40,7 @@ class PlaceUnconfirmedError(PlaceMissingError):
     """The server names a place that nobody at this station has confirmed."""
 
     def __init__(self, place: str) -> None:
-        what = tr("The server gives this storage for the recordings: {place}").format(place=place)
+        what = tr("The server specifies this storage for the recordings: {place}").format(place=place)
         super().__init__(what, "Enter the storage as this computer reaches it, to confirm it")
         self.place = place
 
@@ -155,7 +155,7 @@ class JournalStore:
                 os.fsync(here.fileno())
             if digest.hexdigest() + SUFFIX != name:
                 raise LibraryFaultError(
-                    "A recording in the clinic's shared storage is damaged", "Restore it there from a backup"
+                    "A recording in the clinic's shared storage is damaged", "Restore the recording there from a backup"
                 )
             Path(beside).replace(target)
             sync_folder(target.parent)
@@ -242,18 +242,18 @@ def _reported() -> Iterator[None]:
     except (LibraryError, FileNotFoundError) as error:
         if isinstance(error, FileNotFoundError):
             raise LibraryFaultError(
-                "A recording is missing from the clinic's shared storage", "Restore it there from a backup"
+                "A recording is missing from the clinic's shared storage", "Restore the recording there from a backup"
             ) from error
         raise
     except PermissionError as error:
         raise LibraryFaultError(
             "This workstation has no access to the clinic's shared storage",
-            "Check the permissions of its folder, or its access keys",
+            "Check the folder permissions or the access keys of the shared storage",
         ) from error
     except Exception as error:
         if isinstance(error, OSError) and error.errno in FULL:
             raise LibraryFaultError(
-                "The clinic's shared storage is full", "Free disk space there; Gaitwright then retries automatically"
+                "The clinic's shared storage is full", "Free up disk space there; Gaitwright then retries automatically"
             ) from error
         if isinstance(error, OSError) and error.errno == errno.EROFS:
             raise LibraryFaultError(

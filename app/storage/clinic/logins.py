@@ -44,8 +44,8 @@ def let_in(server: Database, own: Station) -> None:
         query = text("SELECT rolcreaterole OR rolsuper FROM pg_roles WHERE rolname = current_user")
         if not session.scalar(query):
             raise LibraryError(
-                "This login may not make a login for the station",
-                "Move the library with the server's owner, or give the login CREATEROLE",
+                "This database login is not permitted to create a login for the workstation",
+                "Move the library with the login of the server's owner, or give this login CREATEROLE",
             )
     with server.writing() as session:
         connection = session.connection().connection.driver_connection

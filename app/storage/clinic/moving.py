@@ -121,7 +121,7 @@ def give_up_moving(folder: Path) -> None:
         The mark cannot be removed.
     """
     if (folder / STATION).exists():
-        raise LibraryError("This library is already on the clinic's server", "Move it back from there")
+        raise LibraryError("This library is already on the clinic's server", "Move the library back from the server")
     if (folder / MOVING).exists() and (folder / MOVING).read_bytes() == LAST_STEP:
         raise LibraryError("Workstations may already be using this library on the clinic's server", "Continue the move")
     (folder / MOVING).unlink(missing_ok=True)
@@ -156,7 +156,7 @@ def bring_back(opened: OpenedLibrary, folder: Path, report: Report, *, is_copy: 
     """
     shared, library = opened.shared, opened.library
     if shared is None:
-        raise LibraryError("This library is already in a folder", "Use a backup to copy it")
+        raise LibraryError("This library is already in a folder", "Use a backup to copy the library")
     server, own_id = library.database, library.station.id if library.station is not None else ""
     with server.reading() as session:
         is_open = state_of(session) is ServerState.OPEN
@@ -193,7 +193,7 @@ def bring_back_here(opened: OpenedLibrary, report: Report) -> Moved:
     """
     folder, server = opened.folder, opened.library.database
     if count_waiting(opened):
-        raise LibraryError("A recording here has not been transferred yet", "Try again after the transfer")
+        raise LibraryError("A recording on this computer has not been transferred yet", "Try again after the transfer")
     beside = folder.with_name(f"{folder.name}{BACK_FROM}")
     shutil.rmtree(beside, ignore_errors=True)  # of one that was broken off
     moved = bring_back(opened, beside, report)

@@ -66,7 +66,7 @@ def refuse_nul(database: Database) -> None:
                         tr("A text contains the NUL character, which the server cannot store: {where}").format(
                             where=where
                         ),
-                        "Remove it from the text, then move the library",
+                        "Remove this character from the text, then move the library",
                     )
 
 

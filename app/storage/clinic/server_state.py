@@ -53,7 +53,8 @@ def close_for(session: OrmSession, target: str) -> None:
             tr("The library was or is being moved back to another folder: {folder}").format(
                 folder=str(row.value).partition(" ")[2]
             ),
-            "Use that folder. If nobody uses it, first reopen the server: gaitwright clinic back --give-up",
+            "Use the library in that folder. If nobody uses that folder, first reopen the server: "
+            "gaitwright clinic back --give-up",
         )
     else:
         row.value = target
@@ -74,12 +75,12 @@ def refuse_closed(session: OrmSession) -> None:
     if found is None:
         raise LibraryFaultError(
             "No library was found on the clinic's server",
-            "Move a library there first, from the settings of the workstation that has it",
+            "First move a library to the server, in the settings of the workstation that has it",
         )
     if found is ServerState.MOVING:
         raise LibraryFaultError(
             "The library is still being moved to the clinic's server", "Wait until the move is complete"
         )
     raise LibraryFaultError(
-        "The library is no longer on the clinic's server", "Ask the person who moved it back where it is now"
+        "The library is no longer on the clinic's server", "Ask the person who moved it back for its new location"
     )

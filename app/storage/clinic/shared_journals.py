@@ -16,7 +16,7 @@ from app.wording.translation import later
 CACHED_BYTES = 20_000_000_000  # of copies on a station's disk: some hundred sessions
 NOT_YET_HERE = later("this recording is still on the workstation that recorded it")
 ANOTHER = later("the file in the clinic's shared storage belongs to another recording")
-START_THERE = later("Start Gaitwright on that computer, connected to the clinic's server")
+START_THERE = later("Start Gaitwright on the workstation that made the recording, connected to the clinic's server")
 
 
 class SharedJournals:

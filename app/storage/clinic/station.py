@@ -145,5 +145,5 @@ def shown_address(address: str) -> str:
 
 def _no_address() -> LibraryError:
     return LibraryError(
-        "This is not the address of a PostgreSQL server", "Enter it as postgresql://user@server/database"
+        "This is not the address of a PostgreSQL server", "Enter the address as postgresql://user@server/database"
     )

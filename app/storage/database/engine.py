@@ -288,7 +288,7 @@ def _impatient_connection() -> "type[PgConnection[Any]]":
                         received_s = time.monotonic()
                     elif time.monotonic() - received_s > PG_SILENT_S:
                         self.pgconn.finish()
-                        raise psycopg.OperationalError("the connection was closed: the server said nothing")
+                        raise psycopg.OperationalError("the connection was closed: the server sent nothing")
                     asked = gen.send(ready)
             except StopIteration as done:
                 return done.value
@@ -391,7 +391,7 @@ def _commit(session: OrmSession) -> None:
         if error.connection_invalidated:
             raise LibraryFaultError(
                 "The connection to the clinic's server was lost while saving",
-                "Check whether it was saved before you repeat it",
+                "Check whether your change was saved before you repeat it",
             ) from None
         raise
 
@@ -414,14 +414,19 @@ def _sentence(error: DBAPIError | PoolTimeoutError | sqlite.Error) -> LibraryErr
     words = str(cause)
     if getattr(cause, "sqlstate", "") == PG_NOT_ALLOWED:
         return LibraryError(
-            "The clinic's server does not permit this for this workstation", "Ask the administrator of the server"
+            "The clinic's server does not permit this action for this workstation",
+            "Ask the administrator of the server",
         )
     if isinstance(error, IntegrityError):
-        return LibraryError("This conflicts with data already in the library", "Reload this view, then try again")
+        return LibraryError(
+            "This change conflicts with data already in the library", "Reload this view, then try again"
+        )
     if _is_locked(error):
         return LibraryBusyError("Another program is using the library", "Wait a moment, then try again")
     if "NUL (0x00)" in words:
-        return LibraryError("The clinic's server cannot store text with the NUL character", "Remove it from the text")
+        return LibraryError(
+            "The clinic's server cannot store text with the NUL character", "Remove this character from the text"
+        )
     if "not a database" in words:
         return LibraryFaultError(
             "This key does not open the library, or the start of its file is damaged",
@@ -431,7 +436,7 @@ def _sentence(error: DBAPIError | PoolTimeoutError | sqlite.Error) -> LibraryErr
         return LibraryFaultError("The library file is damaged", "Restore the library from a backup")
     if "is full" in words:
         return LibraryFaultError(
-            "The disk is full, so this was not saved in the library", "Free disk space, then try again"
+            "The disk is full, so this was not saved in the library", "Free up disk space, then try again"
         )
     if "readonly" in words or "unable to open" in words:
         return LibraryFaultError("The library file cannot be opened for writing", "Check the permissions of its folder")
@@ -448,5 +453,6 @@ def _sentence(error: DBAPIError | PoolTimeoutError | sqlite.Error) -> LibraryErr
     if "disk I/O" in words:
         return LibraryFaultError("The library file cannot be read or written", "Check the disk, then try again")
     return LibraryFaultError(
-        "The library database rejected this", "Try again. If the problem persists, restore the library from a backup"
+        "The library database rejected this action",
+        "Try again. If the problem persists, restore the library from a backup",
     )

@@ -76,7 +76,7 @@ def _refuse_other_encodings(database: Database) -> None:
     if encoding not in ("UTF8", b"UTF8"):
         raise LibraryError(
             "The server's database cannot store all characters: it does not use UTF-8",
-            "Create it again: CREATE DATABASE ... ENCODING 'UTF8' TEMPLATE template0",
+            "Create the database again: CREATE DATABASE ... ENCODING 'UTF8' TEMPLATE template0",
         )
 
 

@@ -34,7 +34,7 @@ class Trouble(StrEnum):
 REPORTED = {
     Trouble.LITTLE_ROOM: (
         later("The disk has space for less than five more minutes"),
-        later("Stop soon, then delete or move files you do not need"),
+        later("Stop the recording soon, then delete or move files you do not need"),
     ),
     Trouble.NO_ROOM: (
         later("The disk is almost full, so the recording was stopped"),
@@ -52,7 +52,8 @@ REPORTED = {
         later("The library folder is no longer available; recording continues"),
         later(
             "The recording is stored encrypted on this computer in {shelter}. It is added to the library "
-            "automatically once the library is back. Put the folder back, or connect its disk"
+            "automatically once the library is available again. Put the library folder back, or connect "
+            "its disk"
         ),
     ),
     Trouble.DISK_SLOW: (

@@ -103,7 +103,7 @@ class JournalHeader:
             what = tr(
                 "this recording has format {found}, but this version reads {known}; or its beginning is damaged"
             ).format(found=version, known=FORMAT)
-            raise JournalRefusedError(where, what, "Install the latest version, or restore it from a backup")
+            raise JournalRefusedError(where, what, "Install the latest version, or restore the recording from a backup")
         # with the row's key only the rest has to be right, and the key's own tag proves it
         if header.identity != content[: IDENTITY.size] or not (is_whole or (wrapped_key and header.is_sealed)):
             raise JournalRefusedError(where, "the beginning of this recording is damaged", RESTORE)

@@ -32,20 +32,22 @@ def hint_for(missing: Missing, prosthetic_sides: frozenset[Side] = frozenset()) 
     icon = Icon.REPEAT if is_circle else Icon.BEND
     if missing.site.side in prosthetic_sides:
         how = (
-            tr("The therapist moves the limb. Change direction.") if is_circle else tr("The therapist moves the limb.")
+            tr("The therapist moves the limb. Reverse direction from time to time.")
+            if is_circle
+            else tr("The therapist moves the limb.")
         )
         return Hint(sentence, how, tr("The therapist moves the limb."), icon)
     if is_circle:
-        how = tr("Change direction. Seated or standing, moved by hand if needed.")
-        return Hint(sentence, how, tr("Change direction. Seated is fine."), icon)
-    how = tr("Back and forth, as far as comfortable. Moving it by hand is fine.")
-    return Hint(sentence, how, tr("Back and forth. Moving it by hand is fine."), icon)
+        how = tr("Reverse direction from time to time. The patient may sit or stand; move the limb by hand if needed.")
+        return Hint(sentence, how, tr("Reverse direction from time to time. The patient may sit."), icon)
+    how = tr("Back and forth, as far as comfortable. Moving the leg by hand is fine.")
+    return Hint(sentence, how, tr("Back and forth. You may move the limb by hand."), icon)
 
 
 def first_hint() -> Hint:
     """Before anything moves, or while nobody knows who is where."""
-    how = tr("One leg, then the other. Seated, lying or standing, moved by hand if needed.")
-    return Hint(tr("Move either leg"), how, tr("One leg, then the other. Seated is fine."))
+    how = tr("One leg, then the other. The patient may sit, lie or stand; move the leg by hand if needed.")
+    return Hint(tr("Move either leg"), how, tr("One leg, then the other. The patient may sit."))
 
 
 def unplaced_hint() -> Hint:
@@ -93,8 +95,8 @@ def last_hint(motion: FreeMotionState, prosthetic_sides: frozenset[Side] = froze
         ankles = [joint for joint in states if not joint.is_knee]
         finds = tr_n("It determines the ankle axis.", "It determines the ankle axes.", len(ankles)) if ankles else ""
         if open_hip(motion) is not None:
-            hips = tr("With a turn, it also calibrates the hips.")
-            with_axes = tr("It determines the ankle axes and, with a turn, calibrates the hips.")
+            hips = tr("Walking with a turn also calibrates the hips.")
+            with_axes = tr("Walking determines the ankle axes and, with a turn, calibrates the hips.")
             finds = with_axes if ankles else hips
         how = " ".join(filter(None, [then, finds]))
         return Hint(tr("Enough movement"), how, tr("Walking is next."), Icon.CHECK)
@@ -106,7 +108,7 @@ def last_hint(motion: FreeMotionState, prosthetic_sides: frozenset[Side] = froze
         angle = tr("The angle is the rotation about the main axis.")
         return Hint(sentence, f"{angle} {then}", tr("Walking is next."), Icon.WARNING)
     how = tr("Continue to walking, or repeat one leg.")
-    return Hint(tr("Certainty no longer rises"), how, how, Icon.INFO)
+    return Hint(tr("Uncertainty no longer falls"), how, how, Icon.INFO)
 
 
 def open_hip(motion: FreeMotionState) -> Joint | None:
@@ -117,14 +119,14 @@ def open_hip(motion: FreeMotionState) -> Joint | None:
 
 def hip_hint() -> Hint:
     """Ask for what shows the hips: they accelerate little while one leg circles."""
-    how = tr("Or lunges, left and right. Circling the legs does not calibrate the hips; walking does.")
-    return Hint(tr("Walk 15 s, with a turn"), how, tr("Or lunges, left and right."), Icon.NEXT)
+    how = tr("Or do lunges, left and right. Circling the legs does not calibrate the hips; walking does.")
+    return Hint(tr("Walk 15 s, with a turn"), how, tr("Or do lunges, left and right."), Icon.NEXT)
 
 
 def played_hint(has_played: bool) -> Hint:
     """When a replayed patient moves no more, or never did."""
     if not has_played:
-        how = tr("Joints are calibrated from the walks, with less certainty. Continue to walking.")
+        how = tr("Joints are calibrated from the walks, with more uncertainty. Continue to walking.")
         return Hint(tr("Replay has no free motion"), how, tr("Continue to walking."), Icon.INFO)
     how = tr("Record again to replay from the start, or continue with the data so far.")
     return Hint(tr("The replay has ended"), how, tr("Record again, or continue."), Icon.INFO)
@@ -144,7 +146,7 @@ def absent_note(joint: Joint, worn: Collection[Site], without_ankle: Collection[
     """Say why a joint has no gauge; empty where it has one."""
     is_ankle = not joint.is_knee and not joint.is_hip
     if is_ankle and joint.side in without_ankle and joint.proximal in worn and joint.distal in worn:
-        return tr("Foot without ankle joint: nothing to calibrate. The angle is called foot relative to shank.")
+        return tr("Foot without ankle joint: nothing to calibrate. The angle is called “foot relative to shank”.")
     missing = [site for site in (joint.proximal, joint.distal) if site not in worn]
     if not missing:
         return ""
@@ -248,7 +250,7 @@ def price_of_stopping(
     worst = max(is_open, key=lambda joint: motion.joints[joint].wanting)
     figure = _figure(worst, motion.joints[worst], required_of(worst, prosthetic_sides))
     if motion.joints[worst].is_plateau or len(is_open) > 1 or not can_move:
-        rest = tr("If you continue, the report states this.")
+        rest = tr("If you continue, the report states this uncertainty.")
     elif worst.side is Side.LEFT:
         rest = tr("Move the left leg for {seconds:.0f} more seconds, or continue: the report then states this.")
     else:
@@ -297,9 +299,9 @@ def _figure(joint: Joint, state: ExcitationState, required: Required) -> str:
     axis, centre = math.degrees(state.axis_sd_rad), 1000 * state.centre_sd_m
     axis_required, centre_required = math.degrees(required.axis_rad), 1000 * required.centre_m
     if joint.is_knee and axis / axis_required >= centre / centre_required:
-        stated = tr("{joint}: {figure}°, limit {required:g}°.")
+        stated = tr("{joint}: axis uncertainty {figure}°, limit {required:g}°.")
         return stated.format(joint=name, figure=two_digits(axis, axis_required), required=axis_required)
-    stated = tr("{joint}: {figure} mm, limit {required:g} mm.")
+    stated = tr("{joint}: centre uncertainty {figure} mm, limit {required:g} mm.")
     return stated.format(joint=name, figure=two_digits(centre, centre_required), required=centre_required)
 
 

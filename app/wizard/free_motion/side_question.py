@@ -46,7 +46,7 @@ class SideQuestion:
             return which.format(sensor=self.asked, side=side), "", (tr("Left"), tr("Right"))
         if self.reported is not None:
             sensor, side = self.reported
-            understood = tr("{sensor} set to the {side} leg.").format(sensor=sensor, side=side_name(side))
+            understood = tr("{sensor} is now assigned to the {side} leg.").format(sensor=sensor, side=side_name(side))
             return understood, "", (tr("Undo"),)
         return SILENT
 

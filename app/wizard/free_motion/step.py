@@ -397,7 +397,8 @@ class FreeMotionStep(Step):
             self._motion = self._replaced
         elif not is_kept:
             then = tr(
-                "Joints are calibrated from the walks, with less certainty. To record free motion again, go back to it."
+                "Joints are calibrated from the walks, with more uncertainty. Go back to free motion to "
+                "record it again."
             )
             self._left = tr("No leg moved, so this free motion is not used."), then
         self._visit.recordings.stop(is_kept=is_kept)
@@ -417,7 +418,7 @@ class FreeMotionStep(Step):
         elif not is_kept:
             self._left = tr("Free motion was left before a leg moved, so it is not used."), again
         else:
-            what = tr("Free motion was left early and is used: {enough}.")
+            what = tr("Free motion was left early. It is still used: {enough}.")
             self._left = what.format(enough=enough_for(self._motion, self._visit.prosthetic_sides)), again
         self._visit.recordings.stop(is_kept=is_kept)
 
@@ -461,7 +462,7 @@ class FreeMotionStep(Step):
             self._visit.worn.place_as_stated_now()
             self.done.emit()
             self.reported.emit(
-                tr("Sensor positions changed. Standing reference and calibration are derived again."), ""
+                tr("Sensor positions changed. Standing reference and calibration are calculated again."), ""
             )
 
     # the page
@@ -523,7 +524,7 @@ class FreeMotionStep(Step):
         if self._then is AfterRecording.NEXT_STEP and self._is_in_sight:
             self._then = AfterRecording.WORD if self._is_unplaced else AfterRecording.ITSELF
             if self._is_unplaced:
-                then = tr("Move each leg for longer, or place the sensors by hand.")
+                then = tr("Move each leg for longer, or assign the sensors by hand.")
                 self.reported.emit(tr("Sensor positions could not be detected."), then)
             elif not self.labels.is_in_doubt:
                 self.done.emit()

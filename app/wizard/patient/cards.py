@@ -56,9 +56,13 @@ class BandCard(Card):
                 "The reference does not cover age {age}. It is shown, but differences from it are not reported."
             ).format(age=age)
         elif age < youngest:
-            words = tr("The reference is for adults. Gait differs at age {age}, so it is not shown.").format(age=age)
+            words = tr("The reference is for adults. Gait differs at age {age}, so the reference is not shown.").format(
+                age=age
+            )
         else:
-            words = tr("The reference fits the patient's age. The speed must also fit, which requires the body height.")
+            words = tr(
+                "The reference fits the patient's age. The speed must also fit; checking it requires the body height."
+            )
         self._words.setText(words)
 
     def _on_look_changed(self) -> None:
@@ -116,7 +120,7 @@ class _BandDrawing(QWidget):
         painter.drawText(0, 0, self.width(), px(16), Qt.AlignmentFlag.AlignLeft, self._title())
 
     def _title(self) -> str:
-        return tr("Knee, 1 and 2 SD")
+        return tr("Knee, ±1 and ±2 SD")
 
 
 class TakenCard(Card):

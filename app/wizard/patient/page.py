@@ -80,7 +80,7 @@ class PatientPage(Themed):
         self._title = Text(look, tr("Patient details"), size=26, weight=SEMIBOLD, wraps=True)
         self._subtitle = Text(
             look,
-            tr("Only the code is required. The rest selects the reference and is printed."),
+            tr("Only the code is required. The other entries select the reference and are printed."),
             size=15,
             tone="ink2",
             wraps=True,
@@ -213,7 +213,7 @@ class PatientPage(Themed):
         """Say that `code` is another patient's, and offer to take that one; an empty code takes it back."""
         self._taken_code = code
         self.code.set_wrong(
-            tr("{code} already exists. Open it, or choose another code.").format(code=code) if code else ""
+            tr("{code} already exists. Open that patient, or choose another code.").format(code=code) if code else ""
         )
         self._taken.show_code(code)
         self._taken.setVisible(bool(code))
@@ -234,11 +234,14 @@ class PatientPage(Themed):
         for chips in self.ankles.values():
             self._ankle_row.addWidget(chips, 1)
         self._ankle_box = _Captioned(
-            self._look, ankles, tr("Prosthetic foot"), tr("its angle is then called foot relative to shank")
+            self._look,
+            ankles,
+            tr("Prosthetic foot"),
+            tr("without ankle joint, the angle is called “foot relative to shank”"),
         )
         sex = _Captioned(self._look, self.sex, tr("Sex"))
         side = _Captioned(self._look, self.side, tr("Affected or prosthetic side"))
-        aids = _Captioned(self._look, self.aids, tr("Aids and footwear"), tr("all that apply"))
+        aids = _Captioned(self._look, self.aids, tr("Aids and footwear"), tr("choose all that apply"))
         self._form = Card(self._look, padding=24, spacing=16)
         self._rows = [
             self._row(self.code, sex),

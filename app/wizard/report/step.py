@@ -124,7 +124,7 @@ class ReportStep(Step):
         save = BarAction(tr("Save the report"), self._save, tr("Ctrl S"), Icon.FOLDER, is_enabled=can_save)
         put = BarAction(tr("Print"), self.print, tr("Ctrl P"), Icon.PRINT, is_requested=False, is_enabled=can_save)
         if self.saved is None:
-            return BarState(primary=save, others=(put,), note=tr("Shows the patient code only, no name."))
+            return BarState(primary=save, others=(put,), note=tr("The report shows the patient code only, no name."))
         note = tr("Saved as {folder}. Saving again asks for the folder.").format(folder=self.saved.name)
         show = BarAction(tr("Open the folder"), self._open_folder, is_requested=False)
         return BarState(primary=replace(save, is_requested=False), others=(put, show), note=note)
@@ -197,7 +197,9 @@ class ReportStep(Step):
 
     def _on_printable(self, pages: list[bytes]) -> None:
         if not self.printer.put(pages):
-            self.reported.emit(tr("The printer did not accept the report."), tr("Save it, then print the file."))
+            self.reported.emit(
+                tr("The printer did not accept the report."), tr("Save the report, then print the file.")
+            )
 
     def can_save(self) -> bool:
         return self._has_results() and not self._lacks_earlier

@@ -163,7 +163,7 @@ class ResultsStep(Step):
             page.setCurrentWidget(page.working)
         elif evaluation.analysis is None or not evaluation.analysis.recordings:
             page.sentence.show_sentence(
-                tr("No walk is included yet."), tr("Record a walk, or include an excluded one."), tr("Go to Walking")
+                tr("No walk is included yet."), tr("Record a walk, or include an excluded walk."), tr("Go to Walking")
             )
             page.setCurrentWidget(page.sentence)
         else:

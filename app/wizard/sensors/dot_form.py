@@ -298,11 +298,12 @@ class DotForm(Themed):
         if record_hz == 120:
             stated = tr(
                 "No walk data are lost in radio transmission, at any distance. Curves appear once the walk is "
-                "fetched. The sensors are synchronised again before the first walk."
+                "fetched from the sensors. The sensors are synchronised again before the first walk."
             )
         elif record_hz:
             stated = tr(
-                "No walk data are lost in radio transmission, at any distance. Curves appear once the walk is fetched."
+                "No walk data are lost in radio transmission, at any distance. Curves appear once the walk is "
+                "fetched from the sensors."
             )
         else:
             stated = tr("Curves are shown during walking. Data lost in radio transmission are missing.")

@@ -157,7 +157,7 @@ class DotSetup(QObject):
         if self._recording:
             words, can_stop = tr("Stop these recordings"), not self._is_stopping
             stop = BarAction(words, self._want_stop, tr("Enter"), Icon.STOP, is_enabled=can_stop)
-            return BarState(primary=stop, note=tr("Their recordings stay in the sensor memory."))
+            return BarState(primary=stop, note=tr("The recordings stay in the sensor memory."))
         if self._failed and len(self._failed) < count:
             again = BarAction(tr("Try again"), self._synchronise, tr("Enter"), Icon.REPEAT)
             without = tr("Go on without {sensors}").format(sensors=", ".join(self._failed))
@@ -226,7 +226,7 @@ class DotSetup(QObject):
         except SourceRefusedError as problem:
             self._refusal = f"{filled(problem.what, problem.values)}.", f"{filled(problem.remedy, problem.values)}."
         except SourceLostError:
-            self._refusal = tr("A sensor is out of range."), tr("Bring it closer, then try again.")
+            self._refusal = tr("A sensor is out of range."), tr("Bring the sensor closer, then try again.")
         else:
             self._refusal = ("", "")
         for number in recording:
@@ -297,7 +297,7 @@ class DotSetup(QObject):
             self._is_stopping = False
             self._refusal = (
                 tr("The sensors could not be queried."),
-                tr("Choose the source again. See the log for details."),
+                tr("Choose the sensor source again. See the log for details."),
             )
             self._show()
 

@@ -181,7 +181,7 @@ class MemoriesControl(QObject):
         if found.kept:
             missing = sorted(held.files.keys() - found.kept)
             if missing:
-                return tr("Saved, except from {sensors}.").format(sensors=", ".join(missing))
+                return tr("Saved, except data from {sensors}.").format(sensors=", ".join(missing))
             if found.lacking:
                 names = ", ".join(sorted(found.lacking & held.files.keys()))
                 return tr("Saved. Samples of {sensors} could not be fetched.").format(sensors=names)
@@ -190,7 +190,7 @@ class MemoriesControl(QObject):
         if own:
             return tr("Not fetched: {recording}.").format(recording=self._called(own[0]))
         if found.rows:
-            return tr("Not fetched. It belongs to another session: fetch it there.")
+            return tr("Not fetched. The recording belongs to another session: fetch it there.")
         return tr("Not recorded with this library.")
 
     def _called(self, row: "StoredRecording") -> str:
@@ -359,7 +359,9 @@ def _warning(
         )
         return what.format(count=count), then
     if lacking:
-        return tr("Everything is saved except samples that could not be fetched. Those would be lost."), then
+        return tr(
+            "Everything is saved except samples that could not be fetched. Erasing would lose those samples."
+        ), then
     count = len(held)
     what = tr_n(
         "{count} recording in the sensor memory is saved completely in this library.",

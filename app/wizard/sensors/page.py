@@ -414,7 +414,7 @@ class SensorsPage(Themed):
         is_next = self.way is Way.SHAKE and bool(self._sensors) and site is self.next_place
         is_flashing = site is self._flashing
         if sensor is None:
-            note = tr("shake it now") if is_next else tr("found later") if self.way is Way.MOTION else ""
+            note = tr("shake it now") if is_next else tr("detected later") if self.way is Way.MOTION else ""
             mark = None if self.way is Way.MOTION else SensorMark.GAP
             return PlaceShown("", note, mark, is_next, is_flashing)
         if sensor.silent_s > 0:
@@ -434,7 +434,12 @@ class SensorsPage(Themed):
         if self._shaken_together:
             return stated_of_shaken_together(self._shaken_together)
         if self._doubt:
-            return Icon.WARNING, self._doubt, tr("Change their positions, or continue with these."), True
+            return (
+                Icon.WARNING,
+                self._doubt,
+                tr("Change the sensor positions, or continue with the current ones."),
+                True,
+            )
         next_place = self.next_place if self.way is Way.SHAKE else None
         is_left_to_motion = self.way is Way.MOTION
         return stated_of_sensors(self._sensors, worn, self._bared, next_place, is_left_to_motion, self.offered_places)
@@ -442,8 +447,10 @@ class SensorsPage(Themed):
     def _name(self, has_pelvis: bool) -> None:
         """Say how many sensors there are, and where they go."""
         six, seven = tr("Six sensors, any orientation"), tr("Seven sensors, any orientation")
-        legs = tr("Strap them to thigh, shank and foot. Orientation does not matter.")
-        pelvis = tr("On thigh, shank and foot, and on the sacrum, not on a waistband. Orientation does not matter.")
+        legs = tr("Strap the sensors to thigh, shank and foot. Orientation does not matter.")
+        pelvis = tr(
+            "Strap the sensors to thigh, shank, foot and sacrum, not to a waistband. Orientation does not matter."
+        )
         self.title.setText(seven if has_pelvis else six)
         self.subtitle.setText(pelvis if has_pelvis else legs)
 

@@ -194,7 +194,7 @@ class SensorPlaces(Themed):
         theme = self._look.theme
         least = theme.px(NARROW_TILE if self._is_narrow else TILE[0])
         metrics = QFontMetrics(theme.font(12, SEMIBOLD, is_code=True))
-        lines = [tr("no sensor"), tr("shake it now"), tr("found later"), *self._names]
+        lines = [tr("no sensor"), tr("shake it now"), tr("detected later"), *self._names]
         if not self.has_notes_below:
             lines += [" · ".join((name, note)) for name in self._names for note in _notes()]
         widest = max(metrics.horizontalAdvance(line) for line in lines) + theme.px(2 * PADDING + 2)

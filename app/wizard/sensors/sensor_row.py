@@ -84,7 +84,7 @@ class SensorRow:
             return tr("{share} % lost").format(share=figure_text(100 * self.lost_share, ".1f"))
         if self.quiet is not None:
             return quiet_words(self.quiet)
-        return tr(self.model) if self.is_loss_seen else tr("losses unknown")
+        return tr(self.model) if self.is_loss_seen else tr("data loss unknown")
 
     @property
     def rate(self) -> str:
@@ -153,7 +153,7 @@ class SensorRowView(DraggedButton):
         if places == self._places_offered:
             return
         self._places_offered = places
-        described = tr("1 to {count} set the position, Space opens a list of positions")
+        described = tr("Keys 1 to {count} set the position, Space opens a list of positions")
         self.setAccessibleDescription(described.format(count=len(places)))
 
     def takes_other_room(self, sensor: SensorRow) -> bool:

@@ -19,7 +19,7 @@ def stated_of_dragged(sensor: str, site: Site, worn: Mapping[Site, SensorRow]) -
     other = worn.get(site)
     if other is not None and other.name != sensor:
         what = tr("{site} already has sensor {sensor}.").format(site=name_of(site), sensor=other.name)
-        return Icon.INFO, capitalised(what), tr("Drop here to swap the two."), False
+        return Icon.INFO, capitalised(what), tr("Drop here to swap the two sensors."), False
     return Icon.INFO, capitalised(name_of(site)), tr("Drop {sensor} here.").format(sensor=sensor), False
 
 
@@ -31,7 +31,7 @@ def stated_of_shaken_together(sensors: Sequence[str]) -> Stated:
         if len(sensors) == 2
         else tr("{count} sensors were shaken.").format(count=len(sensors))
     )
-    return Icon.WARNING, what, tr("Shake one at a time."), True
+    return Icon.WARNING, what, tr("Shake one sensor at a time."), True
 
 
 def stated_of_sensors(
@@ -61,7 +61,10 @@ def stated_of_sensors(
     if low := [sensor for sensor in sensors if sensor.is_low]:
         what = tr("{name}: battery at {charge}.").format(name=_called(low[0]), charge=low[0].charge)
         ends_soon = low[0].battery is not None and low[0].battery <= NEARLY_EMPTY
-        soon, later = tr("It may stop during a walk. Charge it first."), tr("Charge it after this patient.")
+        soon, later = (
+            tr("The sensor may stop during a walk. Charge it first."),
+            tr("Charge the sensor after this patient."),
+        )
         return Icon.WARNING, what, soon if ends_soon else later, True
     if lossy := [sensor for sensor in sensors if sensor.is_lossy]:
         what = tr("{name}: {share} % of the samples were lost.").format(
@@ -69,16 +72,21 @@ def stated_of_sensors(
         )
         nearer = tr("Move the receiver closer to the patient.")
         if lossy[0].has_memory:
-            nearer = tr("Move this computer closer, or choose the source again: walks in the sensors, or 30 Hz.")
+            nearer = tr(
+                "Move this computer closer to the patient. Or choose the source again, with walks in sensor "
+                "memory, or live at 30 Hz."
+            )
         return Icon.WARNING, what, nearer, True
     if is_left_to_motion and not worn:
         what = tr("Sensor positions are detected in the free motion.")
-        legs = tr("Attach one to each thigh, shank and foot, in any order.")
-        pelvis = tr("Attach one to each thigh, shank and foot and one to the sacrum, in any order.")
+        legs = tr("Attach one sensor to each thigh, shank and foot, in any order.")
+        pelvis = tr("Attach one sensor to each thigh, shank and foot, and to the sacrum, in any order.")
         return Icon.INFO, what, pelvis if has_pelvis else legs, False
     if len(worn) == len(places):
         all_worn = (
-            tr("All seven are assigned and connected.") if has_pelvis else tr("All six are assigned and connected.")
+            tr("All seven sensors are assigned and connected.")
+            if has_pelvis
+            else tr("All six sensors are assigned and connected.")
         )
         return Icon.CHECK, all_worn, "", False
     if Site.PELVIS in bared and has_pelvis and len(worn) == len(LEG_SITES):
@@ -88,7 +96,7 @@ def stated_of_sensors(
         return Icon.INFO, tr("All sensors have a position."), "", False
     if next_place is not None:
         what = tr("Shake the {site} sensor.").format(site=_in_sentence(next_place))
-        return Icon.NEXT, what, tr("Its position turns dark once detected."), False
+        return Icon.NEXT, what, tr("Its position turns dark once the sensor is detected."), False
     return (
         Icon.NEXT,
         tr("Drag each sensor to its position."),

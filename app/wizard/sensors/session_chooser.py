@@ -45,7 +45,7 @@ class SessionChooser(Themed):
         self._title = Text(look, tr("Choose a session to replay"), 20, SEMIBOLD, wraps=True)
         self._why = Text(
             look,
-            tr("It plays as if it were measured now. It is not: all results from it are marked SIMULATED."),
+            tr("The session plays as if measured now, but it is a replay. All its results are marked SIMULATED."),
             14,
             tone="ink2",
             wraps=True,

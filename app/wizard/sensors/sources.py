@@ -149,7 +149,7 @@ class Sources(Sequence[SourceChoice]):
             return _opening(others)
         if found.lines:
             raise SourceRefusedError(
-                later("Text lines (CSV) arrive, but their columns are not defined"), later("Choose them as the source")
+                later("CSV data arrive, but their columns are not defined"), later("Choose these sensors as the source")
             )
         if len(found.passed) == 1:  # then it is this one that is meant
             raise found.passed[0].refusal
@@ -161,7 +161,7 @@ def _remedy(deaf: SourceRefusedError | None) -> str:
     if isinstance(deaf, BluetoothMissingError):
         return later(
             "Plug in the receiver or switch on the sensors, then search again. Bluetooth LE sensors need "
-            "gaitwright[bluetooth]"
+            "the package gaitwright[bluetooth]"
         )
     if deaf is not None:
         return later(
@@ -191,10 +191,10 @@ def _of_streams(address: str) -> SourceChoice:
         return SourceChoice(STREAMS + address, tr("Streams from programs on this computer"), make)
     what = tr(
         "This asks every computer on the network of {address} for sensor streams, by UDP to {group}, "
-        "port {port}. It then contacts those that answer. No patient data are sent."
+        "port {port}. It then contacts the computers that answer. No patient data are sent."
     ).format(address=address, group=GROUP, port=PORT)
     name = tr("Streams on the network of {address}").format(address=address)
-    return SourceChoice(STREAMS + address, name, make, asks=(what, tr("Choose it again to ask.")))
+    return SourceChoice(STREAMS + address, name, make, asks=(what, tr("Choose the source again to start the query.")))
 
 
 def _open_streams(address: str) -> Acquisition:
@@ -204,7 +204,9 @@ def _open_streams(address: str) -> Acquisition:
         return _opening(found.sensors)
     if len(found.passed) == 1:
         raise found.passed[0].refusal
-    raise SourceRefusedError(later("No motion stream found"), later("Start the stream in its program, then ask again"))
+    raise SourceRefusedError(
+        later("No stream with motion data found"), later("Start the stream in its program, then search again")
+    )
 
 
 def fleet_of(sensors: "Sequence[FoundSensor]") -> "DotFleet":

@@ -160,8 +160,8 @@ class SensorsStep(Step):
             for joint in visit.details.turned_sign:  # stated by hand of other sensors
                 if any(known_at.get(site) != worn_at.get(site) for site in (joint.proximal, joint.distal)):
                     visit.record.set_turned(joint, None)
-            what = tr("Sensor positions changed. Standing reference and calibration are derived again.")
-            self.reported.emit(what, tr("If sensors were moved on the body, record both again."))
+            what = tr("Sensor positions changed. Standing reference and calibration are calculated again.")
+            self.reported.emit(what, tr("If sensors were moved on the body, record standing and free motion again."))
         else:
             visit.place_sensors()
             if any(known_at.get(site, name) != name for name, site in worn.items()):
@@ -206,8 +206,8 @@ class SensorsStep(Step):
         """What can be done with the sensors that are open, or why the session cannot go on with them yet."""
         sensors, silent, enter = self._visit.sensors, self._silent_site, tr("Enter")
         if sensors.are_in_memory:
-            back = BarAction(tr("Return to live"), self.setup.set_back, enter, is_requested=False)
-            return BarState(primary=back, note=tr("The sensors are ready for walks. They send no data."))
+            back = BarAction(tr("Send data live"), self.setup.set_back, enter, is_requested=False)
+            return BarState(primary=back, note=tr("The sensors are ready to record walks. They send no live data."))
         if sensors.acquisition is None:
             return BarState(note="" if sensors.is_searching else tr("Choose where to search for sensors."))
         if reason := self._visit.cannot_record:
@@ -308,8 +308,8 @@ class SensorsStep(Step):
             asks = sensors.sync.failure
         page.show_message(*asks if options else (tr("No sensor source is available for this patient."), ""))
         apart = tr(
-            "Simulated and replayed sensors are offered only for codes that begin with DEMO. This keeps "
-            "them apart from real patients."
+            "Simulated and replayed sensors are offered only for patient codes that begin with DEMO. This "
+            "keeps their data apart from real patients."
         )
         page.nothing.show_left_out("" if visit.may_simulate else apart)
 
@@ -473,7 +473,7 @@ class SensorsStep(Step):
         if acquisition is not None and not acquisition.identify(sensor):
             self._without_light.add(sensor)
             self.reported.emit(
-                tr("{sensor} has no LED that can be lit.").format(sensor=sensor), tr("Shake it instead.")
+                tr("{sensor} has no LED that can be lit.").format(sensor=sensor), tr("Shake the sensor instead.")
             )
             self._show_rows()
 

@@ -237,7 +237,7 @@ class _ZeroCard(Card):
         self._worn: frozenset[Joint] = frozenset(LEG_JOINTS)
         self.fields: dict[Joint, NumberField] = {}
         self._column.addWidget(Text(look, tr("Standing angle"), size=20, weight=SEMIBOLD))
-        explained = tr("0° if the joint is straight now. With a contracture, enter the goniometer value.")
+        explained = tr("Enter 0° if the joint is straight now. With a contracture, enter the goniometer value.")
         self._column.addWidget(Text(look, explained, size=14, tone="ink2", wraps=True))
         self._add_joint(tr("Knee"), tr("flexion is +"), tr("Knee flexion"), KNEE_DEG, is_knee=True)
         self._add_joint(tr("Ankle"), tr("dorsiflexion is +"), tr("Ankle dorsiflexion"), ANKLE_DEG, is_knee=False)
@@ -367,11 +367,11 @@ def instruction(view: StandStillView) -> str:
     if view.phase is StandPhase.SKIPPED:
         return tr("The patient cannot stand. Range of motion is reported, absolute angles are not.")
     if view.phase is StandPhase.DONE:
-        stated = tr("{still:.1f} s still. Gyroscope offset and standing reference are set.")
+        stated = tr("Still for {still:.1f} s. Gyroscope offset and standing reference are set.")
         if not view.is_read_back:
-            stated = tr("{still:.1f} s still. The recording is being loaded.")
+            stated = tr("Still for {still:.1f} s. The recording is being loaded.")
         return stated.format(still=view.still_s)
-    return tr("Both feet flat, looking ahead. Holding a rail is fine.")
+    return tr("Both feet are flat, the patient looks ahead. Holding a rail is fine.")
 
 
 def ring_face(view: StandStillView) -> RingFace:
@@ -396,18 +396,18 @@ def verdict(view: StandStillView, is_short: bool = False) -> tuple[Icon | None, 
         what = _all_still(len(view.movement_deg_s)) if is_still else tr("Standing is recorded")
         return Icon.CHECK, what, tr("Continues automatically."), False
     if view.silent == (Site.PELVIS,):
-        goes_on = tr("The count continues; hip angles will be missing.")
+        goes_on = tr("The countdown continues; hip angles will be missing.")
         return Icon.SILENT, tr("Pelvis: no signal"), tr("No hip angles.") if is_short else goes_on, True
     if view.silent:
         what = tr("{sites}: no signal").format(sites=_names(view.silent))
-        waits = tr("The count is paused.")
+        waits = tr("The countdown is paused.")
         return Icon.SILENT, what, waits if is_short else f"{waits} {tr('Switch the sensor off and on.')}", True
     if view.moving:
         what = tr("{sites} moving").format(sites=_names(view.moving))
         return Icon.WAVE, what, _moved(view), True
     if not view.is_known:
         return None, "", "", False
-    then = tr("Movement restarts the count.")
+    then = tr("Movement restarts the countdown.")
     return Icon.CHECK, _all_still(len(view.movement_deg_s)), then, False
 
 
@@ -416,9 +416,9 @@ def way_round(view: StandStillView, is_short: bool = False) -> tuple[Icon | None
     if view.phase is StandPhase.SKIPPED:
         return Icon.INFO, "", tr("The report states that there is no standing reference."), False
     if view.restarts >= OFFERED_AFTER and view.phase is not StandPhase.DONE:
-        what = tr("The count restarted {count} times.").format(count=view.restarts)
+        what = tr("The countdown restarted {count} times.").format(count=view.restarts)
         if is_short:
-            return Icon.WARNING, what, tr("Without it there are no absolute angles."), True
+            return Icon.WARNING, what, tr("Without standing there are no absolute angles."), True
         then = tr("If the patient cannot stand, range of motion is reported, absolute angles are not.")
         return Icon.WARNING, what, then, True
     range_only = tr("Without this step there are no absolute angles.")
@@ -430,7 +430,7 @@ def way_round(view: StandStillView, is_short: bool = False) -> tuple[Icon | None
 
 def _moved(view: StandStillView) -> str:
     """What follows where something is counted."""
-    return tr("The count restarts automatically.") if view.phase is StandPhase.COUNTING else ""
+    return tr("The countdown restarts automatically.") if view.phase is StandPhase.COUNTING else ""
 
 
 def _all_still(count: int) -> str:
@@ -449,4 +449,4 @@ def _no_field(joints: Sequence[Joint]) -> str:
     if not joints:
         return ""
     names = ", ".join(name_of(joint) for joint in joints)
-    return tr("Sensor missing above or below: {joints}.").format(joints=names)
+    return tr("Sensor missing above or below the joint: {joints}.").format(joints=names)

@@ -70,7 +70,7 @@ class StandStillStep(Step):
     @property
     def note(self) -> str:
         if self._visit.has_skipped_standing:
-            return tr("skipped, in report")
+            return tr("skipped, reported")
         if not self._has_stood:
             return ""
         stated = (
@@ -127,7 +127,7 @@ class StandStillStep(Step):
 
     def bar(self) -> BarState:
         space, enter = tr("Space"), tr("Enter")
-        again = BarAction(tr("Restart count"), self._start, space, Icon.REPEAT, is_requested=False)
+        again = BarAction(tr("Restart countdown"), self._start, space, Icon.REPEAT, is_requested=False)
         go_on = BarAction(tr("Continue to free motion"), self._go_on, enter, Icon.NEXT)
         if self._phase is StandPhase.COUNTING:
             return BarState(primary=again, note=tr("Continues automatically when done."))
@@ -135,7 +135,7 @@ class StandStillStep(Step):
             return BarState(primary=go_on, others=(again,))
         if self._phase is StandPhase.SKIPPED:
             return BarState(primary=go_on)
-        return BarState(primary=BarAction(tr("Start count"), self._start, space, Icon.PLAY))
+        return BarState(primary=BarAction(tr("Start countdown"), self._start, space, Icon.PLAY))
 
     def on_intent(self, intent: Intent) -> bool:
         if intent.action is not KeyAction.RUN or self._phase is StandPhase.SKIPPED:

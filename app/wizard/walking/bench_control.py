@@ -214,8 +214,10 @@ class Bench(QObject):
             )
         if found is not None:
             return bench_answer(found, side)
-        first = tr("{letter} is the starting point. Change one thing, record it, then walk.")
-        return Answer(Outcome.OPEN, first.format(letter=shown.letter), tr("Record the change before its walk."))
+        first = tr("{letter} is the starting point. Change one thing, enter the change, then record a walk.")
+        return Answer(
+            Outcome.OPEN, first.format(letter=shown.letter), tr("Enter the change before you record its walk.")
+        )
 
     def _rows(self, every: Comparison, shown: Part | None, beside: Part | None) -> list[AlignmentRow]:
         side, parts, rows = self.side, every.parts, []

@@ -3,8 +3,7 @@
 from app.results.compared_words import change_in_words, is_judged, why_not_reported
 from app.summary.comparison import Compared, Comparison
 from app.summary.measures import FITTED
-from app.summary.numbers_in_words import DAGGER, judged_in_words
-from app.theme.icons import Icon
+from app.summary.numbers_in_words import DAGGER, MARKS, judged_in_words
 from app.theme.notifier import ThemeNotifier
 from app.widgets.card import Card
 from app.widgets.table import CellTable, TableColumn, TableRow
@@ -26,7 +25,7 @@ MOST_FITTED = 3  # there is room for no more
 
 
 class BenchDifferences(Card):
-    """Grey is the error; what leaves it has a triangle."""
+    """Grey is the error; what is beyond it has a circle."""
 
     def __init__(self, look: ThemeNotifier) -> None:
         self.title = Text(look, size=16, weight=SEMIBOLD)
@@ -57,7 +56,7 @@ class BenchDifferences(Card):
         rows += map(_row, _fitted_beyond_error(found, prosthetic))
         sound = next(side for side in Side if side is not prosthetic)
         if sound in found.sides:
-            rows += [_heading(tr("Sound side response"), sound), *_rows(found, OF_SOUND, sound)]
+            rows += [_heading(tr("Sound-side response"), sound), *_rows(found, OF_SOUND, sound)]
         rows += [_heading(tr("Both legs"), None), *_rows(found, OF_BOTH, None), *_rows(found, (LENGTH,), prosthetic)]
         self.table.show_rows(columns, rows)
 
@@ -84,11 +83,11 @@ def _row(row: Compared) -> TableRow:
     change = change_in_words(row.difference.difference, row.measure) if row.is_reported else why_not_reported(row)
     if is_judged(row) and row.difference.is_unverified:
         change += DAGGER
-    mark = Icon.WARNING if row.exceeds else None
+    change = f"{MARKS[row.difference.mark]} {change}".strip()
     return TableRow(
         (
             TextCell(tr(row.measure.name), size=12, weight=weight),
-            TextCell(change, align=RIGHT, weight=weight, mark=mark),
+            TextCell(change, align=RIGHT, weight=weight),
             _strip(row),
         )
     )

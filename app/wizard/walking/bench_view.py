@@ -64,7 +64,7 @@ class BenchView(Themed):
     def __init__(self, look: ThemeNotifier, entry: ChangeEntry) -> None:
         super().__init__()
         self._look, self._is_compact, self._room = look, False, 0
-        self._mark = IconMark(look, Icon.WARNING, size=24)
+        self._mark = IconMark(look, Icon.DIFFERENCE, size=24)
         self.first = Text(look, size=20, weight=SEMIBOLD, wraps=True)
         self.then = Text(look, tone="ink2", wraps=True)
         self.tabs = Segmented(

@@ -2,11 +2,11 @@
 
 import math
 
-from app.results.compared_words import error_in_sentence, is_judged
+from app.results.compared_words import evidence_of, is_judged
 from app.summary.answer import Answer, Outcome
 from app.summary.comparison import Compared, Comparison
 from app.summary.conditions import Part
-from app.summary.measure_sentences import Reported, change_sentence, likely_sentence, similar_sentence
+from app.summary.measure_sentences import Reported, change_sentence, similar_sentence
 from app.summary.numbers_in_words import fixed
 from app.summary.what_stands_out import FAMILIES
 from app.wording.translation import tr
@@ -25,8 +25,8 @@ def bench_answer(found: Comparison, prosthetic: Side) -> Answer:
             one=shown.letter, other=other.letter
         )
         then = tr(
-            "Provisional: {letter} has {count} strides on the prosthetic side; {required} are needed for a "
-            "measurement error."
+            "Provisional: {letter} has {count} strides on the prosthetic side; {required} are needed to "
+            "determine measurement error."
         )
         count = few[0].strides(prosthetic)
         then = then.format(letter=few[0].letter, count=count, required=MIN_STRIDES_FOR_SD)
@@ -39,13 +39,11 @@ def bench_answer(found: Comparison, prosthetic: Side) -> Answer:
     beyond = [row for row in own if row.exceeds]  # as the table marks them
     most = max(_without_family(worth or beyond or own), key=lambda row: row.difference.ratio)
     if beyond:
-        error = tr("Beyond measurement error (±{error}).") if worth else tr("Just beyond measurement error (±{error}).")
-        error = error.format(error=error_in_sentence(most))
-        return Answer(Outcome.DIFFERS, change_sentence(*_of_side(most)), f"{error} {_beside(found, prosthetic)}")
+        stated = change_sentence(*_of_side(most))
+        return Answer(Outcome.DIFFERS, stated, f"{evidence_of(most)} {_beside(found, prosthetic)}")
     column, _, size, *reported = _of_side(most)
     similar = similar_sentence(column, tr("Prosthetic side"), size, *reported)
-    likely = likely_sentence(column, most.difference, *reported)
-    return Answer(Outcome.NOTHING, similar, f"{likely} {_beside(found, prosthetic)}")
+    return Answer(Outcome.NOTHING, similar, f"{evidence_of(most)} {_beside(found, prosthetic)}")
 
 
 def speeds_in_words(shown: Part, other: Part) -> str:
@@ -53,7 +51,7 @@ def speeds_in_words(shown: Part, other: Part) -> str:
     values = [part.of_both(SPEED) for part in (other, shown)]
     if not all(map(math.isfinite, values)):
         return tr("Walking speeds are not known.")
-    return tr("Walking speed {first} and {second} m/s.").format(first=fixed(values[0], 2), second=fixed(values[1], 2))
+    return tr("Walking speeds: {first} and {second} m/s.").format(first=fixed(values[0], 2), second=fixed(values[1], 2))
 
 
 def _is_reported_of(row: Compared) -> bool:
@@ -87,5 +85,5 @@ def _beside(found: Comparison, prosthetic: Side) -> str:
         stated = tr("The sound side also changes beyond measurement error.")
     elif sound:
         stated = tr("The sound side does not change beyond measurement error.")
-    straps = tr("Sensors stayed on.") if found.is_one_attachment else tr("Sensors were reattached in between.")
+    straps = tr("Sensors stayed attached.") if found.is_one_attachment else tr("Sensors were reattached in between.")
     return " ".join([stated, straps, speeds_in_words(found.parts[1], found.against)])

@@ -150,8 +150,8 @@ class MemoryControl(QObject):
                 "minute. The patient stands near this computer meanwhile."
             )
         return tr(
-            "For this they are synchronised once more. This takes about a minute. The patient stands near "
-            "this computer meanwhile."
+            "For this the sensors are synchronised once more. This takes about a minute. The patient "
+            "stands near this computer meanwhile."
         )
 
     def _synchronise(self, purpose: SyncPurpose) -> None:

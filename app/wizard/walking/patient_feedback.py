@@ -216,7 +216,9 @@ def reasons_against(
         elif measure is TargetMeasure.KNEE_SWING_PEAK and side is not None:
             knee = knee_of(side)
             if not {knee.proximal, knee.distal} <= set(rested):
-                reasons[measure, side] = tr("These sensors have not been still yet. Let the patient stand still first.")
+                reasons[measure, side] = tr(
+                    "The sensors of this knee have not been still yet. Let the patient stand still first."
+                )
     return reasons
 
 
@@ -228,7 +230,7 @@ def _not_measured(measure: TargetMeasure, side: Side | None, worn: tuple[Site, .
         return tr("Both feet need a sensor.")
     if side not in feet:
         return tr("This foot has no sensor.")
-    return tr("The knee angle is not known yet. It needs both sensors and a free motion.")
+    return tr("The knee angle is not known yet. It needs sensors on thigh and shank, and a free motion.")
 
 
 def _is_gated(target: Target, view: "WalkingReadout", worn: Collection[Site]) -> bool:

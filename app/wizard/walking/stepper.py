@@ -32,7 +32,7 @@ class Stepper(QWidget):
     def show_value(self, caption: str, value: str) -> None:
         self.caption, self.value = caption, value
         self.setAccessibleName(f"{caption}: {value}")
-        self.setAccessibleDescription(tr("Plus and minus change the value."))
+        self.setAccessibleDescription(tr("The plus and minus keys change the value."))
         self.updateGeometry()
         self.update()
 

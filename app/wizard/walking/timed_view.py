@@ -379,4 +379,4 @@ def _middle_words(state: TimedViewState) -> str:
     if definition.duration_s is None:
         return laps
     left_s = max(0, math.ceil(definition.duration_s - state.elapsed_s))
-    return tr("{lap}, {minutes}:{seconds:02d} left").format(lap=laps, minutes=left_s // 60, seconds=left_s % 60)
+    return tr("{lap}, {minutes}:{seconds:02d} to go").format(lap=laps, minutes=left_s // 60, seconds=left_s % 60)

@@ -31,7 +31,7 @@ class WalkStart:
         if not sensors.site_of:
             return tr("Set the sensor positions first.")
         if sensors.are_silent:
-            return tr("No signal from any sensor. Switch them on, or move the receiver closer.")
+            return tr("No signal from any sensor. Switch the sensors on, or move the receiver closer.")
         if self._visit.recordings.must_move:
             return tr("The sensors were reattached. Repeat standing still and free motion first.")
         return ""

@@ -95,7 +95,7 @@ class WalkingBar:
             primary=BarAction(tr("Stop walk"), self._walks.run, tr("Space"), Icon.STOP),
             recording=RecordingNote(
                 tr("Recording {walk}").format(walk=recordings.called(walk.details.name)),
-                " ".join(filter(None, [self._saved(), tr("The space bar stops it, with a sound.")])),
+                " ".join(filter(None, [self._saved(), tr("The space bar stops the walk, with a sound.")])),
                 elapsed_s,
                 sounds.is_on(),
             ),

@@ -75,8 +75,8 @@ def read_c3d(path: Path) -> ReferenceFile:
     if not angles:
         raise FileRefusedError(
             path.name,
-            "it contains neither hip, knee or ankle angles nor the markers to compute them",
-            "Include LKneeAngles and so on in the export, or name markers LHIP, LKNE, LANK, LHEE, LTOE and R...",
+            "the file contains neither hip, knee or ankle angles nor the markers to compute them",
+            "Include LKneeAngles and so on in the export, or name the markers LHIP, LKNE, LANK, LHEE, LTOE and R...",
         )
     return ReferenceFile(FORMAT, source, (ReferenceTrial(angles=angles, events=_events(c3d["parameters"])),))
 

@@ -23,7 +23,7 @@ def lines_of(path: Path) -> list[str]:
         return content.decode("utf-8-sig").splitlines()
     except UnicodeDecodeError as error:
         line = content[: error.start].count(b"\n") + 1
-        raise FileRefusedError(f"{path.name}, line {line}", "this is not UTF-8 text", CORRECT_IT) from error
+        raise FileRefusedError(f"{path.name}, line {line}", "the file is not UTF-8 text", CORRECT_IT) from error
 
 
 def numbers_below(
@@ -58,7 +58,7 @@ def numbers_below(
         if len(cells) != count:
             raise FileRefusedError(
                 f"{where}, line {number}",
-                "the line has {count} columns, the header {whole}",
+                "the line has {count} columns, but the header has {whole}",
                 COPY_AGAIN,
                 count=len(cells),
                 whole=count,
@@ -90,8 +90,8 @@ def check_ascending(time_s: FloatArray, where: str) -> None:
         k = int(np.argmax(steps <= 0))
         raise FileRefusedError(
             where,
-            "in row {row} time goes from {one} s to {other} s",
-            "Export it again with ascending times",
+            "in row {row} time does not increase: from {one} s to {other} s",
+            "Export the file again with ascending times",
             one=f"{time_s[k]:g}",
             other=f"{time_s[k + 1]:g}",
             row=k + 2,

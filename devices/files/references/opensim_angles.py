@@ -48,7 +48,7 @@ def read_opensim(path: Path) -> ReferenceFile:
         raise FileRefusedError(
             path.name,
             "this file contains sensor orientations, not joint angles",
-            "Run inverse kinematics and give its .mot file",
+            "Run inverse kinematics and give the resulting .mot file",
         )
     names = lines[end + 1].split()
     found = {JOINTS[short]: k for k, name in enumerate(names) if (short := _coordinate(name)) in JOINTS}

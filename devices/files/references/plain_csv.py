@@ -51,9 +51,9 @@ def read_plain_csv(path: Path) -> ReferenceFile:
         return ReferenceFile(FORMAT, "strides", _strides(path))
     raise FileRefusedError(
         path.name,
-        "its columns are neither angles nor events nor strides ({names})",
-        "Name them time_s and left_knee, left_ankle, left_hip, right_knee, right_ankle, right_hip in degrees; time_s, "
-        "side, event; or side, start_s, end_s, stride_length_m",
+        "the file's columns are neither angles nor events nor strides ({names})",
+        "Name the columns time_s and left_knee, left_ankle, left_hip, right_knee, right_ankle, "
+        "right_hip in degrees; time_s, side, event; or side, start_s, end_s, stride_length_m",
         names=quoted(", ".join(names), 200),
     )
 

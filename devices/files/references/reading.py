@@ -44,7 +44,7 @@ def read_reference(path: Path) -> ReferenceFile:
     if path.is_dir():
         raise FileRefusedError(path.name, "this is a folder", "Give the reference file")
     if not path.exists():
-        raise FileRefusedError(str(path), "this file does not exist", "Check its name")
+        raise FileRefusedError(str(path), "this file does not exist", "Check the file's name")
     with path.open("rb") as file:
         head = file.read(HEAD_BYTES)
     for one in READERS.values():
@@ -52,7 +52,7 @@ def read_reference(path: Path) -> ReferenceFile:
             return one.read(path)
     raise FileRefusedError(
         path.name,
-        "this is not a recognised reference file",
+        "the file is not a recognised reference file",
         "Give a CSV file with time_s and left_knee, left_ankle, right_knee or right_ankle in degrees, "
         "an OpenSim .mot, a C3D, or a Visual3D text export",
     )

@@ -56,7 +56,7 @@ def test_what_is_no_agreement_is_never_replaced(folder: Path, capsys: pytest.Cap
     for place in (folder / "session", folder / "ref.csv"):
         arguments = ["agree", str(folder / "session"), "--reference", str(folder / "ref.csv"), "--out", str(place)]
         assert main(arguments) == 2
-        assert "this already exists and is not an agreement" in capsys.readouterr().err
+        assert "this already exists and is not a comparison with a reference" in capsys.readouterr().err
     assert (folder / "session" / "session.toml").is_file()
 
 

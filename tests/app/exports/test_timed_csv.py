@@ -156,7 +156,7 @@ def test_the_page_of_tests_shows_the_course_of_those_that_two_visits_have(visit:
     assert "they are not judged" not in stated
     assert charts_of_tests(course, "barefoot", facts) == {}
     alone = replace(request, course=course[1:])
-    assert "Over the visits" not in str(timed_page(alone, facts))
+    assert "Progress by visit" not in str(timed_page(alone, facts))
 
 
 def with_tests(*tests: tuple[TimedProtocol, float]) -> Course:

@@ -194,6 +194,8 @@ def limits() -> dict[str, str]:
     return {
         "neighbours": f"{LIMITS.pairing_margin:g}",
         "axis": f"{care:g}° {most:g}°",
+        "axis halves": "{:g}° {:g}°".format(*LIMITS.axis_halves_deg),
+        "axis motions": "{:g}° {:g}°".format(*LIMITS.axis_motions_deg),
         "clock": f"{clock_care:g} ms {clock_most:g} ms",
         "lost": f"{1000 * MAX_REPORTED_GAP_S:g} ms {lost_care:g} % {lost_most:g} %",
         "clipped": f"{LIMITS.clipped_percent[1]:g} % {LIMITS.clipped_percent[1]:g} %",

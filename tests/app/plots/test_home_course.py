@@ -187,9 +187,9 @@ def test_a_goal_is_beside_its_lane_with_how_the_last_visit_is_to_it(page: HomePa
     page.panel.show_course(VISITS, [early])
     found = stated(page.panel.course)
     assert f"{3 * chr(0xB7)} goal 1.05\N{NO-BREAK SPACE}m/s" in found
-    assert "reached, but within measurement error" in found
+    assert "reached; the difference is within measurement error" in found
     page.panel.show_course(VISITS, [late])  # agreed on the day of the last visit
-    assert "reached, but within measurement error" not in stated(page.panel.course)
+    assert "reached; the difference is within measurement error" not in stated(page.panel.course)
     page.panel.show_course(VISITS, [replace(early, ended=early.agreed)])
     assert not any("goal" in one for one in stated(page.panel.course))
 

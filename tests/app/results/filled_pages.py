@@ -222,8 +222,8 @@ def no_sensors(look: ThemeNotifier) -> QWidget:
     page.show_no_source()
     page.nothing.show_left_out(
         tr(
-            "Simulated and replayed sensors are offered only for codes that begin with DEMO. This keeps "
-            "them apart from real patients."
+            "Simulated and replayed sensors are offered only for patient codes that begin with DEMO. This "
+            "keeps their data apart from real patients."
         )
     )
     return page

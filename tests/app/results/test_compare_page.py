@@ -491,7 +491,10 @@ def test_between_legs_only_what_is_worth_a_sentence_is_stated(
     assert "Beyond measurement error (±" in loud
     ankle = shown(page, bent_more(analysis, 20.0, Joint.RIGHT_ANKLE), session, Contrast.SIDES)
     assert "Ankle range of motion" not in ankle  # its error is borrowed: the table marks it, no sentence states it
-    assert ankle.startswith("Some differences are beyond an error borrowed from another joint. The table marks them.")
+    assert ankle.startswith(
+        "Some differences are beyond measurement error. This error comes from another joint. The "
+        "table marks these differences."
+    )
     assert "Largest: ankle range of motion" in ankle
 
 
@@ -597,7 +600,7 @@ def test_without_a_zero_curves_are_compared_about_their_mean(
     shown(page, recalibrated(analysis, [Joint.LEFT_KNEE], zero=ZeroKind.NONE), session, Contrast.CONDITIONS)
     frame = page.compare.frames[Side.LEFT, JointKind.KNEE]
     assert [float(np.mean(curve.angle_deg)) for curve in frame.chart.curves] == [pytest.approx(0.0, abs=1e-9)] * 2
-    assert "0° is the mean of the gait cycle." in frame.note
+    assert "0° is the mean angle over the gait cycle." in frame.note
     assert frame.chart.described.band is None
     assert "mean of the stride" not in page.compare.frames[Side.RIGHT, JointKind.KNEE].note
 
@@ -720,7 +723,7 @@ def test_from_the_latest_visit_as_base_the_one_before_is_reported(
 def test_the_conclusion_speaks_of_all_sentences_there_are(analysis: Analysis, session: Session) -> None:
     (visits,) = visits_by_condition([walked(day, analysis, session, walk_1="A") for day in ("May", "July")])
     row = next(row for row in Comparison(Contrast.VISITS, visits.parts).rows if row.is_reported)
-    assert conclusion(["a", "b", "c", "d"], [row]) == ["a", "b", "c", "The table shows all of them."]
+    assert conclusion(["a", "b", "c", "d"], [row]) == ["a", "b", "c", "The table shows all differences."]
     assert conclusion(["a", "b", "c"], [row]) == ["a", "b", "c"]
 
 

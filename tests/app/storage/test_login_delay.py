@@ -36,7 +36,7 @@ def try_wrong(delay: LoginDelay, code: str, count: int = 1) -> None:
     for _ in range(count):
         with pytest.raises(KeyRefusedError), delay.trying(code):
             raise KeyRefusedError(
-                "This passphrase does not open the library", "Enter it again, or use the recovery key"
+                "This passphrase does not open the library", "Enter the passphrase again, or use the recovery key"
             )
 
 

@@ -59,7 +59,7 @@ def test_a_figure_has_half_of_the_error_between_visits_for_its_whisker() -> None
         figure, found = one.figure(column, side), change(other, one, column, side)
         assert figure is not None
         assert found is not None
-        assert found.error == pytest.approx(2 * figure.whisker)
+        assert found.error == pytest.approx(2 * figure.whisker_at(math.nan))
     knee = change(other, one, KNEE, Side.LEFT)
     assert knee is not None
     assert knee.exceeds
@@ -92,7 +92,7 @@ def test_what_is_not_reported_leaves_a_gap_and_is_named() -> None:
     assert sound is not None
     assert (knee.verdict, knee.is_reported) == (Verdict.NOT_REPORTED, False)
     assert math.isnan(knee.found.mean)
-    assert math.isnan(knee.whisker)
+    assert math.isnan(knee.whisker_at(math.nan))
     assert sound.is_reported
     assert found.not_reported == (Joint.LEFT_KNEE,)
     readable = only(course((walked(), "shoes")))

@@ -197,7 +197,7 @@ def test_what_is_drawn_is_explained_and_nothing_else() -> None:
     two = lanes([visit(1, shoes(40.0)), visit(2, shoes(60.0))])
     stated = key_in_words(two)
     assert stated.startswith("Whisker: half the error of a change. Grey: first visit ± error. †")
-    assert key_in_words(lanes([visit(1, shoes())])) == "Whisker: half the error of a change."
+    assert key_in_words(lanes([visit(1, shoes())])) == "Whisker: half the measurement error of a change."
     assert key_in_words(lanes([visit(1, shoes(strides=5))])) == ""  # under ten strides nothing is judged
 
 

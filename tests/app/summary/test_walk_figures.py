@@ -84,7 +84,7 @@ def test_the_band_of_a_peak_is_where_the_groups_mean_curve_has_its_own(walk: Rec
 def test_without_a_zero_only_what_needs_none_is_reported(analysis: Analysis) -> None:
     walk = walk_of(recalibrated(analysis, [Joint.LEFT_KNEE], zero=ZeroKind.NONE))
     for figure in peak_figures(alone(walk), reference_curves())["knee"]:
-        holds = figure.name in ("Range of motion", "Time of peak flexion, swing, %")
+        holds = figure.name in ("Range of motion", "Time of peak flexion in swing, %")
         assert (Side.LEFT in figure.sides) is holds, figure.name
         assert dict(figure.unknown) == ({} if holds else {Side.LEFT: NO_ZERO})
         assert Side.RIGHT in figure.sides

@@ -41,7 +41,7 @@ def test_passphrases_are_judged_by_how_long_they_hold(passphrase: str, expected:
         ("hijklmnopqrstu", "are in sequence"),
         ("zse45rdxcvgy7", "side by side"),
         ("24.12.1968", "a date or a year"),
-        ("q9x vv zt b", "It is too short for the characters it uses"),
+        ("q9x vv zt b", "The passphrase is too short for the characters it uses"),
     ],
 )
 def test_a_refusal_states_why_and_what_to_do(passphrase: str, why: str) -> None:

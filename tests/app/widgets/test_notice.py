@@ -31,7 +31,7 @@ def middle_of(rows: FloatArray) -> float:
 def test_the_icon_is_beside_the_first_line(qtbot: QtBot, height: int, then: str) -> None:
     notice = Notice(ThemeNotifier(), size=16)
     qtbot.addWidget(notice)
-    notice.show_message(Icon.CHECK, "All six are assigned and connected.", then)
+    notice.show_message(Icon.CHECK, "All six sensors are assigned and connected.", then)
     notice.resize(500, max(height, notice.minimumSizeHint().height()))
     notice.show()
     dark = ink(notice)

@@ -43,7 +43,7 @@ STATES = [
     (tile(lost_share=0.01), TileState.FINE, "100 Hz · 1.0 % lost"),
     (tile(silent_s=3.4, lost_share=0.2, battery=0.05), TileState.SILENT, "no signal 3 s"),
     (tile(silent_s=9.0, is_worn=False), TileState.NOT_WORN, "not used"),
-    (replace(tile(is_worn=False), is_awaited=True), TileState.NOT_WORN, "found later"),
+    (replace(tile(is_worn=False), is_awaited=True), TileState.NOT_WORN, "detected later"),
 ]
 
 

@@ -14,7 +14,7 @@ from tests.app.room import settle, words_cut
 
 STEPS = (
     RailRow("Patient", "Left prosthetic", StepState.DONE),
-    RailRow("Stand still", "skipped, in report", StepState.SKIPPED),
+    RailRow("Stand still", "skipped, reported", StepState.SKIPPED),
     RailRow("Free motion", "left knee 3.8°", StepState.ATTENTION),
     RailRow("Walking", "Recording walk 3", StepState.CURRENT),
     RailRow("Results"),

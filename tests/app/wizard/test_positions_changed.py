@@ -66,7 +66,7 @@ def test_new_places_of_the_same_sensors_are_stated_and_a_sign_turned_by_hand_is_
     reported = QSignalSpy(calibrated.reported)
     with qtbot.waitSignal(visit.worn.corrected, timeout=10_000):
         calibrated.leave()
-    assert reported.at(0)[0] == "Sensor positions changed. Standing reference and calibration are derived again."
+    assert reported.at(0)[0] == "Sensor positions changed. Standing reference and calibration are calculated again."
     assert not visit.recordings.is_restrapped
     assert visit.details.turned_sign == {Joint.RIGHT_ANKLE: -1}
 

@@ -73,7 +73,7 @@ def filled(look: ThemeNotifier) -> WizardShell:
     rows = [
         ("Patient", "Left prosthetic", StepState.DONE),
         ("Sensors", "6 of 6 assigned", StepState.DONE),
-        ("Stand still", "skipped, in report", StepState.SKIPPED),
+        ("Stand still", "skipped, reported", StepState.SKIPPED),
         (
             "Free motion",
             "enough movement for 1 of 2 knees, 2 of 2 ankle centres; left knee: not a hinge",

@@ -50,7 +50,7 @@ def test_it_is_stated_whom_it_asks_and_asked_when_it_is_chosen_once_more(
     assert WARNING not in stated(step)
     step.page.source_chosen.emit(NETWORK)
     assert WARNING in stated(step)
-    assert "Choose it again to ask." in stated(step)
+    assert "Choose the source again to start the query." in stated(step)
     assert (asked, visit.sensors.is_searching) == ([], False)
     with qtbot.waitSignal(visit.refused, timeout=5000) as refused:
         step.page.source_chosen.emit(NETWORK)

@@ -13,7 +13,7 @@ import pytest
 from app.wording.verdicts import WITHOUT_FIGURES, WORDS, gate_sentence, gate_words, verdict_alone, verdict_word
 from core.body import Joint, Side, Site
 from core.gait.clocks import ClockTie
-from core.results import RecordingAnalysis, ZeroKind
+from core.results import AxisHalves, RecordingAnalysis, ZeroKind
 from core.signal.reception import Reception
 from core.verdicts.gates import verdicts_of
 from core.verdicts.model import GateReason, Verdict, Verdicts
@@ -46,6 +46,10 @@ def left(**changes: Any) -> RecordingAnalysis:
 
 def clocks(**changes: Any) -> RecordingAnalysis:
     return walk(clocks=replace(SURE_CLOCKS, **changes))
+
+
+def apart(deg: float, *, is_free_motion: bool = False) -> RecordingAnalysis:
+    return walk(axis_halves={Joint.LEFT_ANKLE: AxisHalves(np.deg2rad(deg), 0.01, is_free_motion, {})})
 
 
 ONE = "Use one receiver for all sensors."
@@ -81,6 +85,22 @@ CASES: list[tuple[RecordingAnalysis, dict[str, Any], str]] = [
         "Calibration certainty is only ±12.0° (limit ±9.0°). Record free motion, or move longer and in more",
     ),
     (walk(), {"axis_sd_rad": None}, "The certainty of the joint axis is not known. Record free motion."),
+    (apart(12.0), {}, "The left ankle's axis came out 12.0° apart in the two halves of the walk (limit 10.0°). Record"),
+    (
+        apart(55.0),
+        {},
+        "The left ankle's axis came out 55.0° apart in the two halves of the walk, so its angles are not",
+    ),
+    (
+        apart(30.0, is_free_motion=True),
+        {},
+        "The left ankle's axis came out 30.0° apart in free motion and in the walk (limit 24.0°). Tighten the strap",
+    ),
+    (
+        apart(40.0, is_free_motion=True),
+        {},
+        "The left ankle's axis came out 40.0° apart in free motion and in the walk, so its angles are not compared.",
+    ),
     (
         walk(),
         {"lag_sd_s": 0.004},

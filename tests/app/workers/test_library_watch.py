@@ -105,7 +105,7 @@ def test_it_is_missed_within_a_second_and_stated_where_recordings_go(
     seen.append(controller.is_gone)
     with qtbot.waitSignal(controller.back, timeout=WAIT_MS) as stated:
         elsewhere.rename(folder)
-    assert stated.args == ["The library is available again.", "There was nothing to add."]
+    assert stated.args == ["The library is available again.", "There were no recordings to add."]
     assert [*seen, controller.is_gone] == [False, True, False]
     assert not opened.shelter.folder.exists()
 
@@ -351,4 +351,4 @@ def test_a_demonstration_that_is_gone_promises_no_shelter(qtbot: QtBot, controll
         opened.folder.rename(elsewhere)
     elsewhere.rename(opened.folder)  # to be removed
     assert stated.args is not None
-    assert stated.args[1] == "The demonstration ends here. Open it again."
+    assert stated.args[1] == "The demonstration ends here. Open the demonstration again."

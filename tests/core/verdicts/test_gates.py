@@ -13,8 +13,10 @@ from core.body import LEG_JOINTS, Joint, Side, Site
 from core.calibration.same_joint import most_disagreement
 from core.gait.clocks import ClockTie
 from core.gait.strides import Reason
-from core.results import Analysis, Calibration, Method, RecordingAnalysis, ZeroKind
+from core.results import Analysis, AxisHalves, Calibration, Method, RecordingAnalysis, ZeroKind
 from core.samples import RecordingKind
+from core.timed.found import TimedTest
+from core.timed.protocols import TimedProtocol
 from core.verdicts.gates import judged, verdicts_of
 from core.verdicts.model import GateReason, Verdict, Verdicts
 from tests.core.verdicts.built_walk import SURE_CLOCKS, calibrations, leg, not_read, walk
@@ -131,6 +133,24 @@ def test_sensors_that_agree_well_enough_for_their_margin_may_be_of_one_joint(
 ) -> None:
     most = most_disagreement(margin)
     assert most is None or disagreement <= most
+
+
+@pytest.mark.parametrize(
+    ("is_free_motion", "apart_deg", "verdict"),
+    [
+        *((False, 9.99, None), (False, 10.1, "care"), (False, 24.9, "care"), (False, 25.1, "withheld")),
+        *((True, 23.9, None), (True, 24.1, "care"), (True, 32.9, "care"), (True, 33.1, "withheld")),
+    ],
+)
+def test_axes_that_come_out_apart_in_two_parts_hit_their_own_joint_alone(
+    is_free_motion: bool, apart_deg: float, verdict: str | None
+) -> None:
+    halves = {Joint.LEFT_ANKLE: AxisHalves(np.deg2rad(apart_deg), 0.01, is_free_motion, {})}
+    gate = "axis_motions" if is_free_motion else "axis_halves"
+    closed = hits(verdict, gate, ANKLE, *SHAPE_HEIGHT) if verdict else {}
+    assert not_read(gates_of(walk(axis_halves=halves))) == closed
+    empty = TimedTest(TimedProtocol.TWO_MINUTES, 0.0, 120.0, False, False, *[100.0] * 3, *[()] * 8)
+    assert not_read(gates_of(walk(axis_halves=halves, timed=empty))) == closed
 
 
 def test_a_foot_sensor_that_may_be_on_another_foot_puts_its_legs_strides_in_doubt() -> None:

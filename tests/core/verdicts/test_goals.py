@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 
 from core.goals import Goal, GoalOf
-from core.verdicts.goals import GoalStanding, beyond, error_of_visit, standing
+from core.verdicts.goals import GoalStanding, beyond, error_of_visit, share_at_goal, standing
 from core.verdicts.stride_means import mean_of_strides
 
 KNEE, SPEED, STANCE = "knee_stance_to_swing_deg", "speed_m_s", "stance_percent"
@@ -62,8 +62,25 @@ def test_beyond_counts_towards_the_goal() -> None:
 
 
 def test_the_error_of_a_visit_is_that_of_a_change_between_visits() -> None:
-    """9.2 of a knee; of speed 0.20; of stance 1.96 x sqrt 2 x 3.0 = 8.3156. Nine strides are too few for any."""
-    for column, value, error in ((KNEE, 60.0, 9.2), (SPEED, 1.2, 0.20), (STANCE, 60.0, 8.3156)):
+    """7.4377 of a knee of 60 deg; of speed 0.1802; of stance 1.96 x sqrt 2 x 1.1. Nine strides are too few for any."""
+    for column, value, error in ((KNEE, 60.0, 7.4377), (SPEED, 1.2, 0.1802), (STANCE, 60.0, 3.0490)):
         assert error_of_visit(column, mean_of_strides(np.full(12, value))) == pytest.approx(error, abs=1e-4)
     assert math.isnan(error_of_visit(KNEE, mean_of_strides(np.full(9, 60.0))))
     assert math.isnan(error_of_visit("knee_swing_peak_percent", mean_of_strides(np.full(12, 60.0))))
+
+
+@pytest.mark.parametrize(
+    ("goal", "value", "error", "share"),
+    [
+        (AT_LEAST, 60.0, 7.4377, 0.5),
+        # 4 deg beyond, one SD 7.4377 / 2.77186 = 2.68328: Phi(1.49071) = 0.93198
+        (AT_LEAST, 64.0, 7.4377, 0.93198),
+        (AT_LEAST, 56.0, 7.4377, 0.06802),
+        (AT_LEAST, 56.0, math.nan, math.nan),
+        (AT_LEAST, math.nan, 7.4377, math.nan),
+    ],
+)
+def test_a_goal_is_answered_in_how_many_measurements_the_true_value_is_there(
+    goal: Goal, value: float, error: float, share: float
+) -> None:
+    assert share_at_goal(goal, value, error) == pytest.approx(share, abs=1e-4, nan_ok=True)

@@ -159,8 +159,8 @@ def test_what_is_damaged_is_refused_where_it_is(tmp_path: Path) -> None:
     short = [line[:9] for line in cells[2:]]
     assert "j.csv: its header lines differ in length" in refusal(written(tmp_path / "j.csv", [*cells[:2], *short]))
     (tmp_path / "g.csv").write_bytes(b"Test Name:,\xff\xfe")
-    assert "this is not comma-separated text" in refusal(tmp_path / "g.csv")
-    assert "this is not an export from APDM software" in refusal(written(tmp_path / "h.csv", [["Sensor", "Time"]]))
+    assert "the file is not comma-separated text" in refusal(tmp_path / "g.csv")
+    assert "the file is not an export from APDM software" in refusal(written(tmp_path / "h.csv", [["Sensor", "Time"]]))
 
 
 def test_a_trial_without_samples_is_an_empty_recording(tmp_path: Path) -> None:

@@ -180,7 +180,7 @@ def test_what_is_missing_or_damaged_is_refused_where_it_is(tmp_path: Path) -> No
     whole = version_5(tmp_path / "e.h5", {"1": ("A", stamps(), still())}).read_bytes()
     (tmp_path / "f.h5").write_bytes(whole[: len(whole) // 2])
     assert "f.h5: this cannot be read as HDF5" in refusal(tmp_path / "f.h5")
-    assert "it lists no sensors" in refusal(version_5(tmp_path / "g.h5", {}))
+    assert "the file lists no sensors" in refusal(version_5(tmp_path / "g.h5", {}))
 
 
 def test_values_that_stand_in_another_file_are_not_read(tmp_path: Path) -> None:
@@ -202,7 +202,7 @@ def test_values_that_stand_in_another_file_are_not_read(tmp_path: Path) -> None:
 def test_other_hdf5_is_not_taken_for_it(tmp_path: Path) -> None:
     with h5py.File(tmp_path / "a.h5", "w") as file:
         file["Sensors/1/Accelerometer"] = np.ones((3, 3))
-    with pytest.raises(FileRefusedError, match="its format is not recognised"):
+    with pytest.raises(FileRefusedError, match="the file format is not recognised"):
         recognised([tmp_path / "a.h5"])
 
 

@@ -239,7 +239,7 @@ def test_files_are_reported_by_their_table_of_channels_and_gathered(tmp_path: Pa
     assert found.refused == ()
     sensors = bids_motion_trial(list(map(Path, found.trials[0].files))).sensors
     assert [one.name for one in sensors] == ["leftThigh (imuA)", "leftThigh (imuB)"]
-    with pytest.raises(FileRefusedError, match="they belong to several recordings"):
+    with pytest.raises(FileRefusedError, match="the files belong to several recordings"):
         bids_motion_trial(sorted(tmp_path.glob("*imuA*_motion.tsv")))
     only = tmp_path / "only"
     bids(only, channels("leftThigh", swinging_sensor()))
@@ -260,7 +260,7 @@ def test_what_does_not_fit_is_refused_where_it_is(tmp_path: Path) -> None:
     assert f"{IMU}_motion.tsv, line 1: it has 7 cells, but the channel table has 6 channels" in refusal(path)
     path.write_text("\t".join(row["name"] for row, _ in held) + "\n" + text)
     assert "line 1: it contains a value that is not a number" in refusal(path)
-    assert "Remove its header line: BIDS has none there" in refusal(path)
+    assert "Remove the header line: BIDS has none in this file" in refusal(path)
     path.unlink()
     assert f"{IMU}_motion.tsv: this file of the recording is missing" in refusal(tmp_path / f"{IMU}_channels.tsv")
     assert '"leftThigh" has two "ACCEL" "x" channels' in refusal(bids(tmp_path, [*held, held[0]]))
@@ -269,7 +269,7 @@ def test_what_does_not_fit_is_refused_where_it_is(tmp_path: Path) -> None:
     assert "line 1: column component is missing" in refusal(path)
     path = bids(tmp_path, held)
     (tmp_path / f"{IMU}_motion.json").write_text("{" * 5000)
-    assert "this is not readable JSON" in refusal(path)
+    assert "the file is not readable JSON" in refusal(path)
 
 
 def test_a_point_with_half_a_sensor_is_left_out_by_name(tmp_path: Path) -> None:

@@ -275,7 +275,7 @@ def test_what_is_no_such_table_is_refused_and_not_recognised(tmp_path: Path) -> 
     )
     xsens = {"PacketCounter": TIME_S, "SampleTimeFine": TIME_S, **named("Acc_{}", "Gyr_{}")}
     for columns in ({"time": TIME_S, "acc_x": TIME_S}, xsens):
-        with pytest.raises(FileRefusedError, match="its format is not recognised"):
+        with pytest.raises(FileRefusedError, match="the file format is not recognised"):
             recognised([write(path, columns)])
     cut = write(path, {"time_s": TIME_S, **named("acc_{}_m_s2", "gyr_{}_rad_s")})
     cut.write_text(cut.read_text()[:-30])

@@ -50,10 +50,10 @@ def test_what_is_not_known_is_refused(tmp_path: Path) -> None:
         recognised([put(tmp_path / "a.csv", "time,left,right\n")])
     bare = "PacketCounter,SampleTimeFine,Acc_X,Acc_Y,Acc_Z,Gyr_X,Gyr_Y,Gyr_Z\n1,16667,0,0,9.8,0,0,0\n"
     with pytest.raises(
-        FileRefusedError, match="its format is not recognised"
+        FileRefusedError, match="the file format is not recognised"
     ):  # of MT Manager in rad/s, or of Movella DOT in deg/s
         recognised([put(tmp_path / "bare.csv", bare)])
-    with pytest.raises(FileRefusedError, match="its format is not recognised"):
+    with pytest.raises(FileRefusedError, match="the file format is not recognised"):
         recognised([put(tmp_path / "b.csv", "")])
     with pytest.raises(FileRefusedError, match=r"b.txt: this file comes from apdm, but a.txt from xsens-mtmanager"):
         recognised([put(tmp_path / "a.txt", MT), put(tmp_path / "b.txt", APDM)])

@@ -72,7 +72,7 @@ def test_the_same_in_another_unit_is_refused_with_what_to_do(motion: object, fac
 
 def test_acceleration_without_gravity_is_refused() -> None:
     free = 4.0 * swinging_sensor().free_m_s2  # as of a walking shank
-    with pytest.raises(FileRefusedError, match="Export it again in m/s2, with gravity included"):
+    with pytest.raises(FileRefusedError, match="Export the file again in m/s2, with gravity included"):
         check_magnitudes(free, None, "a", "a.csv")
 
 

@@ -171,7 +171,7 @@ def test_units_are_held_to_their_size_and_asked_for(tmp_path: Path) -> None:
         {"time_s": TIME_S, "acc": ACC / 9.8, "acc_unit": "m/s^2", "gyr": GYR}
     )
     assert "it is unclear whether the angular rates" in refusal({"time_s": TIME_S, "acc": ACC, "gyr": GYR})
-    assert "its samples have no times" in refusal(sensor())
+    assert "the samples in the file have no times" in refusal(sensor())
     back = TIME_S.copy()
     back[50:] -= 0.5
     assert 'a.mat, sample 51: "time_s" goes back from 0.49 to 0' in refusal({"time_s": back, **sensor()})
@@ -220,11 +220,11 @@ def test_types_that_there_are_not_are_refused_before_scipy_reads_them(tmp_path: 
     of_numbers = content.index(struct.pack("<II", 9, 8 * ROWS))  # 9 are numbers of eight bytes
     for kind in (0, 8, 10, 14, 41, 32777):
         path.write_bytes(content[:of_numbers] + struct.pack("<I", kind) + content[of_numbers + 4 :])
-        with pytest.raises(FileRefusedError, match="this cannot be read as a MATLAB file; it may be damaged"):
+        with pytest.raises(FileRefusedError, match="the file cannot be read as a MATLAB file and may be damaged"):
             matlab_trial([path])
     for of_class in (0, 18, 255):
         path.write_bytes(content[: 128 + 16] + bytes([of_class]) + content[128 + 17 :])
-        with pytest.raises(FileRefusedError, match="this cannot be read as a MATLAB file; it may be damaged"):
+        with pytest.raises(FileRefusedError, match="the file cannot be read as a MATLAB file and may be damaged"):
             matlab_trial([path])
 
 
@@ -232,7 +232,9 @@ def test_references_in_a_circle_end(tmp_path: Path) -> None:
     path = written_7_3(tmp_path / "a.mat", {"s": [np.ones(3), np.ones(3)]})
     with h5py.File(path, "r+") as file:
         file["s"][...] = np.array([[file["s"].ref, file["s"].ref]], dtype=h5py.ref_dtype).T
-    with pytest.raises(FileRefusedError, match="its data are nested too deeply or are too large for a recording"):
+    with pytest.raises(
+        FileRefusedError, match="the data in the file are nested too deeply or are too large for a recording"
+    ):
         matlab_trial([path])
 
 

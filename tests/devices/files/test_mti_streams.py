@@ -183,14 +183,16 @@ def test_without_a_time_the_rate_is_asked_for(tmp_path: Path) -> None:
 def test_what_shows_no_motion_is_refused_with_what_to_set(tmp_path: Path) -> None:
     silent = written(tmp_path / "a.bin", kinds=frozenset())
     assert format_of(silent) == "xsens-mti"
-    with pytest.raises(FileRefusedError, match="it contains no rate of turn, acceleration or orientation") as refused:
+    with pytest.raises(
+        FileRefusedError, match="the file contains no rate of turn, acceleration or orientation"
+    ) as refused:
         mti_trial([silent])
     assert "MT Manager, Output Configuration" in refused.value.remedy
     old = tmp_path / "old.bin"
     old.write_bytes(message(0x32, bytes(50)) * 20)
     assert format_of(old) == "xsens-mti"
     with pytest.raises(
-        FileRefusedError, match="its messages are of the older type MTData, which does not describe its content"
+        FileRefusedError, match="the file's messages are of the older type MTData, which does not describe its content"
     ):
         mti_trial([old])
     blind = written(tmp_path / "b.bin", kinds=frozenset({Item.RATE, FREE}))

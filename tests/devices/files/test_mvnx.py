@@ -147,7 +147,7 @@ def test_what_is_left_out_is_named(tmp_path: Path) -> None:
     assert mvnx_trial([tmp_path / "c.mvnx"], 100.0).sensors[0].info.rate_hz == 100.0
     none = tmp_path / "d.mvnx"
     none.write_text('<mvnx version="4"><subject frameRate="100"><frames/></subject></mvnx>')
-    assert "it lists no sensors" in refusal(none)
+    assert "the file lists no sensors" in refusal(none)
 
 
 def test_other_units_and_broken_frames_are_refused(tmp_path: Path) -> None:

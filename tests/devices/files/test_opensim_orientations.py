@@ -127,9 +127,9 @@ def test_what_is_damaged_is_refused_where_it_is(tmp_path: Path) -> None:
     assert "line 107: time goes back from 0.99 to 0.5" in refusal(path)
     assert "line 9: the orientation is not a valid rotation" in refusal(edited(good(), "0.020000\t", "0.020000\t9"))
     assert "is not an orientation of four numbers" in refusal(edited(good(), "0.020000\t", "0.020000\t1.0,"))
-    assert "its times are not evenly spaced, so angular rates cannot be derived from the orientation" in refusal(
-        edited(good(), "0.020000\t", "0.025000\t")
-    )
+    assert (
+        "the times in the file are not evenly spaced, so angular rates cannot be derived from the orientation"
+    ) in refusal(edited(good(), "0.020000\t", "0.025000\t"))
     path.write_bytes(good().read_bytes().replace(b"version", b"\xff\xfe"))
     assert "a.sto, line 3: this is not UTF-8 text" in refusal(path)
 

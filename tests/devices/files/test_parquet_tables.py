@@ -62,7 +62,7 @@ def test_what_is_left_open_is_asked_for(tmp_path: Path) -> None:
         FileRefusedError, match=r"a.parquet: it is unclear whether the angular rates .* rad/s or in deg/s"
     ):
         parquet_trial([written(tmp_path / "a.parquet", {"time_ms": TIME_MS, **slow})])
-    with pytest.raises(FileRefusedError, match="its samples have no times"):
+    with pytest.raises(FileRefusedError, match="the samples in the file have no times"):
         parquet_trial([written(tmp_path / "a.parquet", slow)])
 
 
@@ -75,7 +75,7 @@ def test_stamps_that_step_back_are_refused_by_their_row(tmp_path: Path) -> None:
 
 def test_other_parquet_is_not_taken_for_it(tmp_path: Path) -> None:
     path = written(tmp_path / "a.parquet", {"year": [2026], "amount": [1.0]})
-    with pytest.raises(FileRefusedError, match="its format is not recognised"):
+    with pytest.raises(FileRefusedError, match="the file format is not recognised"):
         recognised([path])
     with pytest.raises(FileRefusedError, match=r"its columns do not identify acceleration .*: year, amount. Name"):
         parquet_trial([path])

@@ -335,7 +335,7 @@ def test_a_folder_without_session_toml_is_refused(tmp_path: Path) -> None:
 
 
 def test_a_session_without_any_site_file_is_refused(make_session: MakeSession) -> None:
-    assert "no recording has a file named after a site" in refusal(make_session({"notes.txt": "x"}))
+    assert "no recording has a file named after a sensor position" in refusal(make_session({"notes.txt": "x"}))
 
 
 def test_a_site_twice_is_refused(make_session: MakeSession) -> None:
@@ -369,7 +369,7 @@ def test_links_out_of_the_session_are_refused(make_session: MakeSession, tmp_pat
 def test_a_folder_in_place_of_a_file_is_refused(make_session: MakeSession) -> None:
     folder = make_session({})
     (folder / "walk_1" / "left_thigh.csv").mkdir()
-    assert "this is not a file" in refusal(folder)
+    assert "the path does not lead to a file" in refusal(folder)
 
 
 @pytest.mark.skipif(os.name == "nt" or os.geteuid() == 0, reason="needs a user whom permissions stop")

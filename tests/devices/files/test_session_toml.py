@@ -156,7 +156,7 @@ def test_what_is_wrong_is_refused(toml: str, words: str) -> None:
     "deep", ["a = " + "[" * 60 + "]" * 60, "a = " + "{b = " * 60 + "1" + "}" * 60, "[a" + ".a" * 60 + "]"]
 )
 def test_tables_without_end_within_each_other_are_refused(deep: str) -> None:
-    with pytest.raises(FileRefusedError, match="its tables are nested too deeply"):
+    with pytest.raises(FileRefusedError, match="the tables in the file are nested too deeply"):
         parse(f"{deep}\n{TOML}" if deep.startswith("a") else f"{TOML}{deep}\n")
     shallow = "a = " + "[" * 40 + "]" * 40
     assert "a" in parse(f"{shallow}\n{TOML}")[0].unknown

@@ -134,12 +134,12 @@ def test_without_radio_each_keeps_its_own_clock(tmp_path: Path) -> None:
 def test_what_cannot_be_used_is_refused(tmp_path: Path) -> None:
     with pytest.raises(FileRefusedError, match="the gyroscope or the accelerometer was not switched on"):
         shimmer_trial([written(tmp_path / "a.bin", switches=GYRO)])
-    with pytest.raises(FileRefusedError, match="it contains no calibration"):
+    with pytest.raises(FileRefusedError, match="the file contains no calibration"):
         shimmer_trial([written(tmp_path / "b.bin", calibration=bytes(21))])
     empty = written(tmp_path / "c.bin")
     empty.write_bytes(empty.read_bytes()[:256])
     assert format_of(empty) == "shimmer"
-    with pytest.raises(FileRefusedError, match="it contains no samples"):
+    with pytest.raises(FileRefusedError, match="the file contains no samples"):
         shimmer_trial([empty])
 
 

@@ -43,7 +43,7 @@ def test_before_a_patient_is_deleted_it_is_stated_what_goes_and_until_when_it_ca
     assert dialog.goes.text() == "This also deletes 3 sessions and 0 recordings."
     day = date((datetime.now().astimezone() + timedelta(days=30)).date())
     assert f"restore it in Settings until {day}" in dialog.until.text()
-    assert "Earlier backups keep it longer." in dialog.until.text()
+    assert "Earlier backups keep the data longer." in dialog.until.text()
     assert dialog.others.isHidden()  # nobody else was here
     QTest.keyClick(dialog, Qt.Key.Key_Return)
     QTest.keyClick(dialog, Qt.Key.Key_Escape)
@@ -92,7 +92,7 @@ def test_a_patient_in_sight_whom_another_deletes_is_missed_with_a_word(qtbot: Qt
         home.patients.read()  # as the watch has it done
     assert reported.args == [
         "ab deleted P-0163 at another workstation.",
-        "To continue, restore it in Settings within 30 days.",
+        "To continue, restore the deleted data in Settings within 30 days.",
     ]
     assert codes(home) == ["P-0147"]
     with qtbot.assertNotEmitted(home.patients.refused):

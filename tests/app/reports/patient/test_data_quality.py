@@ -128,5 +128,5 @@ def test_of_what_is_no_walk_only_what_was_noticed_is_stated(visit: AnalysedVisit
     grave = Finding("no_joint", Severity.GRAVE, "")
     noticed = replace(visit, analysis=replace(visit.analysis, findings=(grave,)))
     found = quality_without_walk(noticed, "free motion")
-    assert found.first == "There are findings."
+    assert found.first == "There are data quality findings."
     assert found.lines[0].why == "No joint angle could be computed."

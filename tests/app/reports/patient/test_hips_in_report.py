@@ -131,11 +131,11 @@ def test_page_four_states_how_both_clocks_are_tied(
 
 def test_the_gates_of_a_hip_stand_with_their_limits_and_what_failed_is_not_reported() -> None:
     table = rows(hips_table(hip_facts(with_hip(hip_analysis(), Joint.LEFT_HIP, margin=1.21))))
-    assert table["Adjacent segments, margin"][0] == "1.21"
-    assert table["Adjacent segments, margin"][2] == "at least 1.5"
+    assert table["Adjacent segments, clarity"][0] == "1.21"
+    assert table["Adjacent segments, clarity"][2] == "at least 1.5"
     assert table["ROM, shape"][:2] == ["Not reported", "Good"]
     assert table["Abduction"][:2] == ["Not reported", "Good"]
-    assert table["Pelvis–thigh heading, 1 SD"][2] == "at most 6°, for abduction only"
+    assert table["Pelvis–thigh heading, ± 1 SD"][2] == "at most 6°, for abduction only"
 
 
 def test_no_difference_of_hips_is_judged_and_rotation_is_named_as_unreadable() -> None:
@@ -195,7 +195,7 @@ def test_the_first_page_has_six_panels_and_a_not_reported_hip_states_why() -> No
 
 def test_page_two_has_no_band_at_the_hip() -> None:
     blocks = curves_page(hip_facts())
-    assert "For the hip it has a different zero and is shown on page 1 only." in stated(blocks)
+    assert "At the hip, the reference has another zero and is shown on page 1 only." in stated(blocks)
     assert hip_facts().has_joint(JointKind.HIP)
 
 

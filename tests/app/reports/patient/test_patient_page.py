@@ -99,7 +99,7 @@ def test_what_is_not_read_without_care_is_no_number(request_of_demonstration: Re
     )
     visit = AnalysedVisit(request_of_demonstration.visit.session, analysis)
     found = stated(english(replace(request_of_demonstration, visit=visit)))
-    assert "Today's measurement was not good enough for a number. It does not reflect how you walk." in found
+    assert "Today's measurement was not good enough to give a number. This does not reflect how you walk." in found
     assert not re.search(r"\d+ degrees", found)
 
 

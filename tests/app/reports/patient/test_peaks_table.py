@@ -13,7 +13,7 @@ from core.verdicts.gates import judged
 from tests.app.changed_analysis import recalibrated, walk_of
 
 MOVEMENTS = ["Flexion, stance to swing", "Flexion, loading response", "Extension, mid-stance", "Range of motion"]
-TIME = "Time of peak flexion, swing, %"
+TIME = "Time of peak flexion in swing, %"
 MOVEMENTS_OF_ANKLE = [
     "Plantarflexion, push-off",
     "Dorsiflexion, stance",

@@ -40,7 +40,7 @@ def test_a_login_that_only_looks_can_insert_lock_and_remove_nothing(moved: Stati
     database = Database(postgres_engine(driver_url(login("gaitwright_reader", "reader_login")), is_kept=False))
     for statement in FORBIDDEN:
         with (
-            pytest.raises(LibraryError, match="The clinic's server does not permit this for this workstation"),
+            pytest.raises(LibraryError, match="The clinic's server does not permit this action for this workstation"),
             database.writing() as session,
         ):
             session.execute(text(statement))
@@ -79,7 +79,7 @@ def test_a_stations_login_cannot_take_numbers_out_of_turn(moved: Station, login:
         with pytest.raises(LibraryError, match="conflicts with data"), database.writing() as session:
             session.execute(text(f"SELECT append_audit({number}, {ENTRY})"))
     with (
-        pytest.raises(LibraryError, match="The clinic's server does not permit this for this workstation"),
+        pytest.raises(LibraryError, match="The clinic's server does not permit this action for this workstation"),
         database.writing() as session,
     ):
         session.execute(text(f"INSERT INTO audit VALUES (2147483647, {ENTRY})"))
@@ -134,7 +134,7 @@ def test_after_a_move_the_folder_holds_a_login_of_its_own_and_not_the_owners(
     station = open_at(folder)
     assert station.library.patients.find("DEMO-1") is not None
     with (
-        pytest.raises(LibraryError, match="The clinic's server does not permit this for this workstation"),
+        pytest.raises(LibraryError, match="The clinic's server does not permit this action for this workstation"),
         station.library.database.writing() as session,
     ):
         session.execute(text("DROP TABLE patients"))

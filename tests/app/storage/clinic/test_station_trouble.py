@@ -196,7 +196,7 @@ def test_a_save_whose_end_was_not_received_is_stated_to_be_uncertain(
         raise gone
 
     monkeypatch.setattr(OrmSession, "commit", lost)
-    with pytest.raises(LibraryFaultError, match="Check whether it was saved before you repeat it"):
+    with pytest.raises(LibraryFaultError, match="Check whether your change was saved before you repeat it"):
         first.library.patients.change(patient_of(first), replace(patient_of(first).details, height_m=1.8))
     assert patient_of(second).details.height_m == 1.8
 

@@ -319,7 +319,7 @@ def test_a_stations_login_works_and_cannot_touch_tables_or_audit(
     database = Database(engine)
     for stated in ("UPDATE audit SET operator = 'x'", "DELETE FROM audit", "TRUNCATE audit", "DROP TABLE patients"):
         with (
-            pytest.raises(LibraryError, match="The clinic's server does not permit this for this workstation"),
+            pytest.raises(LibraryError, match="The clinic's server does not permit this action for this workstation"),
             database.writing() as session,
         ):
             session.execute(text(stated))
@@ -336,7 +336,7 @@ def test_a_readers_login_reads_is_noted_and_changes_nothing(
     assert len(session_with_samples(reader, visit, {}, silent).recordings) == 3
     patient = reader.library.patients.find("DEMO-1")
     assert patient is not None
-    with pytest.raises(LibraryError, match="The clinic's server does not permit this for this workstation"):
+    with pytest.raises(LibraryError, match="The clinic's server does not permit this action for this workstation"):
         reader.library.patients.change(patient, replace(patient.details, height_m=1.7))
 
 

@@ -132,4 +132,4 @@ def test_a_library_without_a_recording_is_refused(
     opened: OpenedLibrary, session_id: UUID, run_batch: RunBatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
     assert run_batch() == 2
-    assert "no session in it has a recording" in capsys.readouterr().err
+    assert "no session in this library has a recording" in capsys.readouterr().err

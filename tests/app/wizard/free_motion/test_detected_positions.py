@@ -86,7 +86,7 @@ def test_positions_can_be_checked_and_kept_as_they_are(
     sensors.leave()
     assert visit.sensors.site_of == worn
     sensors.enter()
-    assert sensors.page.notice.text == "All six are assigned and connected."
+    assert sensors.page.notice.text == "All six sensors are assigned and connected."
     primary = moved.bar().primary
     assert primary is not None
     assert primary.text == "Continue to walking"

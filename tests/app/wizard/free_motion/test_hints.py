@@ -77,14 +77,16 @@ def test_every_hint_is_read_from_two_metres() -> None:
 
 def test_a_hint_names_side_and_limb_in_plain_words() -> None:
     assert hint_for(LEFT_LEG).sentence == "Circle the left lower leg"
-    assert hint_for(LEFT_LEG).how == "Change direction. Seated or standing, moved by hand if needed."
+    assert hint_for(LEFT_LEG).how == (
+        "Reverse direction from time to time. The patient may sit or stand; move the limb by hand if needed."
+    )
     assert hint_for(Missing(Site.LEFT_SHANK, Movement.BEND)).sentence == "Bend the left knee"
     assert hint_for(Missing(Site.RIGHT_FOOT, Movement.BEND)).sentence == "Bend the right ankle"
 
 
 def test_on_a_prosthetic_side_the_therapist_moves_the_limb() -> None:
     prosthetic = frozenset({Side.LEFT})
-    assert hint_for(LEFT_LEG, prosthetic).how == "The therapist moves the limb. Change direction."
+    assert hint_for(LEFT_LEG, prosthetic).how == "The therapist moves the limb. Reverse direction from time to time."
     assert hint_for(RIGHT_KNEE, prosthetic) == hint_for(RIGHT_KNEE)
 
 
@@ -123,7 +125,7 @@ def test_at_the_end_it_states_whether_the_motion_is_enough_or_all_only_as_good_a
     enough = state(1, 8, None, is_closed=True)
     assert last_hint(motion({Joint.LEFT_KNEE: enough})).sentence == "Enough movement"
     mixed = motion({Joint.LEFT_KNEE: enough, Joint.RIGHT_KNEE: state(4, 8, is_plateau=True)})
-    assert HintHold().ask(mixed, 0.0).hint.sentence == "Certainty no longer rises"
+    assert HintHold().ask(mixed, 0.0).hint.sentence == "Uncertainty no longer falls"
 
 
 @pytest.mark.parametrize(
@@ -175,7 +177,7 @@ def test_what_was_given_up_is_asked_for_once_more_worst_first_and_then_no_more()
     assert in_turn == [Joint.RIGHT_KNEE, Joint.LEFT_KNEE, None]
     assert asked.index(Joint.RIGHT_KNEE) == RESTS_S
     assert asked.count(Joint.RIGHT_KNEE) == asked.count(Joint.LEFT_KNEE) == ONCE_MORE_S
-    assert hold.ask(left, 60.0).hint.sentence == "Certainty no longer rises"
+    assert hold.ask(left, 60.0).hint.sentence == "Uncertainty no longer falls"
 
 
 def test_what_has_enough_the_second_time_is_asked_for_no_longer() -> None:
@@ -267,7 +269,7 @@ def test_hips_are_asked_for_once_nothing_else_brings_more() -> None:
     assert (asked.joint, asked.site) == (Joint.LEFT_HIP, Site.PELVIS)
     assert "Circling the legs does not calibrate the hips; walking does" in asked.hint.how
     without = HintHold().ask(motion(plateau), 0.0)
-    assert without.hint.sentence == "Certainty no longer rises"
+    assert without.hint.sentence == "Uncertainty no longer falls"
     open_knee = {**plateau, Joint.LEFT_KNEE: state(3.0, 6)}
     assert HintHold().ask(replace(motion(open_knee), hips=OPEN_HIPS), 0.0).joint is Joint.LEFT_KNEE
 
@@ -277,7 +279,7 @@ def test_a_hip_that_is_shown_is_asked_for_no_longer() -> None:
     hold = HintHold()
     hold.ask(replace(motion(plateau), hips=OPEN_HIPS), 0.0)
     shown = dict.fromkeys(OPEN_HIPS, hip(4.0, is_sure=True))
-    assert hold.ask(replace(motion(plateau), hips=shown), 0.5).hint.sentence == "Certainty no longer rises"
+    assert hold.ask(replace(motion(plateau), hips=shown), 0.5).hint.sentence == "Uncertainty no longer falls"
 
 
 def test_the_hint_of_the_hips_can_be_read_from_two_metres() -> None:

@@ -98,7 +98,7 @@ def test_a_plateau_is_stated_and_left_to_the_therapist(
     joints = {joint: state(0.8, 6.0, None, is_closed=True) for joint in LEG_JOINTS}
     joints[Joint.LEFT_KNEE] = state(3.8, 6.0, is_plateau=True)
     show_message(step, worn, FreeMotionState(joints))
-    ticks(qtbot, step, lambda: step.page.band.hint.sentence == "Certainty no longer rises")
+    ticks(qtbot, step, lambda: step.page.band.hint.sentence == "Uncertainty no longer falls")
     assert not step._settled.isActive()
     bar = step.bar()
     assert bar.note == "Left knee: 3.8°, limit 1.5°. If you continue, the report states this."

@@ -257,7 +257,7 @@ def test_shaking_assigns_nothing_unless_that_way_is_chosen(
 
 def test_a_foot_taken_off_costs_the_ankle_at_once(page: SensorsPage) -> None:
     page.show_sensors(rows(*LEG_SITES))
-    assert page.notice.text == "All six are assigned and connected."
+    assert page.notice.text == "All six sensors are assigned and connected."
     page.list.assigned.emit("0A22", None)
     page.show_sensors(rows(*LEG_SITES[:5]))
     assert page.notice.text.startswith("No right foot sensor: no right ankle angles.")
@@ -461,7 +461,7 @@ def test_shaken_in_turn_the_pelvis_comes_last(page: SensorsPage, assigned: list[
 
 def test_what_is_stated_of_a_pelvis_costs_the_hips_alone(page: SensorsPage) -> None:
     page.show_sensors(seven(*Site))
-    assert page.notice.text == "All seven are assigned and connected."
+    assert page.notice.text == "All seven sensors are assigned and connected."
     page.show_sensors(seven(*Site, s0A3E={"silent_s": 4.0}))
     assert page.notice.text == (
         "Pelvis: no signal for 4 s. Switch the sensor off and on, "
@@ -477,7 +477,7 @@ def test_what_is_stated_of_a_pelvis_costs_the_hips_alone(page: SensorsPage) -> N
 
 def test_without_a_pelvis_nothing_is_stated_of_hips(page: SensorsPage) -> None:
     page.show_sensors(rows(*LEG_SITES))
-    assert page.notice.text == "All six are assigned and connected."
+    assert page.notice.text == "All six sensors are assigned and connected."
     page.show_sensors(rows(*LEG_SITES, s0A09={"silent_s": 4.0}))
     assert page.notice.text.endswith("continue without left knee angles.")
 

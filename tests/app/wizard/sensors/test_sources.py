@@ -138,9 +138,9 @@ def test_streams_are_asked_for_by_a_choice_only_that_states_whom(monkeypatch: py
     assert network.asks == (
         "This asks every computer on the network of 192.0.2.9 for sensor streams, by UDP to "
         "224.0.0.183, port 16571. It then contacts those that answer. No patient data are sent.",
-        "Choose it again to ask.",
+        "Choose the source again to start the query.",
     )
-    with pytest.raises(SourceRefusedError, match="No motion stream found"):
+    with pytest.raises(SourceRefusedError, match="No stream with motion data found"):
         here.make()
     with pytest.raises(SourceRefusedError, match="No sensor found"):
         search.make()

@@ -72,7 +72,7 @@ def test_who_moved_is_named_until_a_second_is_still_again() -> None:
     moved = (Site.LEFT_THIGH,)
     _, what, then, is_caution = verdict(counting(0.2, moved=moved))
     assert what == "L thigh moving"
-    assert then == "The count restarts automatically."
+    assert then == "The countdown restarts automatically."
     assert is_caution
     assert verdict(counting(1.1, moved=moved))[1] == "All 6 sensors still"
 
@@ -80,7 +80,7 @@ def test_who_moved_is_named_until_a_second_is_still_again() -> None:
 def test_both_legs_and_many_sensors_are_stated_in_a_few_words() -> None:
     _, what, then, _ = verdict(counting(0.0, moved=(Site.LEFT_THIGH, Site.RIGHT_FOOT)))
     assert what == "L thigh and R foot moving"
-    assert then == "The count restarts automatically."
+    assert then == "The countdown restarts automatically."
     assert verdict(counting(0.0, moved=LEG_SITES))[1] == "6 sensors moving"
 
 
@@ -98,7 +98,7 @@ def test_fewer_sensors_are_counted_as_they_are() -> None:
 
 def test_sensors_that_nobody_has_placed_go_by_their_names() -> None:
     unplaced = StandStillView(StandPhase.COUNTING, 0.1, movement_deg_s={"0A2C": 9.0, "0A22": 0.4}, moved=("0A2C",))
-    assert verdict(unplaced)[1:3] == ("0A2C moving", "The count restarts automatically.")
+    assert verdict(unplaced)[1:3] == ("0A2C moving", "The countdown restarts automatically.")
 
 
 def test_going_on_without_is_offered_after_three_restarts() -> None:
@@ -204,19 +204,19 @@ def test_seven_are_counted_and_the_pelvis_has_a_row_without_a_side(page: StandSt
 def test_a_silent_pelvis_holds_up_nothing(page: StandStillPage) -> None:
     silent = counting(1.2, silent=(Site.PELVIS,))
     _, what, then, is_caution = verdict(silent)
-    assert (what, then) == ("Pelvis: no signal", "The count continues; hip angles will be missing.")
+    assert (what, then) == ("Pelvis: no signal", "The countdown continues; hip angles will be missing.")
     assert is_caution
     assert verdict(silent, is_short=True)[2] == "No hip angles."
-    assert "The count is paused." in verdict(counting(0.0, silent=(Site.PELVIS, Site.LEFT_FOOT)))[2]
+    assert "The countdown is paused." in verdict(counting(0.0, silent=(Site.PELVIS, Site.LEFT_FOOT)))[2]
 
 
 def test_a_pelvis_that_moves_is_named() -> None:
     _, what, then, _ = verdict(counting(0.0, moved=(Site.PELVIS,)))
     assert what == "Pelvis moving"
-    assert then == "The count restarts automatically."
+    assert then == "The countdown restarts automatically."
     _, what, then, _ = verdict(counting(0.0, moved=(Site.LEFT_FOOT, Site.PELVIS)))
     assert what == "L foot and pelvis moving"
-    assert then == "The count restarts automatically."
+    assert then == "The countdown restarts automatically."
 
 
 def test_more_sensors_than_places_are_all_still() -> None:

@@ -53,7 +53,7 @@ def test_movement_is_seen_before_the_count_begins(qtbot: QtBot, step: StandStill
     assert phase(step) is StandPhase.READY
     verb = step.bar().primary
     assert verb is not None
-    assert (verb.text, verb.key) == ("Start count", "Space")
+    assert (verb.text, verb.key) == ("Start countdown", "Space")
 
 
 @pytest.mark.endurance

@@ -219,10 +219,12 @@ def test_reasons_are_stated_in_words_of_what_is_gated_only() -> None:
     assert (TargetMeasure.FOOT_STRIKE, Side.LEFT) not in reasons
     without = tuple(site for site in LEG_SITES if site is not Site.RIGHT_THIGH)
     reasons = reasons_against(LEG_SITES, without, SURE, frozenset())
-    assert [*reasons.values()] == ["These sensors have not been still yet. Let the patient stand still first."]
+    assert [*reasons.values()] == [
+        "The sensors of this knee have not been still yet. Let the patient stand still first."
+    ]
     assert (TargetMeasure.KNEE_SWING_PEAK, Side.RIGHT) in reasons
     assert reasons_against(LEG_SITES, ALL, {}, frozenset())[TargetMeasure.KNEE_SWING_PEAK, Side.LEFT].startswith(
-        "The knee angle is not known yet. It needs both sensors and a free motion."
+        "The knee angle is not known yet. It needs sensors on thigh and shank, and a free motion."
     )
 
 

@@ -108,7 +108,7 @@ def test_events_and_strides_have_tables_of_their_own(read: Read) -> None:
         ("time_s,side,event\n1,left,landing\n", r'line 2: "landing" is not a valid event'),
         ("time_s,side,event\n1,middle,toe_off\n", r'line 2: "middle" is not a valid side'),
         ("<xml>\n", r"this is not a recognised reference file\. Give a CSV"),
-        ("", "this is not a recognised reference file"),
+        ("", "the file is not a recognised reference file"),
     ],
 )
 def test_what_is_no_reference_is_refused_with_what_where_and_what_to_do(read: Read, content: str, stated: str) -> None:
@@ -307,7 +307,7 @@ def test_markers_may_go_any_way_and_one_that_is_hidden_is_a_gap() -> None:
 def test_a_c3d_of_other_points_and_a_broken_one_are_refused(read: Read, tmp_path: Path) -> None:
     content = c3d_of(tmp_path / "made.c3d", {"C7": bent(KNEE_DEG)})
     with pytest.raises(
-        FileRefusedError, match="it contains neither hip, knee or ankle angles nor the markers to compute them"
+        FileRefusedError, match="the file contains neither hip, knee or ankle angles nor the markers to compute them"
     ):
         read(content)
     for length in (512, 700, len(content) // 2, len(content) - 512):
