@@ -27,7 +27,7 @@ def add_repeatability_arguments(parser: argparse.ArgumentParser) -> None:
     parser.description = (
         "Find by how much repeated measurements of healthy people differ in your clinic, from people whose sensors "
         "were attached twice: in two sessions of one patient code, or in one session (attached again before a "
-        "recording). Prints each figure with 95 % limits beside the published one. Needs 5 people, better 20."
+        "recording). Prints each figure with 95 % limits beside the published one. Needs 5 people, 20 are recommended."
     )
     parser.add_argument(
         "folder",

@@ -33,6 +33,7 @@ class Topic(StrEnum):
     PATIENT_SCREEN = "patient-screen"
     PELVIS = "pelvis"
     QUESTIONS = "questions"
+    REPEATABILITY = "repeatability"
     FILES = "files"
     PRIVACY = "privacy"
     ADMINISTRATION = "administration"
@@ -94,6 +95,7 @@ def topic_title(topic: Topic) -> str:
         Topic.PATIENT_SCREEN: tr("Patient screen"),
         Topic.PELVIS: tr("Pelvis and hips"),
         Topic.QUESTIONS: tr("Cohort"),
+        Topic.REPEATABILITY: tr("Repeatability"),
         Topic.FILES: tr("Files"),
         Topic.PRIVACY: tr("Data and privacy"),
         Topic.ADMINISTRATION: tr("For administrators"),

@@ -35,7 +35,7 @@ class Between(StrEnum):
     DAYS = "days"
 
 
-class Estimate(NamedTuple):
+class OwnEstimate(NamedTuple):
     """A figure, where it lies in 95 of 100 such studies, and of how many people it is."""
 
     value: float
@@ -43,8 +43,8 @@ class Estimate(NamedTuple):
     high: float
     people: int
 
-    def times(self, unit: float) -> "Estimate":
-        return Estimate(unit * self.value, unit * self.low, unit * self.high, self.people)
+    def times(self, unit: float) -> "OwnEstimate":
+        return OwnEstimate(unit * self.value, unit * self.low, unit * self.high, self.people)
 
     @property
     def judged_by(self) -> float:
@@ -63,12 +63,12 @@ class Estimate(NamedTuple):
 class OwnSigma:
     """Of one kind of quantity: by what factor of the published sigma one mean differs, and of means of which size."""
 
-    factor: Estimate
+    factor: OwnEstimate
     mean: float
     published: float
 
     @property
-    def sigma(self) -> Estimate:
+    def sigma(self) -> OwnEstimate:
         """At the size that the study's means have, in the quantity's unit."""
         return self.factor.times(self.published)
 
@@ -80,7 +80,7 @@ class OwnFigures:
     people: int
     between: Between
     sigmas: Mapping[QuantityKind, OwnSigma]
-    healthy: Mapping[str, Estimate]
+    healthy: Mapping[str, OwnEstimate]
     days: tuple[str, str] = ("", "")
     made_by: str = ""
     software: str = ""
@@ -117,7 +117,7 @@ class OwnFigures:
         }
 
 
-def _scaled(published: Sigma, factor: Estimate, least: Sigma) -> Sigma:
+def _scaled(published: Sigma, factor: OwnEstimate, least: Sigma) -> Sigma:
     times = factor.judged_by
     slower = max(times, 1.0)
     return replace(
@@ -133,7 +133,7 @@ def _scaled(published: Sigma, factor: Estimate, least: Sigma) -> Sigma:
 def figures_in_json(own: OwnFigures) -> dict[str, Any]:
     """As `repeatability.json` and a library hold it; units as of the columns, published figures beside."""
 
-    def limits(found: Estimate) -> dict[str, float]:
+    def limits(found: OwnEstimate) -> dict[str, float]:
         return {"low": found.low, "high": found.high}
 
     return {
@@ -214,11 +214,11 @@ def _figures_from(content: Any) -> OwnFigures:
     )
 
 
-def _estimate(one: Mapping[str, Any], name: str) -> Estimate:
+def _estimate(one: Mapping[str, Any], name: str) -> OwnEstimate:
     value, low, high = (_number(one[key], MOST_LIMIT) for key in (name, "low", "high"))
     if not low <= value <= high:
         raise ValueError("a figure is not within its limits")
-    return Estimate(value, low, high, _count(one["people"]))
+    return OwnEstimate(value, low, high, _count(one["people"]))
 
 
 def _number(value: Any, most: float) -> float:

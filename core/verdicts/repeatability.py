@@ -22,7 +22,7 @@ from scipy.special import gammaincinv
 from core.body import Side
 from core.parameters import CADENCE, SPEED, STEP_TIME, QuantityKind
 from core.verdicts.norms import MIN_STRIDES_FOR_SD
-from core.verdicts.own_figures import MIN_PEOPLE, PUBLISHED_SIGMAS, Between, Estimate, OwnFigures, OwnSigma
+from core.verdicts.own_figures import MIN_PEOPLE, PUBLISHED_SIGMAS, Between, OwnEstimate, OwnFigures, OwnSigma
 from core.verdicts.sigmas import HEALTHY_BETWEEN_LEGS, KINDS, Sigma
 from core.verdicts.stride_means import MeanOfStrides
 
@@ -157,7 +157,7 @@ def _within(published: Sigma, alike: Sequence[Strapping], side: Side | None, col
     return _Within(_Moment(square, chance, len(known) - 1), fmean(abs(found.mean) for found, _ in known), unit)
 
 
-def _healthy(column: str, people: Sequence[Person]) -> Estimate | None:
+def _healthy(column: str, people: Sequence[Person]) -> OwnEstimate | None:
     moments = []
     for person in people:
         known = [
@@ -176,7 +176,7 @@ def _healthy(column: str, people: Sequence[Person]) -> Estimate | None:
     return _root(moments).times(Z95) if len(moments) >= MIN_PEOPLE else None
 
 
-def _root(moments: Sequence[_Moment]) -> Estimate:
+def _root(moments: Sequence[_Moment]) -> OwnEstimate:
     """The root of people's mean square less chance, with its limits."""
     people = len(moments)
     square, chance = fmean(one.square for one in moments), fmean(one.chance for one in moments)
@@ -186,4 +186,4 @@ def _root(moments: Sequence[_Moment]) -> Estimate:
     degrees = math.sqrt(people * min(max(shown, people), sum(one.squares for one in moments))) - 1
     low, high = (degrees * square / (2 * float(gammaincinv(degrees / 2, share))) for share in (0.975, 0.025))
     roots = [math.sqrt(max(one - chance, 0.0)) for one in (square, low, high)]
-    return Estimate(roots[0], roots[1], roots[2], people)
+    return OwnEstimate(roots[0], roots[1], roots[2], people)

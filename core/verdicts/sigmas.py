@@ -249,6 +249,7 @@ def use(figures: ErrorFigures) -> None:
 
 
 def in_use() -> ErrorFigures:
+    """What differences are judged by now."""
     return _in_use
 
 

@@ -124,7 +124,7 @@ def main() -> None:
     found = coverage(COLUMNS, args.clinics, args.people, args.strides)
     for name, share in found.items():
         print(f"{name:50} {100 * share:5.1f} %")
-    of = {"own sigmas": [], "between legs": []}
+    of: dict[str, list[float]] = {"own sigmas": [], "between legs": []}
     for name, share in found.items():
         of["between legs" if name.startswith("between") else "own sigmas"].append(share)
     for name, shares in of.items():

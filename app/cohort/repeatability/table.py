@@ -6,7 +6,7 @@ from dataclasses import dataclass
 from app.wording.measures import NAMES, decimals, unit_symbol
 from app.wording.translation import figure_text, tr
 from core.parameters import QuantityKind, unit_of
-from core.verdicts.own_figures import Estimate, OwnFigures, OwnSigma
+from core.verdicts.own_figures import OwnEstimate, OwnFigures, OwnSigma
 from core.verdicts.repeatability import COLUMNS
 from core.verdicts.sigmas import HEALTHY_BETWEEN_LEGS
 
@@ -25,7 +25,7 @@ class RepeatabilityRow:
     key: str
     name: str
     column: str
-    found: Estimate
+    found: OwnEstimate
     published: float
     size: float | None = None
 
@@ -47,8 +47,8 @@ class RepeatabilityRow:
         return tr("{measure} (at {size}°)").format(measure=self.name, size=size)  # angles alone grow
 
     def number(self, value: float) -> str:
-        """With one decimal more than the quantity itself has."""
-        return figure_text(value, f".{decimals(self.column) + 1}f")
+        """With one decimal more than the quantity itself has, and times to the millisecond."""
+        return figure_text(value, f".{3 if self.column.endswith('_s') else decimals(self.column) + 1}f")
 
     @property
     def limits(self) -> str:

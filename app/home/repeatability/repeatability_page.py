@@ -32,7 +32,7 @@ class RepeatabilityPage(Themed):
         self._title = Text(look, tr("Repeatability"), size=26, weight=SEMIBOLD)
         lead = tr(
             "Healthy people measured twice show the measurement error of your own clinic. Record each of them twice, "
-            "with the condition “{condition}”. At least {least} people, better 20."
+            "with the condition “{condition}”. At least {least} people, 20 are recommended."
         )
         self._lead = Text(look, lead.format(condition=CONDITION, least=MIN_PEOPLE), tone="ink2", wraps=True)
         self.used = Text(look, weight=MEDIUM, wraps=True)
@@ -109,7 +109,7 @@ def study_table(own: OwnFigures) -> tuple[list[TableColumn], list[TableRow]]:
     heads = (tr("Own"), tr("95 % limits"), tr("People"), tr("Published"))
     columns = [TableColumn(EMPTY, share=1)]
     columns += [TableColumn(TextCell(head, size=12, tone="ink2", align=RIGHT)) for head in heads]
-    columns.append(TableColumn(TextCell(tr("Published figure"), size=12, tone="ink2")))
+    columns.append(TableColumn(TextCell(tr("Comparison"), size=12, tone="ink2")))
     titles = {
         ATTACHED_AGAIN: tr("Standard deviation of one mean, sensors reattached"),
         BETWEEN_LEGS: tr("Left vs right: 95 of 100 healthy people differ by less"),

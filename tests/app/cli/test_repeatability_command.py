@@ -37,11 +37,11 @@ def test_five_simulated_people_attached_twice_give_figures_and_files(
     tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
     again = (
-        *(Standing(), FreeMotion(duration_s=6.0), Walk(strides=11)),
+        *(Standing(), FreeMotion(duration_s=6.0), Walk(strides=12)),
         *(
             Standing("standing 2", is_restrapped_before=True),
             FreeMotion("free motion 2", 6.0),
-            Walk("walk 2", strides=11),
+            Walk("walk 2", strides=12),
         ),
     )
     for number in range(5):

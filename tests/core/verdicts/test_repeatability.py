@@ -14,7 +14,7 @@ from core.verdicts.model import READ
 from core.verdicts.own_figures import (
     MIN_PEOPLE,
     Between,
-    Estimate,
+    OwnEstimate,
     OwnFigures,
     OwnSigma,
     figures_from_json,
@@ -39,8 +39,8 @@ def own(factor: float, between: Between = Between.STRAPPINGS, healthy: float = 4
     return OwnFigures(
         20,
         between,
-        {kind: OwnSigma(Estimate(factor, factor, factor, 20), 60.0, 1.0) for kind in QuantityKind},
-        {STANCE: Estimate(healthy, healthy, healthy, 20)},
+        {kind: OwnSigma(OwnEstimate(factor, factor, factor, 20), 60.0, 1.0) for kind in QuantityKind},
+        {STANCE: OwnEstimate(healthy, healthy, healthy, 20)},
         ("2026-11-10", "2026-11-12"),
     )
 
@@ -158,8 +158,8 @@ def test_a_study_of_one_day_does_not_lower_what_lies_between_visits() -> None:
 
 
 def test_a_study_that_shows_nothing_beyond_chance_is_not_taken_for_one_that_shows_nothing() -> None:
-    """Judged by half of the upper limit, where few people leave more open than that; 20 people's figures as they are."""
-    nothing = Estimate(0.0, 0.0, 1.6, 5)
+    """Judged by half of the upper limit, where few people leave more open; of 20 people by the figures as they are."""
+    nothing = OwnEstimate(0.0, 0.0, 1.6, 5)
     few = OwnFigures(5, Between.DAYS, {QuantityKind.STANCE: OwnSigma(nothing, 60.0, 1.1)}, {STANCE: nothing})
     with using(few.figures):
         sigma = sigma_of(STANCE, VISITS)

@@ -1,9 +1,11 @@
 """`batch` writes what `analyse` writes, does nothing twice, keeps what is done, and gives what failed."""
 
 import csv
+import json
 import shutil
 import sys
 from pathlib import Path
+from typing import Any
 
 import pytest
 
@@ -13,8 +15,10 @@ from app.cohort.batch.analysed_folder import write_analysed
 from app.cohort.batch.done import batch_at, read_mark
 from app.cohort.batch.software import software
 from core.samples import Patient
+from core.verdicts.sigmas import PUBLISHED, ErrorFigures, in_use
 from devices.files.session_folder import write_session
 from tests.app.batch_material import results_in, swinging_session, walked_session, write_swinging
+from tests.app.cohort.repeatability.own_study import own_study
 
 BARE = ("--no-report", "--no-rrd", "--workers", "1")
 
@@ -231,6 +235,34 @@ def test_a_worker_that_sees_other_folders_or_has_other_software_states_so(place:
         outcome = task.analyse_task(task.BatchTask("visit 000", folder, batch, choices, theirs))
         assert reason in outcome.failure
         assert outcome.record is None
+
+
+def test_a_worker_judges_by_the_figures_of_whoever_asks_and_other_figures_make_other_results(
+    place: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    from app.cohort.batch.analysed_folder import AnalysisChoices
+    from core.results import Method
+
+    judged: list[ErrorFigures] = []
+    write = task.write_analysed
+
+    def noted(*args: Any) -> Any:
+        judged.append(in_use())
+        return write(*args)
+
+    monkeypatch.setattr(task, "write_analysed", noted)
+    choices = AnalysisChoices(Method.ROBUST, 2.0, has_report=False, has_log=False)
+    session, made = place / "in" / "deep" / "visit 000", []
+    with batch_at(place / "out") as folder:
+        for figures in (PUBLISHED, own_study(1.5).figures, own_study(1.6).figures):
+            outcome = task.analyse_task(task.BatchTask("one", session, folder, choices, software(), figures=figures))
+            assert outcome.record is not None
+            made.append(outcome.record.key)
+    assert [one.study is not None for one in judged] == [False, True, True]
+    assert len(set(made)) == 3
+    assert in_use() is PUBLISHED
+    summary = json.loads((place / "out" / "one" / "summary.json").read_bytes())
+    assert summary["error_figures"] == {"source": "own_study", "people": 20, "day": "2026-11-12"}
 
 
 def test_a_fault_of_the_program_fails_its_session_alone_and_quotes_nobody(

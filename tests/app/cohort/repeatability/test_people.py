@@ -12,7 +12,7 @@ from app.cohort.repeatability.table import ATTACHED_AGAIN, BETWEEN_LEGS, HEADS, 
 from core.parameters import SPEED, STANCE, QuantityKind
 from core.results import Analysis
 from core.samples import Patient, Session
-from core.verdicts.own_figures import Between, Estimate, OwnFigures, OwnSigma
+from core.verdicts.own_figures import Between, OwnEstimate, OwnFigures, OwnSigma
 from core.verdicts.repeatability import TooFewPeopleError
 from devices.files.refusal import FileRefusedError
 from tests.app.course_material import analysis, recordings, walked
@@ -50,7 +50,7 @@ def five() -> list[Visit]:
     return [visit(f"H-{number}", *stances) for number, stances in enumerate(STANCES)]
 
 
-def stance(own: OwnFigures) -> Estimate:
+def stance(own: OwnFigures) -> OwnEstimate:
     return own.sigmas[QuantityKind.STANCE].sigma
 
 
@@ -135,12 +135,12 @@ def test_files_hold_what_was_found_and_another_file_is_refused(tmp_path: Path) -
 
 
 def test_a_row_states_whether_the_published_figure_is_within_the_own_limits() -> None:
-    def row(*own: float) -> tuple[str, str]:
+    def row(own: float, low: float, high: float) -> tuple[str, str]:
         found = OwnFigures(
             12,
             Between.DAYS,
-            {QuantityKind.STANCE: OwnSigma(Estimate(*own, 12), 61.0, 1.1)},
-            {STANCE: Estimate(4.0, 3.0, 5.5, 12)},
+            {QuantityKind.STANCE: OwnSigma(OwnEstimate(own, low, high, 12), 61.0, 1.1)},
+            {STANCE: OwnEstimate(4.0, 3.0, 5.5, 12)},
         )
         again, legs = rows_of(found)
         assert (again.group, legs.group, legs.is_within) == (ATTACHED_AGAIN, BETWEEN_LEGS, True)

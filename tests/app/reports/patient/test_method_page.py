@@ -13,6 +13,8 @@ from core.body import Side, Site
 from core.findings import Finding, Severity
 from core.results import AxisSource, Calibration, Method
 from core.samples import RateKind, SensorInfo
+from core.verdicts.sigmas import using
+from tests.app.cohort.repeatability.own_study import own_study
 
 ROOT = Path(__file__).parents[4]
 MTI = SensorInfo("0123", "MTi", "4.2", 100.0, RateKind.INSTANTANEOUS)
@@ -55,6 +57,13 @@ def test_the_page_of_the_method_states_how_it_was_measured(request_of_demonstrat
         in reported["Calibration"]
     )
     assert "gaps up to 0.05 s are bridged" in reported["Angles"]
+
+
+def test_the_page_of_the_method_names_an_own_study_where_one_is_in_use(request_of_demonstration: ReportRequest) -> None:
+    assert "Error figures" not in stated(request_of_demonstration)
+    with using(own_study().figures):
+        reported = stated(request_of_demonstration)
+    assert reported["Error figures"] == "Error figures: own study, 20 people, 12 Nov 2026."
 
 
 def test_what_no_sensor_reported_is_stated_to_be_unknown(request_of_demonstration: ReportRequest) -> None:
