@@ -96,9 +96,8 @@ def differences(walk: RecordingAnalysis, before: RecordingAnalysis, side: Side) 
         means = [mean_of_strides(values_of(one, side, name)[one.gait[side].strides.is_used]) for one in (walk, before)]
         stated = tuple(assessment_of(one.verdicts, side, name) for one in (walk, before))
         speeds = [float(np.nanmean(values_of(one, side, "speed_m_s"))) for one in (walk, before)]
-        found[name] = compare(
-            name, ComparisonKind.ATTACHED, means[0], means[1], stated, speed_apart_m_s=speeds[0] - speeds[1]
-        )
+        kind = ComparisonKind.ATTACHED
+        found[name] = compare(name, kind, means[0], means[1], stated, speeds_m_s=(speeds[0], speeds[1]))
     return found
 
 
