@@ -3,7 +3,7 @@
     python tests/safety/recompute_intervals.py FOLDER [FOLDER ...]
 
 Of each row of differences.csv, visits.csv and sides.csv: the difference is that of the means, `low` and `high` lie an
-error to either side of it, `verdict`, `mark` and the part beyond speed follow from them. Where the strides of both means
+error to either side of it, `verdict`, `mark` and the part beyond speed follow from them. Where strides of both means
 are in the folder, mean, sd and n are theirs, and so is the error, with the figures below; what the lag between sensors
 and the axis of a joint add is in no table, so that such an error is at least what is recomputed.
 """
