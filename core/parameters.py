@@ -57,6 +57,7 @@ class QuantityKind(StrEnum):
     KNEE_SHAPE = "knee_shape"
     ANKLE_SHAPE = "ankle_shape"
     KNEE_HEIGHT = "knee_height"
+    KNEE_STRAIGHTENING = "knee_straightening"
     ANKLE_HEIGHT = "ankle_height"
     STANCE = "stance"
     TIME = "time"
@@ -181,6 +182,8 @@ def _stride(
 
 def _peak(excursion: Excursion, most: float | None = None) -> Parameter:
     error = _E.KNEE_SHAPE if excursion.name.startswith("knee") else _E.ANKLE_SHAPE
+    if excursion.name == "knee_straightening":  # its two ends are near one another, and people repeat it less well
+        error = _E.KNEE_STRAIGHTENING
     return Parameter(f"{excursion.name}{Unit.DEGREES}", ParameterFile.PEAKS, _C.EXCURSION, error, most=most)
 
 

@@ -55,7 +55,7 @@ _KNEE = {"knee_while_loading_deg": 13.0, "knee_straightening_deg": 11.0, "knee_l
 def drawn(column: str, kind: QuantityKind) -> Drawn:
     if kind in _BY_KIND:
         return _BY_KIND[kind]
-    if kind in (QuantityKind.KNEE_SHAPE, QuantityKind.KNEE_HEIGHT):
+    if kind in (QuantityKind.KNEE_SHAPE, QuantityKind.KNEE_HEIGHT, QuantityKind.KNEE_STRAIGHTENING):
         return Drawn(_KNEE.get(column, 60.0), 1.8)
     return Drawn(25.0, 1.6)
 
