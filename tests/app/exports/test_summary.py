@@ -124,6 +124,7 @@ def test_a_session_without_joints_is_a_summary_all_the_same(tmp_path: Path) -> N
     summary = read_summary(path)
     assert summary is not None
     assert summary.pop("reference_group")["group"] == "young adults, barefoot, treadmill"
+    assert summary.pop("error_figures") == {"source": "published"}
     assert summary == {"format": FORMAT, "simulated": False, **empty}
 
 

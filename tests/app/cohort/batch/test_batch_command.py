@@ -244,11 +244,10 @@ def test_a_worker_judges_by_the_figures_of_whoever_asks_and_other_figures_make_o
     from core.results import Method
 
     judged: list[ErrorFigures] = []
-    write = task.write_analysed
 
     def noted(*args: Any) -> Any:
         judged.append(in_use())
-        return write(*args)
+        return write_analysed(*args)
 
     monkeypatch.setattr(task, "write_analysed", noted)
     choices = AnalysisChoices(Method.ROBUST, 2.0, has_report=False, has_log=False)
