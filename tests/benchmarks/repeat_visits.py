@@ -26,7 +26,7 @@ from tests.benchmarks.repeated_people import (
     LENGTH,
     STROKE,
     TIME,
-    Pair,
+    Repeated,
     Rule,
     after,
     before,
@@ -62,7 +62,7 @@ def share(calls: Iterable[bool]) -> float:
     return 100.0 * sum(known) / len(known) if known else math.nan
 
 
-def called(pairs: Iterable[Pair], quantity: str, rule: Rule) -> tuple[float, float, float]:
+def called(pairs: Iterable[Repeated], quantity: str, rule: Rule) -> tuple[float, float, float]:
     """The share of pairs that is marked, stated on page one, and beyond what speed makes, percent."""
     calls = [rule(pair) for pair in pairs if pair.quantity == quantity]
     return (
@@ -72,7 +72,7 @@ def called(pairs: Iterable[Pair], quantity: str, rule: Rule) -> tuple[float, flo
     )
 
 
-def found(pairs: Iterable[Pair], quantity: str, change: float, rule: Rule) -> tuple[float, float]:
+def found(pairs: Iterable[Repeated], quantity: str, change: float, rule: Rule) -> tuple[float, float]:
     """The share in which an added change is marked, and stated on page one, with its own sign, percent."""
     calls = [
         (sign * call.difference > 0, call)
@@ -87,7 +87,7 @@ def found(pairs: Iterable[Pair], quantity: str, change: float, rule: Rule) -> tu
     )
 
 
-def null_table(sets: Mapping[str, Sequence[Pair]]) -> Iterator[str]:
+def null_table(sets: Mapping[str, Sequence[Repeated]]) -> Iterator[str]:
     """What is called with nothing added."""
     yield "| quantity | " + " | ".join(f"{name}: before | after | beyond speed" for name in sets) + " |"
     yield "|---" * (1 + 3 * len(sets)) + "|"
@@ -104,7 +104,7 @@ def null_table(sets: Mapping[str, Sequence[Pair]]) -> Iterator[str]:
     yield f"Percent of {'; '.join(counts)}."
 
 
-def power_table(sets: Mapping[str, Sequence[Pair]], changes: Mapping[str, tuple[float, ...]]) -> Iterator[str]:
+def power_table(sets: Mapping[str, Sequence[Repeated]], changes: Mapping[str, tuple[float, ...]]) -> Iterator[str]:
     """What is found of added changes."""
     yield "| change | " + " | ".join(f"{name}: before | after" for name in sets) + " |"
     yield "|---" * (1 + 2 * len(sets)) + "|"
@@ -114,11 +114,11 @@ def power_table(sets: Mapping[str, Sequence[Pair]], changes: Mapping[str, tuple[
             yield f"| {quantity} {change:g} | " + " | ".join(f"{one:.0f} ({page:.0f})" for one, page in shares) + " |"
 
 
-def _quantities(sets: Mapping[str, Sequence[Pair]]) -> list[str]:
+def _quantities(sets: Mapping[str, Sequence[Repeated]]) -> list[str]:
     return list(dict.fromkeys(pair.quantity for pairs in sets.values() for pair in pairs))
 
 
-def people_called(pairs: Iterable[Pair], rule: Rule) -> tuple[int, int]:
+def people_called(pairs: Iterable[Repeated], rule: Rule) -> tuple[int, int]:
     """People of whom page one states anything, and people."""
     by_person: dict[str, bool] = {}
     for pair in pairs:

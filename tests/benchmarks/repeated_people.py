@@ -33,7 +33,7 @@ KNEE_STRIDES_SD_DEG = 1.8  # where a file has no spread
 
 
 @dataclass(frozen=True, slots=True)
-class Pair:
+class Repeated:
     """One quantity at an earlier and a later time, or of the right leg and the left; `side` empty: of both legs."""
 
     person: str
@@ -44,7 +44,7 @@ class Pair:
     speeds_m_s: Speeds = UNKNOWN
     kind: ComparisonKind = ComparisonKind.VISITS
 
-    def with_change(self, change: float) -> "Pair":
+    def with_change(self, change: float) -> "Repeated":
         return replace(self, later=replace(self.later, mean=self.later.mean + change))
 
 
@@ -60,7 +60,7 @@ class Call(NamedTuple):
     is_beyond_speed: bool = False
 
 
-Rule = Callable[[Pair], Call]
+Rule = Callable[[Repeated], Call]
 
 
 class Old(NamedTuple):
@@ -90,7 +90,7 @@ _BETWEEN_TIMES: Mapping[str, Old] = {
 _BETWEEN_LEGS: Mapping[str, Old] = {STANCE: Old(2.5), FOOT_ANGLE: _FOOT, HEEL_RISE: _FOOT}
 
 
-def before(pair: Pair) -> Call:
+def before(pair: Repeated) -> Call:
     one, other = pair.later, pair.earlier
     difference = one.mean - other.mean
     old = (_BETWEEN_LEGS if pair.kind is ComparisonKind.LEGS else _BETWEEN_TIMES).get(pair.quantity)
@@ -103,7 +103,7 @@ def before(pair: Pair) -> Call:
     return Call(difference, abs(difference) > error, abs(difference) > old.factor * error)
 
 
-def after(pair: Pair) -> Call:
+def after(pair: Repeated) -> Call:
     speeds = pair.speeds_m_s[1], pair.speeds_m_s[0]
     found = compare(pair.quantity, pair.kind, pair.later, pair.earlier, (READ, READ), speeds_m_s=speeds)
     is_marked = found.mark is Mark.HEALTHY if pair.kind is ComparisonKind.LEGS else found.exceeds
@@ -116,12 +116,12 @@ Means = Mapping[tuple[str, str], MeanOfStrides]
 """Of one visit, by side and quantity."""
 
 
-def two_visits(folder: Path, which: str) -> list[Pair]:
+def two_visits(folder: Path, which: str) -> list[Repeated]:
     """The pairs of one set of felius_two_visits.csv."""
     return [pair for who, visits in _visits(folder, which).items() for pair in _pairs(who, *visits)]
 
 
-def legs_of_visits(folder: Path, which: str) -> list[Pair]:
+def legs_of_visits(folder: Path, which: str) -> list[Repeated]:
     """Left less right at each of the two visits, of what is compared between legs."""
     found = []
     for who, visits in _visits(folder, which).items():
@@ -130,7 +130,7 @@ def legs_of_visits(folder: Path, which: str) -> list[Pair]:
             for quantity in (STANCE, FOOT_ANGLE, HEEL_RISE, FOOT_FLAT):
                 legs = means.get(("right", quantity)), means.get(("left", quantity))
                 if legs[0] is not None and legs[1] is not None:
-                    pair = Pair(who, "", quantity, legs[0], legs[1], (speed_m_s, speed_m_s), ComparisonKind.LEGS)
+                    pair = Repeated(who, "", quantity, legs[0], legs[1], (speed_m_s, speed_m_s), ComparisonKind.LEGS)
                     found.append(pair)
     return found
 
@@ -144,14 +144,14 @@ def walks_of_visits(folder: Path, which: str) -> list[tuple[float, tuple[float, 
     ]
 
 
-def rehabilitation(folder: Path) -> tuple[list[Pair], list[Pair]]:
+def rehabilitation(folder: Path) -> tuple[list[Repeated], list[Repeated]]:
     """From each visit to the next, and from the first to the last, each with a walking aid or without."""
     courses: dict[tuple[str, str], dict[int, dict[tuple[str, str], MeanOfStrides]]] = {}
     for row in _rows(folder / "felius_rehabilitation.csv"):
         visits = courses.setdefault((row["person"], row["aid"]), {})
         visits.setdefault(int(row["visit"]), {})[row["side"], row["quantity"]] = _mean(row, "")
-    following: list[Pair] = []
-    whole: list[Pair] = []
+    following: list[Repeated] = []
+    whole: list[Repeated] = []
     for (person, aid), visits in courses.items():
         course, who = [visits[number] for number in sorted(visits)], f"{person}, aid: {aid}"
         following += [pair for one, other in pairwise(course) for pair in _pairs(who, one, other)]
@@ -159,7 +159,7 @@ def rehabilitation(folder: Path) -> tuple[list[Pair], list[Pair]]:
     return following, whole
 
 
-def other_knees(folder: Path) -> list[Pair]:
+def other_knees(folder: Path) -> list[Repeated]:
     """Knees on two days with another maker's sensors; of their strides nothing is known, so chance counts as none."""
     with (folder / "technaid_knee.csv").open(encoding="utf-8-sig", newline="") as file:
         people = [{name: float(cell) for name, cell in row.items()} for row in csv.DictReader(file, delimiter=";")]
@@ -168,11 +168,11 @@ def other_knees(folder: Path) -> list[Pair]:
         for quantity, (more, less) in KNEES.items():
             days = [person[f"{more}{day}"] - (person[f"{less}{day}"] if less else 0.0) for day in ("", "_2")]
             earlier, later = (MeanOfStrides(value, math.nan, 20, 0.0, 0.0) for value in days)
-            found.append(Pair(str(number), "", quantity, earlier, later))
+            found.append(Repeated(str(number), "", quantity, earlier, later))
     return found
 
 
-def simulated_knees(folder: Path) -> list[Pair]:
+def simulated_knees(folder: Path) -> list[Repeated]:
     """Knees of simulated bodies strapped again, walks of free motion and enough strides."""
     means: dict[tuple[str, ...], MeanOfStrides] = {}
     for row in _rows(folder / "simulated_strappings.csv"):
@@ -182,7 +182,7 @@ def simulated_knees(folder: Path) -> list[Pair]:
             key = (row["body"], row["walk"], row["side"], row["quantity"], row["strapping"])
             means[key] = MeanOfStrides(float(row["measured"]), KNEE_STRIDES_SD_DEG, n, error, 0.0)
     return [
-        Pair(body, side, quantity, mean, means[body, walk, side, quantity, "1"], kind=ComparisonKind.STRAPPINGS)
+        Repeated(body, side, quantity, mean, means[body, walk, side, quantity, "1"], kind=ComparisonKind.STRAPPINGS)
         for (body, walk, side, quantity, strapping), mean in means.items()
         if strapping == "0"
     ]
@@ -207,14 +207,14 @@ def _mean(row: Mapping[str, str], end: str) -> MeanOfStrides:
     return MeanOfStrides(mean, sd, int(n), error, drift)
 
 
-def _pairs(who: str, one: Means, other: Means) -> Iterator[Pair]:
+def _pairs(who: str, one: Means, other: Means) -> Iterator[Repeated]:
     """Of what both visits hold; speed is of both legs, as the program compares it."""
     earlier, later = _speed(one), _speed(other)
     speeds = earlier.mean, later.mean
-    yield Pair(who, "", SPEED, earlier, later, speeds)
+    yield Repeated(who, "", SPEED, earlier, later, speeds)
     for side, quantity in one:
         if quantity != SPEED and (side, quantity) in other:
-            yield Pair(who, side, quantity, one[side, quantity], other[side, quantity], speeds)
+            yield Repeated(who, side, quantity, one[side, quantity], other[side, quantity], speeds)
 
 
 def _speed(means: Means) -> MeanOfStrides:

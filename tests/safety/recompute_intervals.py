@@ -140,9 +140,8 @@ class Folder:
     def __init__(self, path: Path) -> None:
         self.path = path
         summary = json.loads((path / "summary.json").read_text(encoding="utf-8"))
-        self.speeds: dict[str, float | None] = {
-            name: (walk.get("both") or {}).get("speed_m_s") for name, walk in summary["walks"].items()
-        }
+        walks = summary["walks"].items()
+        self.speeds: dict[str, float | None] = {name: (one.get("both") or {}).get("speed_m_s") for name, one in walks}
         self.has_published_figures = (summary.get("error_figures") or {}).get("source", "published") == "published"
         self._peaks = _rows(path / "peaks.csv") if (path / "peaks.csv").exists() else []
 

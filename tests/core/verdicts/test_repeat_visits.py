@@ -13,7 +13,7 @@ from tests.benchmarks.repeated_people import (
     FOOT_ANGLE,
     HEALTHY,
     STROKE,
-    Pair,
+    Repeated,
     after,
     before,
     legs_of_visits,
@@ -30,19 +30,19 @@ def folder(test_data: Callable[[str], Path]) -> Path:
 
 
 @pytest.fixture
-def twice(folder: Path) -> dict[str, list[Pair]]:
+def twice(folder: Path) -> dict[str, list[Repeated]]:
     return {who: two_visits(folder, who) for who in (HEALTHY, STROKE)}
 
 
 @pytest.mark.parametrize("who", [HEALTHY, STROKE])
-def test_two_visits_of_people_who_did_not_change_are_called_alike(twice: dict[str, list[Pair]], who: str) -> None:
+def test_two_visits_of_people_who_did_not_change_are_called_alike(twice: dict[str, list[Repeated]], who: str) -> None:
     shares = {quantity: called(twice[who], quantity, after) for quantity in FEET}
     assert max(marked for marked, _, _ in shares.values()) <= MOST_CALLED[who], shares
     assert max(beyond_speed for _, _, beyond_speed in shares.values()) <= MOST_CALLED[who], shares
 
 
 @pytest.mark.parametrize("who", [HEALTHY, STROKE])
-def test_page_one_states_nothing_of_nearly_all_who_did_not_change(twice: dict[str, list[Pair]], who: str) -> None:
+def test_page_one_states_nothing_of_nearly_all_who_did_not_change(twice: dict[str, list[Repeated]], who: str) -> None:
     stated, people = people_called(twice[who], after)
     assert stated <= 0.05 * people, f"{stated} of {people}"
 
@@ -57,7 +57,7 @@ def test_changes_of_stance_over_a_rehabilitation_are_called(folder: Path) -> Non
     [(HEALTHY, STANCE, 4.0, 75.0), (HEALTHY, FOOT_ANGLE, 8.0, 90.0), (STROKE, FOOT_ANGLE, 8.0, 75.0)],
 )
 def test_a_known_change_between_visits_is_found(
-    twice: dict[str, list[Pair]], who: str, quantity: str, change: float, least: float
+    twice: dict[str, list[Repeated]], who: str, quantity: str, change: float, least: float
 ) -> None:
     assert found(twice[who], quantity, change, after)[0] >= least
 
@@ -65,7 +65,7 @@ def test_a_known_change_between_visits_is_found(
 @pytest.mark.parametrize("who", [HEALTHY, STROKE])
 @pytest.mark.parametrize("change_m_s", FEET[SPEED])
 def test_a_change_of_speed_is_found_as_often_as_before(
-    twice: dict[str, list[Pair]], who: str, change_m_s: float
+    twice: dict[str, list[Repeated]], who: str, change_m_s: float
 ) -> None:
     assert found(twice[who], SPEED, change_m_s, after)[0] >= found(twice[who], SPEED, change_m_s, before)[0]
 
