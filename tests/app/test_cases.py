@@ -116,7 +116,7 @@ def ximu3_restarted(case: Case) -> None:
 def clock_jumps_forward(case: Case) -> None:
     outcome = case.import_two(thigh="lt", shank="ls")
     assert outcome.code == 2
-    assert "ls: its clock jumps forward by 10800 s, 8.99 s after it began" in outcome.text
+    assert "ls: the sensor's clock jumps forward by 10800 s, 8.99 s after the start" in outcome.text
     assert "missing" not in outcome.text
     assert "receiver" not in outcome.text
 

@@ -223,15 +223,15 @@ def test_the_catalogue_is_compiled_again(monkeypatch: pytest.MonkeyPatch) -> Non
 @pytest.mark.usefixtures("german")
 def test_a_fraction_has_a_comma_and_what_only_looks_like_one_its_point() -> None:
     stated = tr("Walking speeds: {first} and {second} m/s.")
-    assert stated.format(first=1.05, second="1.2.3") == "Gehgeschwindigkeit 1,05 und 1.2.3 m/s."
-    assert stated.format_map({"first": np.float64(0.5), "second": 2}) == "Gehgeschwindigkeit 0,5 und 2 m/s."
+    assert stated.format(first=1.05, second="1.2.3") == "Gehgeschwindigkeiten: 1,05 und 1.2.3 m/s."
+    assert stated.format_map({"first": np.float64(0.5), "second": 2}) == "Gehgeschwindigkeiten: 0,5 und 2 m/s."
     assert (figure_text(-1.25, "+.1f"), figure_text(1.25, ".2f", "en")) == ("-1,2", "1.25")
     assert (fixed(-0.04, 1), signed(0.0, 1), signed(2.5, 1)) == ("0,0", "0,0", "+2,5")
     use_language("en")
     assert (figure_text(1.25, ".2f"), figure_text(1.25, ".2f", "de")) == ("1.25", "1,25")
     assert (
         tr("Walking speeds: {first} and {second} m/s.").format(first=1.05, second=1.1)
-        == "Walking speed 1.05 and 1.1 m/s."
+        == "Walking speeds: 1.05 and 1.1 m/s."
     )
     assert spoken_in("de")("{value} degrees").format(value=1.5) == "1,5 Grad"
 

@@ -647,7 +647,9 @@ def test_every_word_fits(
         home, entry = window.home, window.entry
         assert home is not None
         entry.log_in.show_operators(("hk", "vi"), ("hk",), "vi", can_remember=True)
-        entry.log_in.refuse("This passphrase does not open the library. Enter it again, or use the recovery key.", 5.0)
+        entry.log_in.refuse(
+            "This passphrase does not open the library. Enter the passphrase again, or use the recovery key.", 5.0
+        )
         entry.first_start.make.click()
         showings: list[tuple[str, Callable[[], object]]] = [
             ("home", lambda: window._show(home)),

@@ -277,7 +277,7 @@ def test_only_linux_needs_a_display_for_the_viewer(monkeypatch: pytest.MonkeyPat
     for name in ("DISPLAY", "WAYLAND_DISPLAY"):
         monkeypatch.delenv(name, raising=False)
     monkeypatch.setattr(sys, "platform", "linux")
-    assert "rrd from the results on a computer that has one" in viewer.why_not(tmp_path)
+    assert "rrd from the results on a computer with a display" in viewer.why_not(tmp_path)
     for platform in ("win32", "darwin"):
         monkeypatch.setattr(sys, "platform", platform)
         assert viewer.why_not(tmp_path) == ""

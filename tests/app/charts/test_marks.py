@@ -41,7 +41,7 @@ def test_a_gap_lasts_as_long_as_the_curve_is_out_and_keeps_the_limit_it_left() -
     np.testing.assert_allclose(above.limit_deg, KNEE + 6.0)
     np.testing.assert_allclose(below.limit_deg, KNEE - 6.0)
     np.testing.assert_allclose(below.lowered(4.0).limit_deg, KNEE - 10.0)
-    assert below.in_words() == "Left knee, 66 to 84 %: outside the band."
+    assert below.in_words() == "Left knee, 66 to 84 % of the gait cycle: outside the band."
 
 
 def test_a_gap_that_is_hardly_seen_is_none() -> None:

@@ -147,7 +147,7 @@ def test_a_file_cut_mid_line_is_refused_in_one_line(
 
 def test_a_missing_session_is_refused(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     assert analyse(tmp_path / "nowhere", tmp_path / "out") == 2
-    assert "nowhere: this is not a session folder" in refusal(capsys)
+    assert "nowhere: this folder is not a session folder" in refusal(capsys)
 
 
 @pytest.mark.parametrize(
@@ -523,11 +523,11 @@ def test_an_import_shows_the_program_by_the_content(tmp_path: Path, capsys: pyte
     assert main(["import", str(mt), "--map", "left_thigh=opal.csv", "--out", str(tmp_path / "other")]) == 0
     capsys.readouterr()
     assert main(["import", str(mt), "--as", "apdm", "--map", "left_thigh=A", "--out", str(tmp_path / "third")]) == 2
-    assert "opal.csv: this is not an export from APDM software" in refusal(capsys)
+    assert "opal.csv: the file is not an export from APDM software" in refusal(capsys)
     strange = tmp_path / "taxes.csv"
     strange.write_text("year,amount\n2026,1\n")
     assert main(["import", str(strange), *where]) == 2
-    assert "taxes.csv: its format is not recognised. Supported formats:" in refusal(capsys)
+    assert "taxes.csv: the file format is not recognised. Supported formats:" in refusal(capsys)
     assert len(files_in(tmp_path / "session")) == 2
 
 

@@ -113,7 +113,7 @@ def test_a_session_is_opened_by_a_click_and_by_enter(qtbot: QtBot, home: Home) -
 def test_a_deleted_patient_comes_back_by_undo(qtbot: QtBot, home: Home) -> None:
     delete_patient(qtbot, home)
     qtbot.waitUntil(lambda: codes(home) == ["P-0147"], timeout=WAIT_MS)
-    assert home.toast.text == "P-0163 is deleted, permanently in 30 days."
+    assert home.toast.text == "P-0163 was deleted. The deletion becomes permanent in 30 days."
     home.toast.undo()
     qtbot.waitUntil(lambda: codes(home) == ["P-0163", "P-0147"], timeout=WAIT_MS)
     assert home.bar.primary.text() == "New session for P-0163"
@@ -164,7 +164,7 @@ def test_of_two_deletions_the_last_comes_back_by_its_keys_also_from_the_search(q
     QTest.keyClick(home.page.sessions, Qt.Key.Key_Delete)
     delete_patient(qtbot, home)
     qtbot.waitUntil(lambda: codes(home) == ["P-0147"], timeout=WAIT_MS)
-    assert home.toast.text == "P-0163 is deleted, permanently in 30 days."
+    assert home.toast.text == "P-0163 was deleted. The deletion becomes permanent in 30 days."
     home.page.search.setFocus()
     home.page.search.insert("0")  # what may be taken back here, too
     QTest.keyClick(home.page.search, Qt.Key.Key_Z, Qt.KeyboardModifier.ControlModifier)
@@ -316,7 +316,7 @@ def test_a_recovered_walk_is_asked_for_at_every_start_until_it_is_decided(
     open_library(qtbot, controller, home, folder)
     qtbot.waitUntil(home.banner.isVisible, timeout=WAIT_MS)
     asked = "walk 3 of P-0163 was recovered earlier and still awaits a decision."
-    assert home.banner.text == f"{asked} Review it, then include or exclude it."
+    assert home.banner.text == f"{asked} Review the recording, then include or exclude it."
     qtbot.waitUntil(lambda: [one.needs_look for one in lines(home)] == [True, False], timeout=WAIT_MS)
     qtbot.waitUntil(lambda: [one.id for one in sessions(home) if one.needs_look] == [session_id], timeout=WAIT_MS)
     home.session_opened.emit(session_id)  # looking is not deciding
@@ -384,7 +384,10 @@ def test_what_the_library_did_not_answer_for_goes_into_its_session_or_out(
     home.show()
     open_library(qtbot, controller, home, folder)
     qtbot.waitUntil(home.banner.isVisible, timeout=WAIT_MS)
-    assert "of walk 3 was recorded while the library did not respond. It is now in its session." in home.banner.text
+    assert (
+        "of walk 3 was recorded while the library did not respond. The recording is now in its session."
+        in home.banner.text
+    )
     qtbot.waitUntil(lambda: any(line.needs_look for line in sessions(home)), timeout=WAIT_MS)
     home.banner.dismiss.click()
     assert home.banner.text.startswith("2 recordings, 00:00 in total, are not assigned to a session.")
@@ -505,7 +508,7 @@ def test_what_became_of_work_without_the_server_is_stated_and_of_other_libraries
             {"is_away": True},
             "You are working offline, without the clinic's server.",
             "They move to the server at the first login after it responds again. Clinic patients are not shown. "
-            "They are matched later by code.",
+            "The sessions are matched to them later by patient code.",
         ),
         ({"brought_from_away": 1}, "1 offline session is now on", "the clinic's server."),
         (
@@ -623,7 +626,9 @@ def test_a_walk_that_ended_with_the_program_is_asked_about_at_the_next_start(
     open_library(qtbot, controller, home, folder)
     qtbot.waitUntil(home.banner.isVisible, timeout=WAIT_MS)
     asked = "The program was closed before A Shoes of P-0163 was included or excluded."
-    assert home.banner.text.replace("B Shoes", "A Shoes") == f"{asked} Review it, then include or exclude it."
+    assert (
+        home.banner.text.replace("B Shoes", "A Shoes") == f"{asked} Review the recording, then include or exclude it."
+    )
     qtbot.waitUntil(lambda: [one.id for one in sessions(home) if one.needs_look] == [session_id], timeout=WAIT_MS)
     (marked,) = (line for line in sessions(home) if line.needs_look)
     assert marked.state == "include or exclude?"

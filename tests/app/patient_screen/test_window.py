@@ -53,13 +53,13 @@ def test_steps_that_reached_are_filled_and_others_hollow(window: PatientWindow, 
 
 def test_its_words_say_the_value_and_how_many_reached(window: PatientWindow) -> None:
     window.show_view(PatientView(KNEE, TEN))
-    stated = "Left knee: bend it as you swing. Target 55°. Now 54°. Last 10 steps: 7 reached 55°."
+    stated = "Left knee: bend it as the leg swings. Target 55°. Now 54°. Last 10 steps: 7 reached 55°."
     assert window.accessibleName() == stated
 
 
 def test_while_it_waits_no_value_is_shown_not_even_old_ones(window: PatientWindow, look: ThemeNotifier) -> None:
     window.show_view(PatientView(KNEE, TEN, is_waiting=True))
-    assert window.accessibleName() == "Left knee: bend it as you swing. Target 55°. One moment"
+    assert window.accessibleName() == "Left knee: bend it as the leg swings. Target 55°. One moment"
     image = picture(window)
     assert not any(is_leg(image, look, x, y) for x in range(80, 1200, 4) for y in (468, 712))
     window.show_view(PatientView(KNEE, TEN))
@@ -67,7 +67,7 @@ def test_while_it_waits_no_value_is_shown_not_even_old_ones(window: PatientWindo
 
 
 def test_before_the_first_step_nothing_is_counted() -> None:
-    assert PatientView(KNEE).in_words == "Left knee: bend it as you swing. Target 55°."
+    assert PatientView(KNEE).in_words == "Left knee: bend it as the leg swings. Target 55°."
     assert PatientView().in_words == "One moment"
 
 

@@ -125,7 +125,7 @@ def test_of_a_not_reported_joint_no_mean_is_drawn_but_why(charts: CycleCharts, l
     assert colour_at(chart, 72, 60).name() == look.theme.colours.surface.lower()
     assert [side for side, panel in charts.knee.not_reported.items() if panel.isVisible()] == [Side.LEFT]
     stated = charts.knee.not_reported[Side.LEFT].text
-    assert stated.startswith("Not reported. Sensor positions could not be confirmed (margin 1.05, required 1.30).")
+    assert stated.startswith("Not reported. Sensor positions could not be confirmed (clarity 1.05, required 1.30).")
     assert "record free motion" not in stated  # what to do is beneath, once for all
     assert stated in charts.knee.in_words()
     assert list(toe_off_labels(chart.described.curves)) == [Side.RIGHT]
@@ -226,13 +226,13 @@ def test_what_the_height_of_a_curve_cannot_say_is_stated(charts: CycleCharts) ->
     unset = judged_as(height=ZERO)
     charts.show_cycles(cycles, {Joint.LEFT_KNEE: unset, Joint.RIGHT_KNEE: unset}, is_simulated=False)
     reported = (
-        "L and R: no standing reference. Range of motion and curve shape are valid; absolute angles are not. "
-        "0° is the mean of the gait cycle."
+        "L and R: no standing reference. Range of motion and curve shape are valid; absolute angles are not. 0° "
+        "is the mean angle over the gait cycle."
     )
     assert charts.knee.note == reported
     assert charts.ankle.note == ""
     charts.show_cycles(cycles, {Joint.LEFT_ANKLE: judged_as(height=SIGN, sign=SIGN)}, is_simulated=False)
-    assert charts.ankle.note.startswith("L: sign unclear, flexion or extension. The curve may be inverted.")
+    assert charts.ankle.note.startswith("L: it is unclear which direction is flexion. The curve may be inverted.")
 
 
 def test_a_side_without_a_whole_stride_is_no_trouble(charts: CycleCharts) -> None:
@@ -247,7 +247,10 @@ def test_a_side_without_a_whole_stride_is_no_trouble(charts: CycleCharts) -> Non
 def test_the_mean_curves_are_reported_in_words(charts: CycleCharts) -> None:
     charts.show_cycles({Joint.LEFT_KNEE: cycle(12)}, {}, is_simulated=True)
     reported = charts.knee.chart.accessibleDescription()
-    assert reported == "Simulated. Left knee, mean of 12: 0.0° at 0 % to 60.0° at 72 %, toe-off at 60 %."
+    assert reported == (
+        "Simulated. Left knee, mean of 12 strides: from 0.0° at 0 % to 60.0° at 72 % of the gait "
+        "cycle, toe-off at 60 %."
+    )
     assert charts.knee.chart.accessibleName() == "Knee over one gait cycle"
 
 
@@ -327,7 +330,7 @@ def test_a_gap_is_filled_up_to_its_limit_and_marked_on_the_axis(charts: CycleCha
     for percent in (55, 95):
         assert colour_at(chart, percent, on_axis).name() == surface
     assert colour_at(chart, 72, 56).name() == surface  # beyond the limit
-    assert "Left knee, 66 to 84 %: outside 2 SD of the band." in charts.knee.in_words()
+    assert "Left knee, 66 to 84 % of the gait cycle: outside 2 SD of the band." in charts.knee.in_words()
 
 
 def test_marks_are_lowered_with_the_curves_that_have_no_height(charts: CycleCharts) -> None:

@@ -70,9 +70,7 @@ def test_clocks_that_do_not_agree_are_stated_and_no_legs_say_why(legs: MovingLeg
     legs.show_legs(MeanLegs({side: leg() for side in Side}, Side.LEFT))
     assert "Left and right sensors are not synchronised: legs are drawn half a gait cycle apart" in legs.note.text()
     legs.show_legs(None)
-    assert legs.note.text().startswith(
-        "Legs are drawn where a thigh sensor was received and a knee has an absolute angle"
-    )
+    assert legs.note.text().startswith("To draw legs, data of a thigh sensor and an absolute knee angle are needed")
     assert legs.places == {}
     legs.turn()
     assert not legs.is_playing

@@ -415,7 +415,9 @@ def test_the_panel_states_when_a_strap_slipped(walk: tuple[Path, Analysis], tmp_
     (recording,) = walk[1].recordings
     slipped = replace(walk[1], recordings=(replace(recording, slipped_from_s={Side.RIGHT: 3.25}),))
     text = panel_of(WALKED, slipped, tmp_path / "session.rrd")
-    assert "Strap moved on the right leg. From 3.2 s its curves are not reported; the leg is grey." in text
+    assert (
+        "Strap moved on the right leg. From 3.2 s on, the curves of this leg are not reported; the leg is grey." in text
+    )
     assert "Strap moved on the left leg" not in text
     for joint in (Joint.RIGHT_KNEE, Joint.LEFT_KNEE):
         time_s, _ = curve(tmp_path / "session.rrd", f"/angles/{joint}/phases/swing", "walking_1")

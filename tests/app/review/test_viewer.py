@@ -116,7 +116,7 @@ def test_without_a_viewer_or_a_screen_a_sentence_states_so(tmp_path: Path, monke
     assert why_not(tmp_path).startswith(
         "Rerun needs a display, and there is none here. Open session.rrd from the results"
     )
-    with pytest.raises(ViewerRefusedError, match="rrd from the results on a computer that has one"):
+    with pytest.raises(ViewerRefusedError, match="rrd from the results on a computer with a display"):
         Viewer(tmp_path, tmp_path / "rerun").open(*EMPTY)
     assert list(tmp_path.iterdir()) == []
 

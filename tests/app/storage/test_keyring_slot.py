@@ -91,9 +91,9 @@ def test_a_keyrings_slot_is_no_operator(slots: KeySlots, data_key: DataKey, keyr
     assert slots.codes == ("hk",)
     with pytest.raises(KeyRefusedError, match="does not open"):
         slots.open("keyring-hk", secret)
-    with pytest.raises(KeyRefusedError, match="is not a valid code"):
+    with pytest.raises(KeyRefusedError, match="is not a valid user code"):
         slots.add(data_key, "keyring-ab", NEW)
-    with pytest.raises(KeyRefusedError, match="is not a valid code"):
+    with pytest.raises(KeyRefusedError, match="is not a valid user code"):
         slots.set_passphrase(data_key, "keyring-hk", NEW)
     with pytest.raises(KeyRefusedError, match="The last user's key cannot be removed"):
         slots.remove("hk")

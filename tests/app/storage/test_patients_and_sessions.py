@@ -393,7 +393,7 @@ def test_doubles_are_merged_and_parted_again(library: Library, patient: StoredPa
     assert [line.patient_code for line in library.sessions.list()] == ["P-1"]
     assert [found.id for found in library.patients.search()] == [kept.id]
     assert library.patients.find("P-001") == merged
-    with pytest.raises(LibraryError, match="merged into"):
+    with pytest.raises(LibraryError, match="was merged with another patient"):
         library.patients.create(FULL)
     (correction,) = library.corrections.of_patient(kept.id)
     library.corrections.undo(correction.id)

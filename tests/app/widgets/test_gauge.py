@@ -164,7 +164,7 @@ def test_an_ankles_gauge_shows_readers_of_screens_what_it_judges(qtbot: QtBot, l
         gauge.show_face(gauge_face(joint, state(1, 6, is_closed=True), HUMAN, is_now=False))
         stated[joint] = gauge.accessibleName()
     assert stated[Joint.LEFT_ANKLE] == (
-        "Left ankle, axis found while walking, centre 6.0 mm, under 10 mm required, Enough movement for centre"
+        "Left ankle, axis found while walking, centre 6.0 mm, under 10 mm required, Enough movement for the centre"
     )
     assert stated[Joint.LEFT_KNEE] == (
         "Left knee, axis 1.0°, under 1.5° required, centre 6.0 mm, under 10 mm required, Enough movement"

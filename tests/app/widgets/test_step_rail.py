@@ -43,7 +43,7 @@ def rail(look: ThemeNotifier, window: QWidget) -> StepRail:
 def test_a_row_states_its_place_name_state_and_what_came_of_it(rail: StepRail) -> None:
     assert [row.accessibleName() for row in rail.rows] == [
         "Step 1 of 5, Patient, done, Left prosthetic",
-        "Step 2 of 5, Stand still, skipped, skipped, in report",
+        "Step 2 of 5, Stand still, skipped, skipped, reported",
         "Step 3 of 5, Free motion, needs checking, left knee 3.8°",
         "Step 4 of 5, Walking, current, Recording walk 3",
         "Step 5 of 5, Results, to do",

@@ -66,8 +66,8 @@ def test_what_was_dropped_is_counted(trouble: Trouble) -> None:
 @pytest.mark.parametrize("trouble", sorted(ENDS))
 def test_a_disk_that_ended_the_recording_states_up_to_where_it_is_kept(trouble: Trouble) -> None:
     _, then = trouble_message(trouble, CLOSED)
-    assert ("The first 1:02 are written." in then) is (trouble is not Trouble.DISK_GONE)
-    assert ("The first 1:01 are confirmed on the disk." in then) is (trouble is Trouble.DISK_GONE)
+    assert ("The first 1:02 min of the recording are written." in then) is (trouble is not Trouble.DISK_GONE)
+    assert ("The first 1:01 min of the recording are confirmed on the disk." in then) is (trouble is Trouble.DISK_GONE)
     _, then = trouble_message(trouble, replace(CLOSED, dropped_records=2))
     assert ("are written; everything after that is lost" in then) is (trouble is not Trouble.DISK_GONE)
 
@@ -81,7 +81,7 @@ def test_only_a_journal_that_is_closed_whole_is_called_safe(is_tried_again: bool
     assert "still being written" in stated(FINE)
     for status in (replace(CLOSED, dropped_records=1), replace(CLOSED, state=State.BROKEN)):
         assert "safe" not in stated(status)
-        assert stated(status).startswith("The first 1:01 of the recording are on the disk")
+        assert stated(status).startswith("The first 1:01 min of the recording are on the disk")
 
 
 def test_a_recording_without_a_row_is_called_written_only_while_all_of_it_is() -> None:
@@ -103,8 +103,8 @@ def standstill(
 
 def test_a_standstill_that_cost_samples_states_so() -> None:
     assert standstill({"a": 4005, "b": 2000}) == (
-        "Gaitwright stalled for 20 s, 0:41 into the recording. "
-        "Samples were lost and stay gaps. They are counted when the recording is loaded."
+        "Gaitwright stalled for 20 s, 0:41 min into the recording. Samples were lost and leave gaps. Missing "
+        "samples are counted when the recording is loaded."
     )
     assert "were lost" in standstill({"a": 5, "b": 1})
     assert "were lost" not in standstill({"a": 5, "b": 0})

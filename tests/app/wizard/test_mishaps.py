@@ -117,7 +117,7 @@ def test_a_library_that_stays_busy_does_not_hold_the_visit_for_ever(
     recordings.refused.connect(lambda *words: reported.append(words))
     recordings.stop()
     qtbot.waitUntil(lambda: recordings.is_idle, timeout=WAIT_MS)
-    assert "when Gaitwright next starts" in reported[-1][1]
+    assert "When Gaitwright next starts, it finds what was written" in reported[-1][1]
     with pytest.raises(RuntimeError):
         acquisition.stop_recording()  # it has been, at once
 
@@ -202,7 +202,7 @@ def test_a_standstill_amid_a_recording_is_stated_on_every_step_that_records(
     monkeypatch.setattr(visit.recordings, "ongoing", Ongoing(reported, 100.0))
     monkeypatch.setattr(visit.recordings, "_acquisition", acquisition)
     wizard._watch_recording()
-    assert ("Gaitwright stalled for 20 s, 0:01 into the recording." in wizard.shell.banner.text) is is_stated
+    assert ("Gaitwright stalled for 20 s, 0:01 min into the recording." in wizard.shell.banner.text) is is_stated
     monkeypatch.setattr(visit.recordings, "ongoing", None)
 
 
@@ -320,7 +320,7 @@ def test_walks_are_judged_without_sensors(qtbot: QtBot, controller: LibraryContr
     recovered = controller.state.library.library.recordings.close(walk.id, RecordingState.RECOVERED, sha256)
     again.recordings.every = (replace(walk, stored=recovered, is_decided=False),)
     step.tick()
-    assert "was recovered, up to the last record on disk" in step.page.notice.text
+    assert "was recovered, up to the last data on disk" in step.page.notice.text
     step.page.discard_pressed.emit(str(walk.id))
     qtbot.waitUntil(lambda: not again.recordings.walks[0].details.is_kept, timeout=WAIT_MS)
     step.leave()

@@ -26,7 +26,7 @@ from core.body import LEG_SITES, Site
 from tests.app.idle_action import idle
 from tests.app.room import settle, words_cut
 
-RECORDING = ("Recording Alignment C", "Saved as it comes in. The space bar stops it, with a sound.")
+RECORDING = ("Recording Alignment C", "Saved as it comes in. The space bar stops the walk, with a sound.")
 
 
 class Page(QWidget):

@@ -55,7 +55,7 @@ def test_it_is_stated_whom_it_asks_and_asked_when_it_is_chosen_once_more(
     with qtbot.waitSignal(visit.refused, timeout=5000) as refused:
         step.page.source_chosen.emit(NETWORK)
     assert asked == ["192.0.2.9"]
-    assert refused.args[0] == "No motion stream found."
+    assert refused.args[0] == "No stream with motion data found."
     assert WARNING not in stated(step)
 
 

@@ -141,7 +141,7 @@ def test_a_patient_who_is_deleted_at_another_station_is_missed_here_with_one_wor
     for _ in range(3):  # as the watch has it done
         wizard.look_for_changes()
     qtbot.waitUntil(lambda: bool(received), timeout=WAIT_MS)
-    assert wizard.shell.banner.text.startswith("hk deleted DEMO-9 at another workstation.")
+    assert wizard.shell.banner.text.startswith("At another workstation, hk deleted DEMO-9.")
     other.library.patients.restore(other.library.patients.get(other.patient.id))
     visit = other.library.sessions.get(other.session_id)
     wizard.look_for_changes()
@@ -149,7 +149,7 @@ def test_a_patient_who_is_deleted_at_another_station_is_missed_here_with_one_wor
     other.library.sessions.delete(visit)
     wizard.look_for_changes()
     qtbot.waitUntil(lambda: len(received) > 1, timeout=WAIT_MS)
-    assert {what for what, _ in received} == {"hk deleted DEMO-9 at another workstation."}
+    assert {what for what, _ in received} == {"At another workstation, hk deleted DEMO-9."}
     other.refuse_broken_audit()
 
 

@@ -40,7 +40,7 @@ def test_strides_that_are_not_counted_live_are_reported(worn: frozenset[Site], s
 
 def test_angles_are_promised_for_when_they_come() -> None:
     assert "five strides" in no_angles_message(ALL)[1]
-    assert "They appear when the walk has been stopped" in no_angles_message(ALL - FEET)[1]
+    assert "The angles appear when the walk has been stopped" in no_angles_message(ALL - FEET)[1]
 
 
 @pytest.mark.parametrize(

@@ -57,7 +57,7 @@ CASES: list[tuple[RecordingAnalysis, dict[str, Any], str]] = [
     (
         walk(),
         {"sign_margin": 1.2},
-        "Sensor positions could not be confirmed (margin 1.20, required 1.50). Check the sensor positions, or",
+        "Sensor positions could not be confirmed (clarity 1.20, required 1.50). Check the sensor positions, or",
     ),
     (
         walk(),
@@ -67,7 +67,10 @@ CASES: list[tuple[RecordingAnalysis, dict[str, Any], str]] = [
     (
         walk(),
         {"is_same_joint": False, "sign_margin": 1.89, "disagreement": 0.26},
-        "The two sensors disagree at their joint (disagreement 0.26, limit 0.20). Check the sensor positions, or",
+        (
+            "The two sensors do not move like the two sides of one joint (disagreement 0.26, limit 0.20). Check the "
+            "sensor positions, or"
+        ),
     ),
     (
         walk(doubted_sites=frozenset({Site.LEFT_SHANK, Site.LEFT_FOOT})),
@@ -77,14 +80,14 @@ CASES: list[tuple[RecordingAnalysis, dict[str, Any], str]] = [
     (
         walk(),
         {"axis_sd_rad": np.deg2rad(7.0)},
-        "Calibration certainty is only ±7.0° (limit ±6.5°). Record free motion, or move longer and in more",
+        "The calibration has an uncertainty of ±7.0° (limit ±6.5°). Record free motion, or let the patient move",
     ),
     (
         walk(),
         {"axis_sd_rad": np.deg2rad(12.0)},
-        "Calibration certainty is only ±12.0° (limit ±9.0°). Record free motion, or move longer and in more",
+        "The calibration has an uncertainty of ±12.0° (limit ±9.0°). Record free motion, or let the patient move",
     ),
-    (walk(), {"axis_sd_rad": None}, "The certainty of the joint axis is not known. Record free motion."),
+    (walk(), {"axis_sd_rad": None}, "The uncertainty of the joint axis is not known. Record free motion."),
     (apart(12.0), {}, "The left ankle's axis came out 12.0° apart in the two halves of the walk (limit 10.0°). Record"),
     (
         apart(55.0),
@@ -119,7 +122,7 @@ CASES: list[tuple[RecordingAnalysis, dict[str, Any], str]] = [
     (
         walk(),
         {"is_sign_certain": False, "clinical_sign_margin": 0.1},
-        "Flexion and extension could not be distinguished (margin 0.10, required 0.50). Only range of motion is",
+        "Flexion and extension could not be distinguished (clarity 0.10, required 0.50). Only range of motion is",
     ),
     (
         walk(),
@@ -171,17 +174,17 @@ CASES: list[tuple[RecordingAnalysis, dict[str, Any], str]] = [
     (
         left(knee_range_deg=60.0 + 5.0 * (GROWING > 0.5)),
         {},
-        "First and second half of the walk differ by 5.0° (limit 2.0°).",
+        "The values in the first and second half of the walk differ by 5.0° (limit 2.0°).",
     ),
     (
         left(stance_percent=60.0 + 2.0 * (GROWING > 0.5)),
         {},
-        "First and second half of the walk differ by 2.0 % (limit 1.5 %).",
+        "The values in the first and second half of the walk differ by 2.0 % (limit 1.5 %).",
     ),
     (
         left(knee_range_deg=60.0 + 6.0 * GROWING),
         {},
-        "First and last third of the walk differ by 4.4° (limit 3.0°).",
+        "The values in the first and last third of the walk differ by 4.4° (limit 3.0°).",
     ),
     (
         left(time_s=1.1 * (1.0 + 0.1 * (GROWING > 0.5))),
@@ -196,27 +199,30 @@ CASES: list[tuple[RecordingAnalysis, dict[str, Any], str]] = [
     (
         walk(received={Site.LEFT_FOOT: with_gaps(2.0)}),
         {},
-        "Gaps over 50 ms take 2.0 % of the strides used (1.0 % at most). Move the receiver",
+        "Signal gaps over 50 ms take up 2.0 % of the strides used (1.0 % at most). Move the receiver",
     ),
     (
         walk(received={Site.LEFT_FOOT: with_gaps(6.0)}),
         {},
-        "Gaps over 50 ms take 6.0 % of the strides used (5.0 % at most). Move the receiver",
+        "Signal gaps over 50 ms take up 6.0 % of the strides used (5.0 % at most). Move the receiver",
     ),
     (
         walk(received={Site.LEFT_FOOT: Reception(clipped_forces_s=np.array([12.0]))}),
         {},
-        "The motion exceeded a sensor's range in 8.3 % of the strides used (0.0 % at most). Choose a wider range",
+        "The motion exceeded a sensor's range in 8.3 % of the strides used (0.0 % at most). Choose a wider",
     ),
     (
         walk(received={Site.LEFT_SHANK: Reception(rate_percent=95.0)}),
         {},
-        "A sensor's samples came at 95.0 % of the rate set (limit 98.0 %). Check the sensor's sample rate",
+        "A sensor sent samples at 95.0 % of the set sample rate (limit 98.0 %). Check the sensor's sample rate",
     ),
     (
         walk(received={Site.LEFT_SHANK: Reception(rate_percent=50.1)}),
         {},
-        "Every second sample of a sensor is missing: 50.1 % came (limit 90.0 %). Check its sample rate, move",
+        (
+            "Every second sample of a sensor is missing: 50.1 % of the samples arrived (limit 90.0 %). Check the "
+            "sensor's sample rate, move"
+        ),
     ),
     (left(stance_percent=39.0), {}, "Stance is 39.0 % of the gait cycle (limit 40.0 %). Gait events may be wrong."),
     (left(stance_percent=86.0), {}, "Stance is 86.0 % of the gait cycle (limit 85.0 %). Gait events may be wrong."),
@@ -231,7 +237,10 @@ CASES: list[tuple[RecordingAnalysis, dict[str, Any], str]] = [
     (
         clocks(tie=ClockTie.UNKNOWN, residual_s=float("nan")),
         {},
-        "Left and right sensors are not synchronised. Timing between the legs is not reported. Use one receiver",
+        (
+            "Left and right sensors are not synchronised. Times that involve both legs are not reported. Use one "
+            "receiver"
+        ),
     ),
     (
         clocks(residual_s=0.010),
@@ -246,12 +255,12 @@ CASES: list[tuple[RecordingAnalysis, dict[str, Any], str]] = [
     (
         clocks(step_share_percent=57.0),
         {},
-        "Left and right sensors are not synchronised: the left step takes 57.0 % of both (limit 55.0 %), with",
+        "Left and right sensors are not synchronised. The left step takes 57.0 % of the time of both steps (limit",
     ),
     (
         clocks(step_share_percent=42.0),
         {},
-        "Left and right sensors are not synchronised: the left step takes 42.0 % of both (limit 45.0 %), with",
+        "Left and right sensors are not synchronised. The left step takes 42.0 % of the time of both steps (limit",
     ),
     (
         walk(drifting_percent={Site.LEFT_SHANK: 2.5}),
@@ -322,4 +331,4 @@ def test_swapped_labels_are_named_where_they_are_known() -> None:
 
 def test_a_share_is_written_in_percent() -> None:
     why = gate_words(GateReason("hip_disagreement", Verdict.NOT_REPORTED, 0.31, 0.2)).why
-    assert why.endswith("(by 31\N{NO-BREAK SPACE}%, limit 20\N{NO-BREAK SPACE}%).")
+    assert why.endswith("(difference 31\N{NO-BREAK SPACE}%, limit 20\N{NO-BREAK SPACE}%).")

@@ -182,7 +182,7 @@ def test_a_refusal_is_reported_in_two_sentences(qtbot: QtBot, controller: Librar
         )
     qtbot.waitUntil(lambda: bool(asker.refusals), timeout=WAIT_MS)
     assert asker.refusals == [
-        ("Another patient has this code.", "Open that patient, or choose another code."),
+        ("Another patient has this code.", "Open the other patient, or choose another code."),
     ]
     assert len(asker.results) == 1
 
@@ -319,7 +319,7 @@ def test_a_keyring_without_the_key_sends_back_to_the_passphrase(
     with qtbot.waitSignal(controller.not_opened, timeout=WAIT_MS) as reported:
         controller.open_remembered(folder, "hk")
     assert reported.args is not None
-    assert reported.args[1] == "Enter it."
+    assert reported.args[1] == "Enter the passphrase."
 
 
 def test_a_library_that_another_program_holds_is_not_opened(
@@ -549,7 +549,7 @@ def test_a_change_of_the_key_that_is_refused_leaves_the_library_open(
     with open_library(folder, PASSPHRASE, "hk"):
         controller.change_key("", asker.on_done, asker.on_failed, asker.on_progressed, asker)
         qtbot.waitUntil(lambda: bool(asker.results or asker.refusals), timeout=WAIT_MS)
-    assert asker.refusals == [("Another program has the library open.", "Close it, then try again.")]
+    assert asker.refusals == [("Another program has the library open.", "Close that program, then try again.")]
     controller.run(lambda library: len(library.library.operators.list()), asker.on_done, asker.on_failed, asker)
     qtbot.waitUntil(lambda: bool(asker.results), timeout=WAIT_MS)
 

@@ -278,7 +278,7 @@ def test_the_key_is_not_changed_while_what_was_recorded_waits_and_nobody_is_remo
     controller.change_key("ab", asker.on_done, asker.on_failed, asker.on_progressed, asker)
     qtbot.waitUntil(lambda: asker.has_received, timeout=WAIT_MS)
     ((what, remedy),) = asker.refusals
-    assert what.startswith("Recordings made while the library was unavailable are not in it yet")
+    assert what.startswith("Recordings made while the library was unavailable are not in the library yet")
     assert str(opened.shelter.folder) in remedy
     assert [one.is_active for one in opened_of(controller).library.operators.list()] == [True, True]
     with qtbot.waitSignal(controller.gone, timeout=WAIT_MS):  # it is watched all the same

@@ -113,7 +113,7 @@ def test_sensors_by_number_and_by_name(test_data: FindData) -> None:
         FileRefusedError, match=r'"Knee" matches no file and no sensor\. Available sensors: Lumbar \(5718\)'
     ):
         import_with(apdm_trial, [path], {Site.LEFT_FOOT: "Knee"}, "walk 1")
-    with pytest.raises(FileRefusedError, match="is assigned to two sites"):
+    with pytest.raises(FileRefusedError, match="is assigned to two sensor positions"):
         import_with(apdm_trial, [path], {Site.LEFT_FOOT: "Lumbar", Site.LEFT_SHANK: "5718"}, "walk 1")
 
 
@@ -138,7 +138,7 @@ def test_other_units_are_refused_with_their_name(tmp_path: Path) -> None:
         moveo(tmp_path / "a.csv", rate_unit="deg/s")
     )
     assert '"Thigh/Acceleration/X" is in "g", expected m/s^2' in refusal(moveo(tmp_path / "b.csv", acc_unit="g"))
-    assert 'the median acceleration of "Left Thigh" is 1.00, not gravity' in refusal(
+    assert 'the median acceleration of "Left Thigh" is 1.00, which does not match gravity' in refusal(
         monitors(tmp_path / "c.csv", acc=1.0)
     )
     assert '"Left Thigh" are in deg/s, not in rad/s' in refusal(monitors(tmp_path / "d.csv", gyr=180.0))
@@ -147,17 +147,23 @@ def test_other_units_are_refused_with_their_name(tmp_path: Path) -> None:
 
 def test_what_is_damaged_is_refused_where_it_is(tmp_path: Path) -> None:
     row = ["0.1", "0", "0", "9.81", "0", "0", "0"]
-    assert "a.csv, line 6: it has 3 cells, the header 7" in refusal(moveo(tmp_path / "a.csv", [row, row[:3]]))
+    assert "a.csv, line 6: the line has 3 cells, but the header has 7" in refusal(
+        moveo(tmp_path / "a.csv", [row, row[:3]])
+    )
     assert 'b.csv, line 5: "moved" is not a number' in refusal(moveo(tmp_path / "b.csv", [["0.1", "moved", *row[2:]]]))
     back = ["0.05", *row[1:]]
     assert "c.csv, line 6: Time goes back from 0.1 to 0.05" in refusal(moveo(tmp_path / "c.csv", [row, back]))
     assert "d.csv, line 5: a sample has no time" in refusal(moveo(tmp_path / "d.csv", [["", *row[1:]]]))
     cells = cells_of(moveo(tmp_path / "e.csv"))
-    assert '"Thigh" has no angular rates' in refusal(written(tmp_path / "e.csv", [line[:4] for line in cells]))
+    assert 'the file contains no angular rates of "Thigh"' in refusal(
+        written(tmp_path / "e.csv", [line[:4] for line in cells])
+    )
     assert "there is no header line that begins with Time" in refusal(written(tmp_path / "f.csv", cells[:2]))
     cells = cells_of(monitors(tmp_path / "j.csv"))
     short = [line[:9] for line in cells[2:]]
-    assert "j.csv: its header lines differ in length" in refusal(written(tmp_path / "j.csv", [*cells[:2], *short]))
+    assert "j.csv: the header lines of the file differ in length" in refusal(
+        written(tmp_path / "j.csv", [*cells[:2], *short])
+    )
     (tmp_path / "g.csv").write_bytes(b"Test Name:,\xff\xfe")
     assert "the file is not comma-separated text" in refusal(tmp_path / "g.csv")
     assert "the file is not an export from APDM software" in refusal(written(tmp_path / "h.csv", [["Sensor", "Time"]]))

@@ -154,21 +154,23 @@ def test_orientations_of_zeros_are_none(tmp_path: Path) -> None:
 
 def test_other_units_are_refused(tmp_path: Path) -> None:
     in_g = version_5(tmp_path / "a.h5", {"1": ("A", stamps(), still(acc=1.0))})
-    assert 'the median acceleration of "A" is 1.00, not gravity in m/s2' in refusal(in_g)
+    assert 'the median acceleration of "A" is 1.00, which does not match gravity in m/s2' in refusal(in_g)
     in_degrees = version_5(tmp_path / "b.h5", {"1": ("A", stamps(), still(rate=180.0))})
     assert 'the angular rates of "A" are in deg/s, not in rad/s' in refusal(in_degrees)
     reported = version_5(tmp_path / "c.h5", {"1": ("A", stamps(), still())})
     with h5py.File(reported, "r+") as file:
         file["Sensors/1/Accelerometer"].attrs["Units"] = "g"
-    assert 'c.h5, Sensors/1/Accelerometer: it is in "g", expected m/s^2' in refusal(reported)
+    assert 'c.h5, Sensors/1/Accelerometer: the values are in "g", expected m/s^2' in refusal(reported)
 
 
 def test_what_is_missing_or_damaged_is_refused_where_it_is(tmp_path: Path) -> None:
     samples = still()
     del samples["Gyroscope"]
-    assert '"A" has no angular rates' in refusal(version_5(tmp_path / "a.h5", {"1": ("A", stamps(), samples)}))
+    assert 'the file contains no angular rates of "A"' in refusal(
+        version_5(tmp_path / "a.h5", {"1": ("A", stamps(), samples)})
+    )
     short = {**still(), "Accelerometer": np.ones((39, 3))}
-    assert "b.h5, Sensors/1/Accelerometer: its values have shape (39, 3), expected (40, 3)" in refusal(
+    assert "b.h5, Sensors/1/Accelerometer: the values have the shape (39, 3) instead of (40, 3)" in refusal(
         version_5(tmp_path / "b.h5", {"1": ("A", stamps(), short)})
     )
     back = stamps()
@@ -179,7 +181,7 @@ def test_what_is_missing_or_damaged_is_refused_where_it_is(tmp_path: Path) -> No
     assert "APDM file version 2 is not supported, only versions 3 to 5" in refusal(version_4(tmp_path / "d.h5", 2))
     whole = version_5(tmp_path / "e.h5", {"1": ("A", stamps(), still())}).read_bytes()
     (tmp_path / "f.h5").write_bytes(whole[: len(whole) // 2])
-    assert "f.h5: this cannot be read as HDF5" in refusal(tmp_path / "f.h5")
+    assert "f.h5: the file cannot be read as HDF5" in refusal(tmp_path / "f.h5")
     assert "the file lists no sensors" in refusal(version_5(tmp_path / "g.h5", {}))
 
 

@@ -149,12 +149,14 @@ def test_latencies_are_the_times_and_missing_samples_gaps(tmp_path: Path) -> Non
         bids(tmp_path, [other("LATENCY", "n/a", latency, unit="s"), *held])
     )
     in_ms = other("LATENCY", "n/a", np.arange(300) * 10.0, unit="ms")
-    assert "its latency step of 10 does not match 100 samples per second" in refusal(bids(tmp_path, [in_ms, *held]))
+    assert "the file's latency step of 10 does not match 100 samples per second" in refusal(
+        bids(tmp_path, [in_ms, *held])
+    )
 
 
 def test_a_frequency_that_nothing_shows_is_asked_for(tmp_path: Path) -> None:
     path = bids(tmp_path, channels("leftThigh", swinging_sensor()), settings={"SamplingFrequency": "n/a"})
-    assert "its sampling frequency is missing. Give it in Hz (--rate)" in refusal(path)
+    assert "the sampling frequency of the recording is missing. Give the rate in Hz (--rate)" in refusal(path)
     assert bids_motion_trial([path], 100.0).sensors[0].info.rate_hz == 100.0
 
 
@@ -198,7 +200,7 @@ def test_what_is_stated_to_be_in_global_axes_is_looked_at(tmp_path: Path) -> Non
         turn.apply(truth.acc_m_s2),
         truth.free_m_s2,
     )
-    assert 'the acceleration of "leftThigh" does not rotate with it, so it is in global axes' in refusal(
+    assert 'the acceleration of "leftThigh" does not rotate with the sensor, so it is in global axes' in refusal(
         bids(tmp_path, channels("leftThigh", in_earth, frame="global"), heads=heads)
     )
 
@@ -257,9 +259,9 @@ def test_what_does_not_fit_is_refused_where_it_is(tmp_path: Path) -> None:
     path = bids(tmp_path, held)
     text = path.read_text()
     path.write_text("x\t" + text)
-    assert f"{IMU}_motion.tsv, line 1: it has 7 cells, but the channel table has 6 channels" in refusal(path)
+    assert f"{IMU}_motion.tsv, line 1: the line has 7 cells, but the channel table has 6 channels" in refusal(path)
     path.write_text("\t".join(row["name"] for row, _ in held) + "\n" + text)
-    assert "line 1: it contains a value that is not a number" in refusal(path)
+    assert "line 1: a value is not a number" in refusal(path)
     assert "Remove the header line: BIDS has none in this file" in refusal(path)
     path.unlink()
     assert f"{IMU}_motion.tsv: this file of the recording is missing" in refusal(tmp_path / f"{IMU}_channels.tsv")

@@ -166,7 +166,7 @@ def test_rows_without_a_sensors_values_are_its_gaps_and_doubled_stamps_a_finding
 def test_without_times_a_rate_and_a_counter_are_asked_for(tmp_path: Path) -> None:
     columns = named("acc_{}_m_s2", "gyr_{}_rad_s")
     path = write(tmp_path / "a.csv", columns)
-    assert "its samples have no times. Add a column time_s, time_ms or time_us, or give" in refusal(path)
+    assert "the samples in the file have no times. Add a column time_s, time_ms or time_us, or give" in refusal(path)
     imported = shank(path, rate_hz=50.0)
     assert imported.imu[Site.LEFT_SHANK].time_s[-1] == pytest.approx((ROWS - 1) / 50.0)
     assert finding(imported, "time_from_rate").numbers == {"rate_hz": 50.0}
@@ -193,7 +193,7 @@ def test_what_names_leave_open_is_asked_for(tmp_path: Path) -> None:
     )
     counts = {"time": np.arange(float(ROWS)), **named("acc_{}_m_s2", "gyr_{}_rad_s")}
     path = write(tmp_path / "b.csv", counts)
-    assert 'the unit of "time" is unclear; its step between samples is 1. Name it' in refusal(path)
+    assert 'the unit of "time" is unclear; its step between samples is 1. Name the column' in refusal(path)
     assert shank(path, "b", 100.0).imu[Site.LEFT_SHANK].time_s[1] == 0.01
     fine = {"time": TIME_S * 1e4, **named("acc_{}_m_s2", "gyr_{}_rad_s")}  # 0.1 ms is no unit of ours
     assert 'the unit of "time" is unclear; its step between samples is 100.' in refusal(write(tmp_path / "c.csv", fine))
@@ -203,8 +203,8 @@ def test_units_are_held_to_their_size(tmp_path: Path) -> None:
     def of(acc: str, gyr: str, acc_unit: float, gyr_unit: float) -> str:
         return refusal(write(tmp_path / "a.csv", {"time_s": TIME_S, **named(acc, gyr, acc_unit, gyr_unit)}))
 
-    assert "is labelled m/s2, but its median of 0.994 is gravity in g" in of("acc_{}_m_s2", "gyr_{}_rad_s", G, 1.0)
-    assert "is labelled g, but its median of 9.74 is gravity in m/s2" in of("acc_{}_g", "gyr_{}_rad_s", 1.0, 1.0)
+    assert "is labelled m/s2, but its median of 0.994 matches gravity in g" in of("acc_{}_m_s2", "gyr_{}_rad_s", G, 1.0)
+    assert "is labelled g, but its median of 9.74 matches gravity in m/s2" in of("acc_{}_g", "gyr_{}_rad_s", 1.0, 1.0)
     assert "not gravity in m/s2, g, mg. Export acceleration in m/s2 with gravity" in of(
         "acc_{}", "gyr_{}_rad_s", 3.0, 1.0
     )
@@ -226,11 +226,11 @@ def test_units_are_held_to_their_size(tmp_path: Path) -> None:
 
 def test_times_are_held_to_their_size(tmp_path: Path) -> None:
     columns = named("acc_{}_m_s2", "gyr_{}_rad_s")
-    assert "its times give 0.1 samples per second, expected 1 to 20000" in refusal(
+    assert "the times in the file give 0.1 samples per second, expected 1 to 20000" in refusal(
         write(tmp_path / "a.csv", {"time_s": TIME_S * 1e3, **columns})
     )
     path = write(tmp_path / "a.csv", {"time_s": TIME_S, **columns})
-    assert "its times give 100 samples per second, expected 60" in refusal(path, 60.0)
+    assert "the times in the file give 100 samples per second, expected 60" in refusal(path, 60.0)
     back = TIME_S.copy()
     back[50:] -= 0.3
     assert 'a.csv, line 52: "time_s" goes back from 0.49 to 0.2' in refusal(write(path, {"time_s": back, **columns}))
@@ -240,7 +240,7 @@ def test_times_are_held_to_their_size(tmp_path: Path) -> None:
         write(path, {"time_s": empty, **columns})
     )
     coarse = np.floor(TIME_S * 10) / 10
-    assert "360 of 400 samples repeat the previous time. Export the times with more digits" in refusal(
+    assert "360 of 400 samples have the same time as the sample before. Export the times with more digits" in refusal(
         write(path, {"time_s": coarse, **columns})
     )
 
@@ -270,7 +270,7 @@ def test_columns_that_mean_nothing_are_reported(tmp_path: Path) -> None:
 def test_what_is_no_such_table_is_refused_and_not_recognised(tmp_path: Path) -> None:
     path = write(tmp_path / "a.csv", {"time": TIME_S, "left": TIME_S, "acc_x": TIME_S})
     assert (
-        "its columns do not identify acceleration and angular rates on three axes each: time, left, "
+        "the file's columns do not identify acceleration and angular rates on three axes each: time, left, "
         "acc_x. Name" in refusal(path)
     )
     xsens = {"PacketCounter": TIME_S, "SampleTimeFine": TIME_S, **named("Acc_{}", "Gyr_{}")}

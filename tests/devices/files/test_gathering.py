@@ -63,7 +63,9 @@ def test_a_folder_is_for_what_is_in_it(mixed: Path) -> None:
 
 
 def test_an_empty_folder_is_refused(tmp_path: Path) -> None:
-    with pytest.raises(FileRefusedError, match=r"it contains neither session\.toml nor a file that can be imported"):
+    with pytest.raises(
+        FileRefusedError, match=r"the folder contains neither session\.toml nor a file that can be imported"
+    ):
         gather([tmp_path])
 
 

@@ -36,10 +36,10 @@ def test_a_map_names_sites() -> None:
 @pytest.mark.parametrize(
     ("text", "words"),
     [
-        ("", "does not assign a file to a site"),
-        ("left_thigh", "does not assign a file to a site"),
-        ("left_thigh=", "does not assign a file to a site"),
-        ("sternum=a", '"sternum" is not a site'),
+        ("", "does not assign a file to a sensor position"),
+        ("left_thigh", "does not assign a file to a sensor position"),
+        ("left_thigh=", "does not assign a file to a sensor position"),
+        ("sternum=a", '"sternum" is not a sensor position'),
         ("left_thigh=a,left_thigh=b", "left_thigh is given twice"),
     ],
 )
@@ -87,7 +87,10 @@ def test_a_sensor_is_found_by_the_path_of_its_file(
             r"matches no file and no sensor\. Available sensors: t_00B40001.txt \(00B40001\), t_",
         ),
         ({Site.LEFT_FOOT: "00B40002"}, "is ambiguous: t_00B40002.txt, u_00B40002.txt"),
-        ({Site.LEFT_FOOT: "00B40001", Site.LEFT_SHANK: "t_00B40001.txt"}, "t_00B40001.txt is assigned to two sites"),
+        (
+            {Site.LEFT_FOOT: "00B40001", Site.LEFT_SHANK: "t_00B40001.txt"},
+            "t_00B40001.txt is assigned to two sensor positions",
+        ),
         ({Site.LEFT_FOOT: "00B40003"}, "b_00B40003.txt: there is no acceleration"),
         ({Site.LEFT_FOOT: "b_00B40003.txt"}, "b_00B40003.txt: there is no acceleration"),
     ],
@@ -104,7 +107,8 @@ def test_time_starts_with_the_first_sample_that_is_placed(tmp_path: Path) -> Non
     found = place_trial(trial, {Site.LEFT_FOOT: "b", Site.LEFT_SHANK: "c"}, "walk 1")
     assert [found.imu[site].time_s[0] for site in (Site.LEFT_FOOT, Site.LEFT_SHANK)] == [0.5, 0.0]
     with pytest.raises(
-        FileRefusedError, match=r"b.txt: it starts after the last sample of a.txt, so they do not belong to one trial"
+        FileRefusedError,
+        match=r"b.txt: one sensor's data start after the last sample of a.txt, so both do not belong to one trial",
     ):
         place_trial(trial, {Site.LEFT_FOOT: "a", Site.LEFT_SHANK: "b"}, "walk 1")
 

@@ -239,7 +239,7 @@ def test_a_small_file_that_fills_the_memory_is_refused(make_session: MakeSession
     rows = pa.table({name: np.arange(500.0) for name in REQUIRED} | {"note": note})  # 1 GB
     pq.write_table(rows, folder / "walk_1" / "right_thigh.parquet", store_schema=False)
     assert (folder / "walk_1" / "right_thigh.parquet").stat().st_size < 1_000_000
-    with pytest.raises(ReadingEndedError, match=r"^walk_1/right_thigh.parquet: reading this takes more memory"):
+    with pytest.raises(ReadingEndedError, match=r"^walk_1/right_thigh.parquet: reading the data takes more memory"):
         read(folder, reader)
     assert reader.process is None
 
@@ -249,7 +249,9 @@ def test_small_files_that_hold_too_much_together_are_refused(
 ) -> None:
     folder = make_session()
     monkeypatch.setattr("devices.files.session_folder.MOST_HELD_BYTES", 100)
-    with pytest.raises(FileRefusedError, match=r"^walk 1: its files contain more samples than their size allows"):
+    with pytest.raises(
+        FileRefusedError, match=r"^walk 1: the recording's files contain more samples than their size allows"
+    ):
         read_session(folder)
     monkeypatch.setattr("devices.files.session_folder.MOST_HELD_BYTES", 1000)
     read_session(folder)
@@ -261,7 +263,7 @@ def test_a_file_that_takes_too_long_is_refused_and_the_next_one_is_read(
 ) -> None:
     folder = make_session()
     monkeypatch.setattr(limited_reader, "DEADLINE_S", 0.0)
-    with pytest.raises(ReadingEndedError, match=r"^session.toml: reading this takes longer"):
+    with pytest.raises(ReadingEndedError, match=r"^session.toml: reading the data takes longer"):
         read(folder, reader)
     monkeypatch.undo()
     read(folder, reader)

@@ -61,11 +61,11 @@ def test_the_same_in_another_unit_is_refused_with_what_to_do(motion: object, fac
     assert callable(motion)
     acc, _ = motion()
     with pytest.raises(
-        FileRefusedError, match=r'a.csv: the median acceleration of "left" is .*, not gravity'
+        FileRefusedError, match=r'a.csv: the median acceleration of "left" is .*, which does not match gravity'
     ) as refused:
         check_magnitudes(factor * acc, None, "left", "a.csv")
     assert "m/s2" in refused.value.remedy
-    with pytest.raises(FileRefusedError, match="not gravity") as of_sensor:
+    with pytest.raises(FileRefusedError, match="which does not match gravity") as of_sensor:
         check_magnitudes(factor * acc, None, "left", "a.bin", is_export=False)
     assert "record again" in of_sensor.value.remedy
 
@@ -78,9 +78,9 @@ def test_acceleration_without_gravity_is_refused() -> None:
 
 def test_rates_beyond_every_range_are_in_another_unit() -> None:
     acc, gyr = running()
-    with pytest.raises(FileRefusedError, match=r'of "a" are in deg/s, not in rad/s. Export it again in rad/s'):
+    with pytest.raises(FileRefusedError, match=r'of "a" are in deg/s, not in rad/s. Export the file again in rad/s'):
         check_magnitudes(acc, np.degrees(gyr), "a", "a.csv")
-    with pytest.raises(FileRefusedError, match=r"beyond the range of any sensor. Export it again in deg/s"):
+    with pytest.raises(FileRefusedError, match=r"beyond the range of any sensor. Export the file again in deg/s"):
         check_magnitudes(acc, np.degrees(gyr), "a", "a.csv", gyr_unit="deg/s")
     with pytest.raises(FileRefusedError, match=r"beyond the range of any sensor. Check the sensor's range"):
         check_magnitudes(acc, np.degrees(gyr), "a", "a.bin", is_export=False)

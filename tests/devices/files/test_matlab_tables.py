@@ -167,7 +167,7 @@ def test_units_are_held_to_their_size_and_asked_for(tmp_path: Path) -> None:
             matlab_trial([written(tmp_path / "a.mat", variables)])
         return str(caught.value)
 
-    assert "is labelled m/s2, but its median of 1.01 is gravity in g" in refusal(
+    assert "is labelled m/s2, but its median of 1.01 matches gravity in g" in refusal(
         {"time_s": TIME_S, "acc": ACC / 9.8, "acc_unit": "m/s^2", "gyr": GYR}
     )
     assert "it is unclear whether the angular rates" in refusal({"time_s": TIME_S, "acc": ACC, "gyr": GYR})
@@ -201,14 +201,14 @@ def test_other_matlab_files_are_refused_with_their_names(tmp_path: Path) -> None
     path = written(tmp_path / "a.mat", {"speed": np.arange(4.0), "picture": np.eye(4)})
     assert recognised([path]) == "matlab"
     with pytest.raises(
-        FileRefusedError, match=r"a.mat: its columns do not identify acceleration .*: speed, picture. Name"
+        FileRefusedError, match=r"a.mat: the file's columns do not identify acceleration .*: speed, picture. Name"
     ):
         matlab_trial([path])
     path.write_bytes(path.read_bytes()[:-40])
-    with pytest.raises(FileRefusedError, match=r"a.mat: this cannot be read as a MATLAB file"):
+    with pytest.raises(FileRefusedError, match=r"a.mat: the file cannot be read as a MATLAB file"):
         matlab_trial([path])
     with pytest.raises(
-        FileRefusedError, match=r"this is not a MATLAB file of version 5 or later. Save it again in MATLAB"
+        FileRefusedError, match=r"the file is not a MATLAB file of version 5 or later. Save it again in MATLAB"
     ):
         matlab_trial([OF_MATLAB / "testdouble_4.2c_SOL2.mat"])
 

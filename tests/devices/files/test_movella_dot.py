@@ -246,7 +246,7 @@ def test_hardly_any_samples_are_a_short_recording(tmp_path: Path, rows: int) -> 
 
 
 def test_what_the_mode_left_out_is_named_with_the_mode_to_choose(tmp_path: Path) -> None:
-    assert "and there is no orientation to restore it. Record again in" in refusal(
+    assert "There is no orientation to restore gravity. Record again in" in refusal(
         dot(tmp_path / "a.csv", "FreeAcc", "Gyr")
     )
     assert "there is no acceleration (Acc_X, Acc_Y, Acc_Z). Record again" in refusal(
@@ -258,9 +258,11 @@ def test_what_the_mode_left_out_is_named_with_the_mode_to_choose(tmp_path: Path)
 def test_other_units_are_refused(tmp_path: Path) -> None:
     columns = swing()
     in_g = {name: value / 9.81 if name.startswith("Acc") else value for name, value in columns.items()}
-    assert "not gravity in m/s2; it looks like g" in refusal(dot(tmp_path / "a.csv", "Acc", "Gyr", columns=in_g))
+    assert "which does not match gravity in m/s2; the unit seems to be g" in refusal(
+        dot(tmp_path / "a.csv", "Acc", "Gyr", columns=in_g)
+    )
     without = {name: value * 0.3 if name.startswith("Acc") else value for name, value in columns.items()}
-    assert ", not gravity" in refusal(dot(tmp_path / "b.csv", "Acc", "Gyr", columns=without))
+    assert ", which does not match gravity" in refusal(dot(tmp_path / "b.csv", "Acc", "Gyr", columns=without))
     rad = {name: np.radians(value) if name.startswith("Gyr") else value for name, value in columns.items()}
     assert "the angular rates are in rad/s, not in deg/s" in refusal(
         dot(tmp_path / "c.csv", "Quat", "Acc", "Gyr", columns=rad)
@@ -275,7 +277,7 @@ def test_times_that_fit_no_rate_are_asked_for(tmp_path: Path) -> None:
     ticks = [7000 * k for k in range(240)]
     nothing = {"DeviceTag": "a"}
     path = dot(tmp_path / "a.csv", "Acc", "Gyr", ticks=ticks, heads=nothing)
-    assert "its time step of 7000 matches no rate of these sensors" in refusal(path)
+    assert "the file's time step of 7000 matches no rate of these sensors" in refusal(path)
     assert block_of(path, 142.857).time_s[-1] == pytest.approx(239 * 0.007)
     assert "does not match 60 samples per second" in refusal(dot(tmp_path / "b.csv", "Acc", "Gyr", ticks=ticks))
 

@@ -168,7 +168,8 @@ def test_rate_and_acceleration_at_unequal_rates_keep_the_slower_one_and_say_so(
 def test_what_weighs_no_gravity_is_refused(tmp_path: Path, scale: float) -> None:
     path = written(tmp_path / "a.bin", kinds=frozenset({Item.RATE, Item.ACCELERATION}), scale=scale)
     with pytest.raises(
-        FileRefusedError, match=r'a\.bin: the median acceleration of "0123ABCD" is .*, not gravity .* Check the sensor'
+        FileRefusedError,
+        match=r'a\.bin: the median acceleration of "0123ABCD" is .*, which does not match gravity .* Check the sensor',
     ):
         one(path)
 
@@ -196,7 +197,7 @@ def test_what_shows_no_motion_is_refused_with_what_to_set(tmp_path: Path) -> Non
     ):
         mti_trial([old])
     blind = written(tmp_path / "b.bin", kinds=frozenset({Item.RATE, FREE}))
-    with pytest.raises(FileRefusedError, match=r"b\.bin: its acceleration is without gravity"):
+    with pytest.raises(FileRefusedError, match=r"b\.bin: the acceleration in the file is without gravity"):
         mti_trial([blind])
 
 

@@ -138,12 +138,14 @@ def test_sensors_are_placed_by_their_segments(tmp_path: Path) -> None:
 
 
 def test_what_is_left_out_is_named(tmp_path: Path) -> None:
-    assert "no sensor acceleration, or no orientation to add gravity with. Export it again from MVN" in refusal(
+    assert "no sensor acceleration, or no orientation to add gravity with. Export the file again from MVN" in refusal(
         mvnx(tmp_path / "a.mvnx", elements(two(), "sensorFreeAcceleration"))
     )
     assert "there is no sensor orientation" in refusal(mvnx(tmp_path / "b.mvnx", elements(two(), "sensorAcceleration")))
     held = elements(two(), "sensorFreeAcceleration", "sensorOrientation")
-    assert "its frame rate is missing. Give it in Hz (--rate)" in refusal(mvnx(tmp_path / "c.mvnx", held, rate=""))
+    assert "the frame rate of the file is missing. Give the rate in Hz (--rate)" in refusal(
+        mvnx(tmp_path / "c.mvnx", held, rate="")
+    )
     assert mvnx_trial([tmp_path / "c.mvnx"], 100.0).sensors[0].info.rate_hz == 100.0
     none = tmp_path / "d.mvnx"
     none.write_text('<mvnx version="4"><subject frameRate="100"><frames/></subject></mvnx>')
@@ -153,14 +155,14 @@ def test_what_is_left_out_is_named(tmp_path: Path) -> None:
 def test_other_units_and_broken_frames_are_refused(tmp_path: Path) -> None:
     held = elements(two(), "sensorAcceleration", "sensorAngularVelocity", "sensorOrientation")
     in_g = held | {"sensorAcceleration": held["sensorAcceleration"] / 9.81}
-    assert ", not gravity" in refusal(mvnx(tmp_path / "a.mvnx", in_g))
+    assert ", which does not match gravity" in refusal(mvnx(tmp_path / "a.mvnx", in_g))
     deg = held | {"sensorAngularVelocity": np.degrees(held["sensorAngularVelocity"])}
     assert "in deg/s, not in rad/s" in refusal(mvnx(tmp_path / "b.mvnx", deg))
     short = held | {"sensorAcceleration": held["sensorAcceleration"][:, :5]}
-    assert "frame 0: it has 5 values for 2 sensors, expected 6" in refusal(mvnx(tmp_path / "c.mvnx", short))
+    assert "frame 0: the frame has 5 values for 2 sensors, expected 6" in refusal(mvnx(tmp_path / "c.mvnx", short))
     twice = held | {"sensorOrientation": 2.0 * held["sensorOrientation"]}
     assert "frame 0: the orientation is not a valid rotation" in refusal(mvnx(tmp_path / "d.mvnx", twice))
-    assert "its frames take 3.0 s at 100 Hz, but its timestamps 6.0 s" in refusal(
+    assert "the frames of the file take 3.0 s at 100 Hz, but its timestamps take 6.0 s" in refusal(
         mvnx(tmp_path / "e.mvnx", held, ms_each=20.0)
     )
     assert '"A" is not a sensor name, or is used twice' in refusal(mvnx(tmp_path / "f.mvnx", held, names=("A", "A")))

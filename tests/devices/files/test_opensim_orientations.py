@@ -117,8 +117,8 @@ def test_what_is_damaged_is_refused_where_it_is(tmp_path: Path) -> None:
     assert "there is no header line after endheader" in refusal(edited(good(), "endheader", "end"))
     assert "a.sto, line 6: the header line does not begin with time" in refusal(edited(good(), "time", "t"))
     assert 'line 6: column "femur_l_imu" appears twice' in refusal(edited(good(), "tibia_l_imu", "femur_l_imu"))
-    assert "line 9: it has 2 cells, the header 3" in refusal(edited(good(), "0.020000\t", "0.020000"))
-    assert "line 9: it contains a value that is not a number" in refusal(edited(good(), "0.020000\t", "0.020000\tx"))
+    assert "line 9: the line has 2 cells, but the header has 3" in refusal(edited(good(), "0.020000\t", "0.020000"))
+    assert "line 9: a value is not a number" in refusal(edited(good(), "0.020000\t", "0.020000\tx"))
     times = {f"{0.01 * k:.6f}": f"{0.01 * k - 0.5:.6f}" for k in range(100, 300)}
     back = good().read_text()
     for time_s, earlier_s in times.items():
@@ -131,7 +131,7 @@ def test_what_is_damaged_is_refused_where_it_is(tmp_path: Path) -> None:
         "the times in the file are not evenly spaced, so angular rates cannot be derived from the orientation"
     ) in refusal(edited(good(), "0.020000\t", "0.025000\t"))
     path.write_bytes(good().read_bytes().replace(b"version", b"\xff\xfe"))
-    assert "a.sto, line 3: this is not UTF-8 text" in refusal(path)
+    assert "a.sto, line 3: the file is not UTF-8 text" in refusal(path)
 
 
 def test_the_angle_between_two_sensors_is_known_without_acceleration(tmp_path: Path) -> None:

@@ -77,10 +77,12 @@ def test_other_parquet_is_not_taken_for_it(tmp_path: Path) -> None:
     path = written(tmp_path / "a.parquet", {"year": [2026], "amount": [1.0]})
     with pytest.raises(FileRefusedError, match="the file format is not recognised"):
         recognised([path])
-    with pytest.raises(FileRefusedError, match=r"its columns do not identify acceleration .*: year, amount. Name"):
+    with pytest.raises(
+        FileRefusedError, match=r"the file's columns do not identify acceleration .*: year, amount. Name"
+    ):
         parquet_trial([path])
     path.write_bytes(path.read_bytes()[:-20])
-    with pytest.raises(FileRefusedError, match="this is not a readable Parquet file"):
+    with pytest.raises(FileRefusedError, match="the file is not a readable Parquet file"):
         parquet_trial([path])
     text = written(tmp_path / "b.parquet", {"time_s": ["0", "1"], **{name: v[:2] for name, v in columns().items()}})
     with pytest.raises(FileRefusedError, match="column time_s contains string, not numbers"):

@@ -266,9 +266,9 @@ def test_delimiters_at_the_end_of_every_line_are_nothing(make_session: MakeSessi
     ("toml", "words"),
     [
         (TOML.replace("walk_1", "walk_9"), "folder of this recording is missing"),
-        (TOML.replace("walk_1", "w" * 5000), "this cannot be read (File name too long)"),
+        (TOML.replace("walk_1", "w" * 5000), "the file or folder cannot be read (File name too long)"),
         (b"\xff\xfe", "not UTF-8"),
-        ("x = ", "session.toml: this is not TOML"),
+        ("x = ", "session.toml: the file is not TOML"),
     ],
 )
 def test_a_wrong_session_toml_is_refused(make_session: MakeSession, toml: str | bytes, words: str) -> None:
@@ -291,19 +291,19 @@ def test_a_wrong_session_toml_is_refused(make_session: MakeSession, toml: str | 
         (table("0,1,1,1,1,1,1", "1,1,1", end=""), "line 3: the line ends after 3 of 7 columns"),
         (table("0,1,1,1,1,1,1", "1,1,1"), "line 3: the line ends after 3 of 7 columns"),
         (table("0,1,1", "1,1,1,1,1,1,1"), "line 2: the line ends after 3 of 7 columns"),
-        (table("0,1,1,1,1,1,1,1"), "line 2: the line has 8 columns, the header 7"),
+        (table("0,1,1,1,1,1,1,1"), "line 2: the line has 8 columns, but the header has 7"),
         (table(",1,1,1,1,1,1"), "line 2: a sample has no time"),
         (table("0,1,1,1,1,1,1", "nan,1,1,1,1,1,1"), "line 3: a sample has no time"),
         (table("inf,1,1,1,1,1,1"), "line 2: a sample's time is infinite"),
         (table('0,1,1,1,1,1,1,"a', "1,1,1,1,1,1,1,b", columns=COLUMNS + ",x"), "line 2: a quotation mark"),
         (table('0,1,1,1,1,1,"1'), "line 2: a quotation mark"),
-        (COLUMNS.encode() + b"\n0,1,1,1,1,1,\xff\n", "line 2: this is not UTF-8"),
-        ((COLUMNS + ",x").encode() + b"\n0,1,1,1,1,1,1,\xff\n", "line 2: this is not UTF-8"),
-        (table(*ROWS).replace("\n", "\r"), "line 1: there is a carriage return"),
+        (COLUMNS.encode() + b"\n0,1,1,1,1,1,\xff\n", "line 2: the file is not UTF-8"),
+        ((COLUMNS + ",x").encode() + b"\n0,1,1,1,1,1,1,\xff\n", "line 2: the file is not UTF-8"),
+        (table(*ROWS).replace("\n", "\r"), "line 1: the line contains a line break .carriage return."),
         (table("1,1,1,1,1,1,1\r0,1,1,1,1,1,1"), "row 2: the clock goes back"),
-        (b"\xff\xd8\xff", "line 1: this is not UTF-8"),
-        (b"PK\0\0", "line 1: this is not a table but binary data"),
-        (b"x" * 200_000, "line 1: this is not a table but binary data"),
+        (b"\xff\xd8\xff", "line 1: the file is not UTF-8"),
+        (b"PK\0\0", "line 1: the file is not a table but binary data"),
+        (b"x" * 200_000, "line 1: the file is not a table but binary data"),
     ],
 )
 def test_a_wrong_text_is_refused(make_session: MakeSession, text: str | bytes, words: str) -> None:
@@ -351,16 +351,16 @@ def test_links_out_of_the_session_are_refused(make_session: MakeSession, tmp_pat
     (outside / "left_thigh.csv").write_text(table(*ROWS))
     link = folder / "walk_1" / "left_thigh.csv"
     link.symlink_to(outside / "left_thigh.csv")
-    assert "walk_1/left_thigh.csv: this leads out of the session folder" in refusal(folder)
+    assert "walk_1/left_thigh.csv: the path leads out of the session folder" in refusal(folder)
     (folder / "session.toml").rename(outside / "session.toml")
     (folder / "session.toml").symlink_to(outside / "session.toml")
-    assert "session.toml: this leads out of the session folder" in refusal(folder)
+    assert "session.toml: the path leads out of the session folder" in refusal(folder)
     (folder / "session.toml").unlink()
     (outside / "session.toml").rename(folder / "session.toml")
     link.unlink()
     (folder / "walk_1").rmdir()
     (folder / "walk_1").symlink_to(outside)
-    assert "walk_1: this leads out of the session folder" in refusal(folder)
+    assert "walk_1: the path leads out of the session folder" in refusal(folder)
     (folder / "walk_1").unlink()
     (folder / "walk_1").symlink_to(folder / "walk_1")
     assert "walk_1" in refusal(folder)

@@ -100,9 +100,9 @@ def test_every_key_of_the_format_is_read() -> None:
 @pytest.mark.parametrize(
     ("toml", "words"),
     [
-        ("format = ", "session.toml: this is not TOML"),
-        ("x = " + "[" * 5000, "session.toml: this is not TOML"),
-        ("x = " + "9" * 5000, "session.toml: this is not TOML"),
+        ("format = ", "session.toml: the file is not TOML"),
+        ("x = " + "[" * 5000, "session.toml: the file is not TOML"),
+        ("x = " + "9" * 5000, "session.toml: the file is not TOML"),
         (TOML.replace('format = "gaitwright-session/1"', ""), "the format is missing"),
         (TOML.replace("gaitwright-session/1", "gaitwright-session/2"), "later version.*Update Gaitwright"),
         (TOML.replace("gaitwright-session/1", "other/1"), 'format "other/1" is unknown'),
@@ -139,10 +139,10 @@ def test_every_key_of_the_format_is_read() -> None:
         (TOML + "[patient]\nbirth_year = 50", "birth_year is"),
         (TOML + "[patient]\ncode = 5", "code is"),
         (TOML + "[session]\nsimulated = 1", "simulated is"),
-        (TOML + "[sensors]\nleft_thigh = 5", r"\[sensors.left_thigh\]: this is not a table"),
+        (TOML + "[sensors]\nleft_thigh = 5", r"\[sensors.left_thigh\]: this part is not a table"),
         (TOML + "[sensors.left_thigh]\nrate_hz = 0", "rate_hz is"),
         (TOML + '[sensors.left_thigh]\nrate_kind = "mean"', "rate_kind is"),
-        ("zero = 5\n" + TOML, r"\[zero\]: this is not a table"),
+        ("zero = 5\n" + TOML, r"\[zero\]: this part is not a table"),
     ],
 )
 def test_what_is_wrong_is_refused(toml: str, words: str) -> None:

@@ -146,7 +146,8 @@ def test_what_cannot_be_used_is_refused(tmp_path: Path) -> None:
 def test_a_calibration_by_which_nothing_weighs_what_it_must_is_refused(tmp_path: Path) -> None:
     in_g = struct.pack(">6h9b", 5, 6, 7, 2050, 2050, 2050, -100, 0, 0, 0, 100, 0, 0, 0, -100)
     with pytest.raises(
-        FileRefusedError, match=r"a: the median acceleration of .* is 1.00, not gravity .* Check the sensor's range"
+        FileRefusedError,
+        match=r"a: the median acceleration of .* is 1.00, which does not match gravity .* Check the sensor's range",
     ):
         shimmer_trial([written(tmp_path / "a.bin", acc_calibration=in_g)])
 
@@ -205,5 +206,5 @@ def test_a_wrong_offset_from_the_radio_bends_no_clock_and_a_wrong_rate_is_refuse
     path.write_bytes(bytes(data))
     (sensor,) = shimmer_trial([path]).sensors
     assert sensor.block.time_s == pytest.approx(right.block.time_s, abs=1e-4)
-    with pytest.raises(FileRefusedError, match=r"its times give 106.* samples per second, expected 102.4"):
+    with pytest.raises(FileRefusedError, match=r"the times in the file give 106.* samples per second, expected 102.4"):
         shimmer_trial([written(tmp_path / "B" / "000", ahead=(0, 12.0))])

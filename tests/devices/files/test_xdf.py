@@ -244,7 +244,7 @@ def test_what_senders_do_not_show_is_asked_for(tmp_path: Path) -> None:
     back = START_S + TIME_S
     back[1000:] -= 3.0
     assert 'a, sample 1001: "time" goes back' in refusal(SentStream("a", stamp_s=back, rate_hz=0.0))
-    with pytest.raises(FileRefusedError, match="its times give 100 samples per second, expected 60"):
+    with pytest.raises(FileRefusedError, match="the times in the file give 100 samples per second, expected 60"):
         only(recorded(tmp_path / "a.xdf", SentStream("a")), 60.0)
 
 
@@ -310,7 +310,9 @@ def test_a_line_through_stamps_of_packets_has_the_rate_that_the_sender_shows(tmp
         sensor = only(recorded(tmp_path / "a.xdf", SentStream("a", stamp_s=START_S + packets * factor + late_s)))
         assert finding(sensor, "times_straightened") is not None
     for factor in (0.96, 1.04):
-        with pytest.raises(FileRefusedError, match=r"a.xdf, a: its times give .* samples per second, expected 100"):
+        with pytest.raises(
+            FileRefusedError, match=r"a.xdf, a: the times in the file give .* samples per second, expected 100"
+        ):
             only(recorded(tmp_path / "a.xdf", SentStream("a", stamp_s=START_S + packets * factor)))
 
 

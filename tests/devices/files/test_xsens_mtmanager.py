@@ -185,7 +185,7 @@ def test_files_that_lack_what_is_needed_are_refused(test_data: FindData, name: s
 def test_a_rate_that_no_file_shows_is_asked_for(test_data: FindData) -> None:
     path = test_data(FOLDER) / "MT_01200454_000-000_00B40DE4.txt"
     placement = {Site.LEFT_THIGH: "00B40DE4"}
-    with pytest.raises(FileRefusedError, match=r"its sample rate is missing\. Give it in Hz \(--rate\)"):
+    with pytest.raises(FileRefusedError, match=r"the sample rate is missing\. Give the sample rate in Hz \(--rate\)"):
         import_with(mtmanager_trial, [path], placement, "walk 1")
     block = import_with(mtmanager_trial, [path], placement, "walk 1", rate_hz=60.0).imu[Site.LEFT_THIGH]
     np.testing.assert_allclose(block.time_s, np.arange(4) / 60)
@@ -217,7 +217,7 @@ def test_a_packet_twice_is_dropped_and_reported(tmp_path: Path) -> None:
 def test_files_that_share_no_packet_are_refused(tmp_path: Path) -> None:
     one = export(tmp_path / "a.txt", ACC_GYR, still([1, 2, 3]))
     other = export(tmp_path / "b.txt", ACC_GYR, still([100, 101]))
-    with pytest.raises(FileRefusedError, match=r"b.txt: it starts after the last sample of a.txt"):
+    with pytest.raises(FileRefusedError, match=r"b.txt: one sensor's data start after the last sample of a.txt"):
         import_two(one, other)
 
 
@@ -257,7 +257,7 @@ def test_header_only_files_hold_no_samples(tmp_path: Path) -> None:
         (ACC_GYR[1:], [], "column PacketCounter is missing"),
         (ACC_GYR, still([5, 4]), "line 4: PacketCounter goes back from 5 to 4"),
         (ACC_GYR, [[70000.0, 0, 0, 9.8, 0, 0, 0]], "line 3: PacketCounter is not a whole number"),
-        (ACC_GYR, [[1.0, 0, 0, 1.0, 0, 0, 0]], "the median acceleration is 1.00, as if in g"),
+        (ACC_GYR, [[1.0, 0, 0, 1.0, 0, 0, 0]], "the median acceleration is 1.00; the unit seems to be g and not m/s2"),
         (ACC_GYR, [[1.0, 0, 0, 0.1, 0, 0, 0]], "m/s2, as if gravity had been removed"),
         (ACC_GYR, [[1.0, 0, 0, 9.8, 0, 0, 250.0]], "the angular rates are in deg/s"),
         (

@@ -81,14 +81,14 @@ def test_what_failed_is_listed_with_its_reason_and_the_rest_is_done(
 ) -> None:
     (failed,) = rows(place, "failures.csv")
     assert failed["session"] == "broken"
-    assert failed["reason"].startswith("session.toml: this is not TOML")
+    assert failed["reason"].startswith("session.toml: the file is not TOML")
     assert {row["session"] for row in rows(place)} == {"visit 000", "visit 001"}
     assert again(place) == 0
     first, reported = capsys.readouterr().out.splitlines()
     assert first.endswith(
         "3 sessions, 0 analysed, 2 were done before, 1 failed; 6 rows in parameters.csv and .parquet."
     )
-    assert reported.startswith("- broken: session.toml: this is not TOML")
+    assert reported.startswith("- broken: session.toml: the file is not TOML")
 
 
 def test_the_same_command_again_analyses_nothing_and_writes_the_same_table(place: Path, analysed: list[str]) -> None:
@@ -179,7 +179,7 @@ def test_what_is_no_batch_is_not_written_into(place: Path, capsys: pytest.Captur
     shutil.rmtree(place / "out" / done.FOLDER)
     before = results_in(place / "out")
     assert again(place) == 2
-    assert refusal(capsys).endswith("this already exists and is not a batch. Choose another --out.")
+    assert refusal(capsys).endswith("this already exists and is not a batch analysis. Choose another --out.")
     assert results_in(place / "out") == before
     (place / "file").write_text("mine")
     assert main(["batch", str(place / "in"), "--out", str(place / "file"), *BARE]) == 2

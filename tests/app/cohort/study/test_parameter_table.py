@@ -91,7 +91,7 @@ OUTSIDE = {
     "INSERT inside a question": "WITH x AS (INSERT INTO parameters VALUES (1)) SELECT 1",
     "PREPARE": "PREPARE p AS SELECT 1",
     "BEGIN": "BEGIN",
-    "two statements": "SELECT 1; SELECT 2",
+    "the query contains two statements": "SELECT 1; SELECT 2",
     "a second that writes": "SELECT 1; COPY parameters TO '{out}'",
     "none": " ; -- nothing",
     "a Python object": "SELECT * FROM somebodys_rows",
@@ -186,7 +186,7 @@ def test_what_is_no_table_of_a_batch_is_refused(tmp_path: Path) -> None:
     empty.mkdir()
     for place, stated in (
         (other, "column side is missing"),
-        (broken, "this is not a readable Parquet file"),
+        (broken, "the file is not a readable Parquet file"),
         (empty, "parameters.parquet: not found"),
         (tmp_path / "nothing.parquet", "not found"),
     ):

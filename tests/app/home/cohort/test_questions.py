@@ -126,7 +126,7 @@ def test_a_file_that_is_no_table_is_refused_in_words(
     broken.write_bytes(b"PAR1")
     home.questions.open(broken)
     qtbot.waitUntil(page.refusal.isVisible, timeout=WAIT_MS)
-    assert "broken.parquet: this is not a readable Parquet file" in page.refusal.text
+    assert "broken.parquet: the file is not a readable Parquet file" in page.refusal.text
     assert "parquet written by gaitwright batch" in page.refusal.text
     assert page.question is None
     assert settings.latest_table == str(table)

@@ -115,7 +115,7 @@ def test_nothing_is_imported_as_long_as_something_is_wrong(qtbot: QtBot, home: H
     two.setCurrentIndex(2)
     page.day_field.line_edit.setText("9 March")
     page.day_field.line_edit.textEdited.emit("9 March")
-    assert "Enter it as year-month-day, such as 2026-03-09" in shown(page)
+    assert "Enter the date as year-month-day, such as 2026-03-09" in shown(page)
     assert not home.bar.primary.isEnabled()
     QTest.keyClick(page.code.line_edit, Qt.Key.Key_Return)
     assert home.current is page  # nor by the key
@@ -142,8 +142,8 @@ def test_what_could_not_be_read_is_stated_beside_what_was(qtbot: QtBot, home: Ho
     (tmp_path / "notes.txt").write_text("to be left out\n")
     page = read(qtbot, home, good, tmp_path / "mt.txt", tmp_path / "notes.txt")
     stated = shown(page)
-    assert "notes.txt: this file format is not supported. Leave it out." in stated
-    assert "mt.txt: its sample rate is missing." in stated
+    assert "notes.txt: this file format is not supported. Leave this file out." in stated
+    assert "mt.txt: the sample rate is missing." in stated
     page.rate.set_value(100.0)
     page.read_again.click()
     qtbot.waitUntil(lambda: "1 recording of Xsens MT Manager" in shown(page), timeout=WAIT_MS)
@@ -155,7 +155,7 @@ def test_a_single_file_of_no_program_is_refused_in_words(qtbot: QtBot, home: Hom
     (tmp_path / "notes.txt").write_text("to be left out\n")
     home.importing.read([tmp_path / "notes.txt"])
     qtbot.waitUntil(home.banner.isVisible, timeout=WAIT_MS)
-    assert home.banner.text == "This file format is not supported. Leave it out. Where: notes.txt."
+    assert home.banner.text == "This file format is not supported. Leave this file out. Where: notes.txt."
     assert home.current is home.page
 
 
@@ -166,7 +166,10 @@ def test_the_motion_places_the_sensors_of_a_real_walk(qtbot: QtBot, home: Home, 
         choices(page)[f"Position of {torso}"].setCurrentIndex(7)
     page.draft.place.click()
     qtbot.waitUntil(page.draft.is_right.isVisible, timeout=WAIT_MS)
-    assert "By movement, 00B4227C, 00B4227D and 00B421EF are on one leg, from the thigh down." in shown(page)
+    assert (
+        "According to the movement, 00B4227C, 00B4227D and 00B421EF are on one leg, listed from the thigh down."
+        in shown(page)
+    )
     page.draft.is_right.click()
     assert page.draft.sites["00B4227C"] is Site.RIGHT_THIGH
     assert page.draft.sites["00B421E6"] is Site.LEFT_FOOT

@@ -42,7 +42,7 @@ def test_before_a_patient_is_deleted_it_is_stated_what_goes_and_until_when_it_ca
     assert dialog.windowTitle() == "Delete patient P-0163?"
     assert dialog.goes.text() == "This also deletes 3 sessions and 0 recordings."
     day = date((datetime.now().astimezone() + timedelta(days=30)).date())
-    assert f"restore it in Settings until {day}" in dialog.until.text()
+    assert f"restore the data in Settings until {day}" in dialog.until.text()
     assert "Earlier backups keep the data longer." in dialog.until.text()
     assert dialog.others.isHidden()  # nobody else was here
     QTest.keyClick(dialog, Qt.Key.Key_Return)
@@ -91,7 +91,7 @@ def test_a_patient_in_sight_whom_another_deletes_is_missed_with_a_word(qtbot: Qt
     with qtbot.waitSignal(home.patients.refused, timeout=WAIT_MS) as reported:
         home.patients.read()  # as the watch has it done
     assert reported.args == [
-        "ab deleted P-0163 at another workstation.",
+        "At another workstation, ab deleted P-0163.",
         "To continue, restore the deleted data in Settings within 30 days.",
     ]
     assert codes(home) == ["P-0147"]
@@ -100,7 +100,7 @@ def test_a_patient_in_sight_whom_another_deletes_is_missed_with_a_word(qtbot: Qt
         home.show_settings()
         qtbot.waitUntil(lambda: len(restores(home)) == 1, timeout=WAIT_MS)
     (restore,) = restores(home).values()
-    assert restore.accessibleDescription().startswith("Deleted: ab, today ")
+    assert restore.accessibleDescription().startswith("Deleted by: ab, today ")
 
 
 def test_a_viewer_is_refused_before_anything_is_asked(qtbot: QtBot, home: Home, folder: Path) -> None:

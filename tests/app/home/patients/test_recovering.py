@@ -34,11 +34,11 @@ def stated(*reports: ReadReport) -> str:
 
 def test_a_recording_that_was_cut_short_shows_its_length_and_what_its_end_may_have_cost() -> None:
     assert stated(CUT) == (
-        "The program closed during recording. 01:14 of walk 3 was recovered. It is complete up to the last record on "
-        f"disk. Review it, then include or exclude it. {recovery_costs()}"
+        "The program closed during recording. 01:14 of walk 3 was recovered. The recording is complete up to the "
+        f"last data record on disk. Review the recording, then include or exclude it. {recovery_costs()}"
     )
     assert (
-        "In 99 of 100 cases, ending the program loses at most 0.1 s. A power cut loses up to 0.5 s and any data"
+        "In 99 of 100 cases, ending the program loses at most 0.1 s of recording. A power cut loses up to 0.5 s and"
         in recovery_costs()
     )
 
@@ -51,7 +51,7 @@ def test_it_is_called_as_in_its_session_and_by_its_own_name_where_that_cannot_be
 
 
 def test_one_of_which_only_the_row_was_left_open_is_whole() -> None:
-    assert "It is complete. Review it" in stated(WHOLE)
+    assert "The recording is complete. Review the recording" in stated(WHOLE)
     assert recovery_costs() not in stated(WHOLE)
     assert "complete." not in stated(WHOLE, CUT)
     assert "They are complete" in stated(WHOLE, WHOLE)

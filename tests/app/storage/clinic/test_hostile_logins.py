@@ -150,6 +150,6 @@ def test_a_login_that_may_make_no_others_moves_nothing(
         connection.execute(text("CREATE ROLE plain_login LOGIN IN ROLE gaitwright_owner"))
     server.dispose()
     address = make_url(database_url).set(username="plain_login").render_as_string(False)
-    with pytest.raises(LibraryError, match="may not make a login"):
+    with pytest.raises(LibraryError, match="is not permitted to create a login"):
         move_to_server(open_at(folder), new_station(address, str(shared_place)), silent)
     assert not (folder / "station.json").exists()

@@ -167,7 +167,7 @@ def test_a_key_is_not_changed_while_a_recording_waits_to_come_home(
         change_data_key(opened, ["hk"], silent)
     (tmp_path / "renamed").rename(opened.folder)
     with pytest.raises(
-        LibraryError, match="Recordings made while the library was unavailable are not in it yet"
+        LibraryError, match="Recordings made while the library was unavailable are not in the library yet"
     ) as refused:
         change_data_key(opened, ["hk"], silent)
     assert opened.shelter is not None

@@ -182,7 +182,7 @@ def test_an_orphan_comes_where_it_was_made(opened: OpenedLibrary, session_id: UU
     "damage",
     [
         "missing",
-        "Recordings made while the library was unavailable are not in it yet",
+        "Recordings made while the library was unavailable are not in the library yet",
         "The library refers to an invalid recording file",
     ],
 )
@@ -194,7 +194,7 @@ def test_what_cannot_be_recovered_stays_open_and_states_what_to_do(
     path.unlink()
     if damage == "The library refers to an invalid recording file":
         path.write_bytes(bytes(len(content)))
-    elif damage == "Recordings made while the library was unavailable are not in it yet":
+    elif damage == "Recordings made while the library was unavailable are not in the library yet":
         other = record("walk 2").journals[0]
         path.write_bytes((opened.recordings / other.file).read_bytes()[:HEADER_BYTES] + content[HEADER_BYTES:])
     (found,) = find_interrupted(opened)

@@ -80,7 +80,7 @@ def test_positions_can_be_checked_and_kept_as_they_are(
     sensors = SensorsStep(ThemeNotifier(), visit)
     qtbot.addWidget(sensors.page)
     sensors.enter()
-    words = "L thigh, L shank and L foot look mixed up. Change their positions, or continue with these."
+    words = "L thigh, L shank and L foot look mixed up. Change the sensor positions, or continue with the current ones."
     assert sensors.page.notice.text == words
     assert (sensors.state, sensors.note) == (StepState.ATTENTION, "positions look swapped")
     sensors.leave()

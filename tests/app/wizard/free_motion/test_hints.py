@@ -206,25 +206,28 @@ def test_stopping_before_a_joint_is_found_costs_its_angles() -> None:
 def test_a_joint_that_is_nearly_there_is_reported_with_both_figures_and_what_helps() -> None:
     nearly = motion({Joint.LEFT_KNEE: state(3.8, 9)})
     assert price_of_stopping(nearly) == (
-        "Left knee: 3.8°, limit 1.5°. Move the left leg for 5 more seconds, or continue: the report then states this."
+        "Left knee: axis uncertainty 3.8°, limit 1.5°. Move the left leg for 5 more seconds, or continue: the "
+        "report then states this."
     )
 
 
 def test_moving_on_is_not_proposed_where_it_brings_nothing() -> None:
     assert price_of_stopping(motion({Joint.RIGHT_ANKLE: state(9, 18, is_plateau=True)})) == (
-        "Right ankle: 18 mm, limit 10 mm. If you continue, the report states this."
+        "Right ankle: centre uncertainty 18 mm, limit 10 mm. If you continue, the report states this uncertainty."
     )
 
 
 def test_a_replayed_patient_who_has_ended_is_not_asked_to_move() -> None:
     nearly = motion({Joint.LEFT_KNEE: state(3.8, 9)})
     stated = price_of_stopping(nearly, can_move=False)
-    assert stated == "Left knee: 3.8°, limit 1.5°. If you continue, the report states this."
+    assert stated == (
+        "Left knee: axis uncertainty 3.8°, limit 1.5°. If you continue, the report states this uncertainty."
+    )
 
 
 def test_of_a_prosthesis_more_is_required() -> None:
     stated = price_of_stopping(motion({Joint.LEFT_KNEE: state(1.2, 6)}), frozenset({Side.LEFT}))
-    assert stated.startswith("Left knee: 1.2°, limit 0.5°.")
+    assert stated.startswith("Left knee: axis uncertainty 1.2°, limit 0.5°.")
 
 
 def test_a_joint_without_gauge_states_why() -> None:
@@ -250,8 +253,8 @@ def test_hips_never_keep_anybody_from_walking() -> None:
     assert enough_for(still_open, frozenset()) == "enough movement"
     hint = last_hint(still_open)
     assert hint.sentence == "Enough movement"
-    assert (
-        hint.how == "Walking follows automatically. It determines the ankle axes and, with a turn, calibrates the hips."
+    assert hint.how == (
+        "Walking follows automatically. Walking determines the ankle axes and, with a turn, calibrates the hips."
     )
 
 

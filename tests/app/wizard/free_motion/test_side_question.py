@@ -40,7 +40,7 @@ def test_an_answer_ends_the_question_and_a_second_press_is_no_answer() -> None:
     for _ in range(5):
         question.look(chains("A", "B"), {})
     assert question.reported == ("A", Side.RIGHT)
-    assert question.words == ("A set to the right leg.", "", ("Undo",))
+    assert question.words == ("A is now assigned to the right leg.", "", ("Undo",))
     question.look(chains("B", "A"), {})  # the search puts another leg first
     assert question.reported == ("A", Side.RIGHT)
 

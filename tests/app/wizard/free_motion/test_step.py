@@ -101,7 +101,9 @@ def test_a_plateau_is_stated_and_left_to_the_therapist(
     ticks(qtbot, step, lambda: step.page.band.hint.sentence == "Uncertainty no longer falls")
     assert not step._settled.isActive()
     bar = step.bar()
-    assert bar.note == "Left knee: 3.8°, limit 1.5°. If you continue, the report states this."
+    assert (
+        bar.note == "Left knee: axis uncertainty 3.8°, limit 1.5°. If you continue, the report states this uncertainty."
+    )
     assert [verb.text for verb in bar.quiet] == ["Repeat left"]
 
 
@@ -130,7 +132,9 @@ def test_a_replay_that_has_ended_is_stated_and_is_recorded_again_from_its_beginn
     assert bar.primary is not None
     assert bar.primary.text == "Continue to walking"
     assert [verb.text for verb in bar.others] == ["Record again"]
-    assert bar.note == "Left knee: 3.8°, limit 1.5°. If you continue, the report states this."
+    assert (
+        bar.note == "Left knee: axis uncertainty 3.8°, limit 1.5°. If you continue, the report states this uncertainty."
+    )
     press(step, "Record again")
     ticks(qtbot, step, lambda: len(visit.recordings.every) == 1 and visit.recordings.has_begun)
     assert not visit.recordings.every[0].details.is_kept
@@ -206,14 +210,14 @@ def test_leaving_before_its_end_keeps_what_has_moved_unless_another_is_in_force(
     ticks(qtbot, step, lambda: knows(step))
     with qtbot.waitSignal(step.reported, timeout=PATIENCE_MS) as reported:
         step.leave()
-    assert reported.args[0].startswith("Free motion was left early and is used")
+    assert reported.args[0].startswith("Free motion was left early. It is still used")
     kept, note = visit.recordings.free_motion, step.note
     assert kept is not None
     assert kept.read_back is not None
     assert len(kept.read_back.imu) == len(LEG_SITES)
     assert note.startswith("enough movement for")
     assert note.endswith("of 2 ankle centres")
-    assert reported.args[0] == f"Free motion was left early and is used: {note}."
+    assert reported.args[0] == f"Free motion was left early. It is still used: {note}."
     step.enter()
     assert not visit.recordings.is_recording
     press(step, "Record again")
@@ -310,7 +314,7 @@ def test_labels_that_are_kept_are_not_asked_about_again(qtbot: QtBot, step: Free
     visit.sensors.doubt(swapped(*pair))
     step.enter()
     assert step.page.question.notice.text == (
-        "L thigh and L shank look swapped. Angles would be wrong: left knee and left ankle."
+        "L thigh and L shank look swapped. These angles would be wrong: left knee and left ankle."
     )
     visit.sensors.keep_labels()
     step.enter()

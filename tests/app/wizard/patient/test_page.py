@@ -119,7 +119,7 @@ def test_a_code_in_use_is_stated_and_offered(page: PatientPage) -> None:
     page.open_pressed.connect(opened.append)
     type_into(page.code.line_edit, "P-0147")
     page.show_code_taken("P-0147")
-    assert "P-0147 already exists. Open it, or choose another code." in page.code.line_edit.accessibleName()
+    assert "P-0147 already exists. Open that patient, or choose another code." in page.code.line_edit.accessibleName()
     button = next(one for one in page.findChildren(QAbstractButton) if one.text() == "Open this patient")
     assert button.isVisible()
     QTest.keyClick(button, Qt.Key.Key_Return)
@@ -134,8 +134,8 @@ def test_a_code_in_use_is_stated_and_offered(page: PatientPage) -> None:
     [
         (None, "Enter the birth year to check whether the reference fits the age"),
         (1968, "The reference does not cover age 58. It is shown, but differences from it are not reported."),
-        (2000, "The speed must also fit, which requires the body height"),
-        (2016, "The reference is for adults. Gait differs at age 10, so it is not shown."),
+        (2000, "The speed must also fit; checking it requires the body height"),
+        (2016, "The reference is for adults. Gait differs at age 10, so the reference is not shown."),
     ],
 )
 def test_the_band_states_whom_it_is_of(page: PatientPage, birth_year: int | None, words: str) -> None:

@@ -76,7 +76,7 @@ def test_space_turns_a_tick_and_enter_goes_on(form: DotForm, qtbot: QtBot) -> No
     ("record_hz", "stated", "unsaid"),
     [
         (120, "synchronised again before the first walk", "Data lost in radio transmission are missing"),
-        (60, "Curves appear once the walk is fetched.", "synchronised again before the first walk"),
+        (60, "Curves appear once the walk is fetched from the sensors.", "synchronised again before the first walk"),
         (0, "Data lost in radio transmission are missing", "fetched"),
     ],
 )

@@ -137,7 +137,7 @@ def test_what_a_sensor_records_is_stopped_before_anything_is_set(
     step.page.source_chosen.emit(DRIVER)
     qtbot.waitUntil(lambda: words_of(step, 0)[4] == "recording to memory", timeout=WAIT_MS)
     assert verb(step.bar()) == ("Stop these recordings", True)
-    assert "Their recordings stay in the sensor memory" in step.bar().note
+    assert "The recordings stay in the sensor memory" in step.bar().note
     press(step)
     qtbot.waitUntil(lambda: verb(step.bar())[0] == "Synchronise 2 sensors", timeout=WAIT_MS)
     assert dot.memory.state != RECORDING

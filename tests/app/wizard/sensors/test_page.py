@@ -140,7 +140,7 @@ def test_a_worn_place_states_that_dropping_swaps(page: SensorsPage) -> None:
     data = data_of("0A31")  # the event does not keep it alive
     move = QDragMoveEvent(at, Qt.DropAction.MoveAction, data, Qt.MouseButton.LeftButton, Qt.KeyboardModifier.NoModifier)
     page.places.dragMoveEvent(move)
-    assert page.notice.text == "L thigh already has sensor 0A09. Drop here to swap the two."
+    assert page.notice.text == "L thigh already has sensor 0A09. Drop here to swap the two sensors."
 
 
 @pytest.mark.parametrize("is_sensor", [True, False])
@@ -243,7 +243,7 @@ def test_shaken_sensors_take_the_places_in_turn(page: SensorsPage, assigned: lis
 def test_two_shaken_at_once_show_nothing(page: SensorsPage) -> None:
     page.show_way(Way.SHAKE)
     page.show_shaken_together(["0A22", "0A2C"])
-    assert page.notice.text == "0A22 and 0A2C were both shaken. Shake one at a time."
+    assert page.notice.text == "0A22 and 0A2C were both shaken. Shake one sensor at a time."
     page.show_shaken_together([])
     assert "Shake the left thigh sensor." in page.notice.text
 
@@ -272,12 +272,12 @@ def test_a_foot_that_no_sensor_is_left_for_costs_the_ankle(page: SensorsPage) ->
     ("changes", "words"),
     [
         ({"silent_s": 3.2}, "R foot: no signal for 3 s. Switch the sensor off and on, or continue without right ankle"),
-        ({"battery": 0.11}, "R foot: battery at 11 %. Charge it after this patient."),
-        ({"battery": 0.03}, "R foot: battery at 3 %. It may stop during a walk. Charge it first."),
+        ({"battery": 0.11}, "R foot: battery at 11 %. Charge the sensor after this patient."),
+        ({"battery": 0.03}, "R foot: battery at 3 %. The sensor may stop during a walk. Charge it first."),
         ({"lost_share": 0.024}, "R foot: 2.4 % of the samples were lost. Move the receiver closer"),
         (
             {"lost_share": 0.06, "has_memory": True},
-            "R foot: 6.0 % of the samples were lost. Move this computer closer, or",
+            "R foot: 6.0 % of the samples were lost. Move this computer closer to the patient. Or",
         ),
     ],
 )
@@ -423,7 +423,7 @@ def test_a_seventh_place_comes_and_goes_with_a_seventh_sensor(page: SensorsPage)
     assert page.places.tiles[Site.PELVIS].isVisible()
     assert "Seven sensors" in page.title.text()
     assert "sacrum" in page.subtitle.text()
-    assert page.list.rows["0A09"].accessibleDescription().startswith("1 to 7")
+    assert page.list.rows["0A09"].accessibleDescription().startswith("Keys 1 to 7")
     page.show_sensors(rows())
     settle()
     assert page.grab().toImage() == before

@@ -136,8 +136,8 @@ def test_streams_are_asked_for_by_a_choice_only_that_states_whom(monkeypatch: py
     assert (here.name, here.asks) == ("Streams from programs on this computer", ("", ""))
     assert network.name == "Streams on the network of 192.0.2.9"
     assert network.asks == (
-        "This asks every computer on the network of 192.0.2.9 for sensor streams, by UDP to "
-        "224.0.0.183, port 16571. It then contacts those that answer. No patient data are sent.",
+        "This asks every computer on the network of 192.0.2.9 for sensor streams, by UDP to 224.0.0.183, port "
+        "16571. It then contacts the computers that answer. No patient data are sent.",
         "Choose the source again to start the query.",
     )
     with pytest.raises(SourceRefusedError, match="No stream with motion data found"):
@@ -169,7 +169,7 @@ def test_a_patient_with_one_prosthesis_is_simulated_with_it(sides: tuple[Side, .
     ("deaf", "stated"),
     [
         (None, "search again$"),
-        (BluetoothMissingError("a", "b"), "need gaitwright\\[bluetooth\\]$"),
+        (BluetoothMissingError("a", "b"), "need the package gaitwright\\[bluetooth\\]$"),
         (SourceRefusedError("a", "b"), "once Bluetooth is switched on$"),
     ],
 )

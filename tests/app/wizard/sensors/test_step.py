@@ -178,7 +178,7 @@ def test_a_search_that_is_stopped_gives_the_sources_back(visit: Visit, step: Sen
 
     def make() -> Acquisition:
         may_end.wait(10)
-        raise SourceRefusedError("No sensor found", "Switch them on")
+        raise SourceRefusedError("No sensor found", "Switch the sensors on")
 
     visit.known_choices = (SourceChoice("slow", "Slow", make),)
     step.page.source_chosen.emit("slow")

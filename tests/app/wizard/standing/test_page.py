@@ -64,8 +64,8 @@ def test_the_ring_closes_with_a_check_mark() -> None:
 
 def test_bias_and_zero_are_known_once_the_recording_has_been_read_back() -> None:
     done = StandStillView(phase=StandPhase.DONE, still_s=3.0)
-    assert instruction(done) == "3.0 s still. Gyroscope offset and standing reference are set."
-    assert instruction(replace(done, is_read_back=False)) == "3.0 s still. The recording is being loaded."
+    assert instruction(done) == "Still for 3.0 s. Gyroscope offset and standing reference are set."
+    assert instruction(replace(done, is_read_back=False)) == "Still for 3.0 s. The recording is being loaded."
 
 
 def test_who_moved_is_named_until_a_second_is_still_again() -> None:
@@ -87,7 +87,7 @@ def test_both_legs_and_many_sensors_are_stated_in_a_few_words() -> None:
 def test_a_silent_sensor_comes_before_one_that_moves() -> None:
     _, what, then, is_caution = verdict(counting(0.0, moved=(Site.LEFT_THIGH,), silent=(Site.RIGHT_FOOT,)))
     assert what == "R foot: no signal"
-    assert then == "The count is paused. Switch the sensor off and on."
+    assert then == "The countdown is paused. Switch the sensor off and on."
     assert is_caution
 
 
@@ -104,7 +104,7 @@ def test_sensors_that_nobody_has_placed_go_by_their_names() -> None:
 def test_going_on_without_is_offered_after_three_restarts() -> None:
     assert not way_round(counting(restarts=2))[3]
     _, what, then, is_caution = way_round(counting(restarts=3))
-    assert what == "The count restarted 3 times."
+    assert what == "The countdown restarted 3 times."
     assert then == "If the patient cannot stand, range of motion is reported, absolute angles are not."
     assert is_caution
 

@@ -132,7 +132,7 @@ def test_it_is_stated_above_the_walks_while_one_goes_on() -> None:
     visit: Any = SimpleNamespace(recordings=recordings, sensors=sensors)
     trace = LiveTrace(np.zeros(1), np.zeros(1))
     what, then = WalkNotice(visit).message(WalkingReadout(joints={Joint.RIGHT_KNEE: trace}, implausible=(KNEE,)))
-    assert what == "Left knee: angle beyond −40° to 160°, not shown."
+    assert what == "Left knee: angle outside −40° to 160°, not shown."
     assert then == "Check the sensor positions, then record the free motion again."
     assert WalkNotice(visit).message(WalkingReadout(joints={KNEE: trace})) == NOTHING
 

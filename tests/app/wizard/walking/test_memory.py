@@ -90,7 +90,7 @@ def test_a_walk_in_memories_is_made_ready_recorded_and_fetched(
     assert texts(step.bar())[0] == "Start walk"
     assert step.page.memory.isHidden()
     assert step.cannot_leave == ""
-    assert "Return them to live on the Sensors step first" in visit.cannot_calibrate
+    assert "First set them to send data live, on the Sensors step" in visit.cannot_calibrate
     step.on_intent(RUN)
     qtbot.waitUntil(lambda: visit.recordings.has_begun, timeout=WAIT_MS)
     assert step.page.memory.shown.title == "The sensors are recording to memory"

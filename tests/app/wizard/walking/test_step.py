@@ -352,7 +352,7 @@ def test_while_no_sensor_is_received_no_walk_is_started(
     primary = step.bar().primary
     assert primary is not None
     assert not primary.is_enabled
-    assert step.bar().note.startswith("No signal from any sensor. Switch them on, or move the receiver closer")
+    assert step.bar().note.startswith("No signal from any sensor. Switch the sensors on, or move the receiver closer")
     one_received = {**silent, next(iter(silent)): replace(next(iter(silent.values())), silent_s=0.0)}
     monkeypatch.setattr(acquisition, "status", lambda: one_received)
     with qtbot.waitSignal(step.changed, timeout=5000):

@@ -101,13 +101,19 @@ def test_events_and_strides_have_tables_of_their_own(read: Read) -> None:
 @pytest.mark.parametrize(
     ("content", "stated"),
     [
-        ("time_s,hip\n0,1\n", r'its columns are neither angles nor events nor strides \("time_s, hip"\)\. Name them'),
-        ("time_s,left_knee\n0.0,1\n0.2,2\n0.1,3\n", r"in row 3 time goes from 0\.2 s to 0\.1 s\. Export it again"),
+        (
+            "time_s,hip\n0,1\n",
+            r'the file.s columns are neither angles nor events nor strides \("time_s, hip"\)\. Name the columns',
+        ),
+        (
+            "time_s,left_knee\n0.0,1\n0.2,2\n0.1,3\n",
+            r"in row 3 time does not increase: from 0\.2 s to 0\.1 s\. Export the file again",
+        ),
         ("time_s,left_knee\n0.0,one\n", r'line 2: "one" in column left_knee is not a number'),
         ("time_s,left_knee\n,1\n", r"row 1 has no time"),
         ("time_s,side,event\n1,left,landing\n", r'line 2: "landing" is not a valid event'),
         ("time_s,side,event\n1,middle,toe_off\n", r'line 2: "middle" is not a valid side'),
-        ("<xml>\n", r"this is not a recognised reference file\. Give a CSV"),
+        ("<xml>\n", r"the file is not a recognised reference file\. Give a CSV"),
         ("", "the file is not a recognised reference file"),
     ],
 )
@@ -156,7 +162,7 @@ def test_a_state_is_named_by_its_path(read: Read) -> None:
             motion(names="time\tpelvis_tilt\tpelvis_list\tlumbar"),
             "line 9: column time is missing, or none of knee_ang",
         ),
-        (motion()[:-30], r"line 6[89]: the line has \d columns, the header 4\. Copy the file again"),
+        (motion()[:-30], r"line 6[89]: the line has \d columns, but the header has 4\. Copy the file again"),
         (
             motion().replace("Coordinates", "DataType=Quaternion"),
             "sensor orientations, not joint angles. Run inverse",
@@ -202,7 +208,7 @@ def test_visual3d_has_trials_beside_one_another(read: Read) -> None:
     [
         (visual3d(time="FRAMES"), "signal TIME is missing, so the frames have no times. Include TIME in the export"),
         (visual3d(knee="RElbowAngle"), "no signal is a hip, knee or ankle angle"),
-        (visual3d() + "61\t0.1\n", "line 66: the line has 2 columns, the header 5"),
+        (visual3d() + "61\t0.1\n", "line 66: the line has 2 columns, but the header has 5"),
     ],
 )
 def test_a_visual3d_text_that_lacks_something_is_refused(read: Read, content: str, stated: str) -> None:
