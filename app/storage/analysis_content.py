@@ -21,6 +21,7 @@ from core.gait.strides import Reason, Strides
 from core.hip.results import ClockStatus, HipAngle, HipIdentification, LegClock, PelvisAngles, PelvisTurn
 from core.results import (
     Analysis,
+    AxisHalves,
     AxisSource,
     Calibration,
     JointAngle,
@@ -36,13 +37,13 @@ from core.timed.found import NotMeasured, Rise, Silence, StairStride, TimedPart,
 from core.timed.protocols import TimedProtocol
 from core.verdicts.model import Assessment, GateReason, JointVerdicts, LegVerdicts, Verdict, Verdicts
 
-FORMAT = "gaitwright-kept-analysis/5"
+FORMAT = "gaitwright-kept-analysis/6"
 DIGEST, LENGTH = 32, 8
 KINDS = "biuf"  # of arrays: truth and figures
 VALUES: Mapping[str, type] = {
     kind.__name__: kind
     for kind in (
-        *(Analysis, Calibration, Finding, FootEvents, JointAngle, JointCalibration),
+        *(Analysis, AxisHalves, Calibration, Finding, FootEvents, JointAngle, JointCalibration),
         *(Reception, RecordingAnalysis, SideGait, Strides),
         *(HipAngle, HipIdentification, LegClock, PelvisAngles, PelvisTurn),
         *(Assessment, GateReason, LegClocks, JointVerdicts, LegVerdicts, Verdicts),

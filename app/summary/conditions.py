@@ -136,11 +136,10 @@ class Part:
         joint = joint_of(column, side)
         if joint is None or not column.startswith(joint.kind):
             return 0.0
-        found = [walk.axis_halves[joint] for walk in self.walks if joint in walk.axis_halves]
-        if not found:
-            return 0.0
         name = f"{column.removesuffix('_deg')}_rad"
-        return math.degrees(math.sqrt(fmean(one.spread.get(name, 0.0) ** 2 for one in found)))
+        halves = [walk.axis_halves[joint] for walk in self.walks if joint in walk.axis_halves]
+        found = [one.spread[name] ** 2 for one in halves if name in one.spread]
+        return math.degrees(math.sqrt(fmean(found))) if found else 0.0
 
     def strides_deg(self, joint: Joint) -> FloatArray:
         """The joint's angle over the strides used of all walks (k, 101), degrees, even where it may not be reported."""

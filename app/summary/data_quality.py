@@ -34,7 +34,10 @@ GATES_OF_FINDINGS = {
     "no_spread": ("strides",),
     "no_spread_of_side": ("strides",),
 }
-FREE_MOTION_MENDS = frozenset({"axis", "pairing", "disagreement", "strap"})  # gates that a new free motion may open
+# gates that a new free motion may open
+FREE_MOTION_MENDS = frozenset({"axis", "axis_halves", "axis_motions", "pairing", "disagreement", "strap"})
+    {"axis", "axis_halves", "axis_motions", "pairing", "disagreement", "strap"}
+)  # gates that a new free motion may open
 ALL_READ = {
     1: later("The {joint} is reported."),
     2: later("Both joints are reported."),

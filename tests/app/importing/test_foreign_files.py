@@ -103,7 +103,7 @@ def test_a_file_that_takes_too_long_is_refused_with_two(
     the_reader().close()  # to start again takes longer
     assert main(["analyse", str(folder), "--out", str(tmp_path / "out")]) == 2
     assert (
-        "session.toml: reading the data takes longer than a recording should need. Export it again"
+        "session.toml: reading the data takes longer than a recording should need. Export the recording again"
         in capsys.readouterr().err
     )
     monkeypatch.undo()

@@ -69,10 +69,10 @@ def test_where_a_half_holds_too_little_movement_nothing_is_compared() -> None:
 def test_jumping_ankles_are_gated_and_sound_joints_are_not() -> None:
     """In walking alone; tests/benchmarks/axis_halves.py has the table."""
     walk = HARDLY_MOVING["stiff, 1.0 m/s"]
-    seen = [one for seed in range(12) for one in of_seed(seed, Tissue.REAL, walk, "walking alone", has_jumps=True)]
+    seen = [one for seed in range(6) for one in of_seed(seed, Tissue.REAL, walk, "walking alone", has_jumps=True)]
     jumping = [one.verdict != "read" for one in seen if not one.joint.is_knee and one.jump_deg > JUMP_DEG]
-    assert len(jumping) >= 5
+    assert len(jumping) >= 3
     assert np.mean(jumping) >= 0.95
     for before in ("walking alone", "free motion"):
-        sound = [one.verdict != "read" for seed in range(8) for one in of_seed(seed, Tissue.REAL, WALK, before)]
+        sound = [one.verdict != "read" for seed in range(3) for one in of_seed(seed, Tissue.REAL, WALK, before)]
         assert np.mean(sound) < 0.03

@@ -264,7 +264,7 @@ def test_what_does_not_fit_is_refused_where_it_is(tmp_path: Path) -> None:
     assert "line 1: a value is not a number" in refusal(path)
     assert "Remove the header line: BIDS has none in this file" in refusal(path)
     path.unlink()
-    assert f"{IMU}_motion.tsv: this file of the recording is missing" in refusal(tmp_path / f"{IMU}_channels.tsv")
+    assert f"{IMU}_motion.tsv: a file of the recording is missing" in refusal(tmp_path / f"{IMU}_channels.tsv")
     assert '"leftThigh" has two "ACCEL" "x" channels' in refusal(bids(tmp_path, [*held, held[0]]))
     assert "no tracked point has three ACCEL and three GYRO channels" in refusal(bids(tmp_path, held[:3]))
     path = bids(tmp_path, held, heads=HEADS[:1] + HEADS[2:])

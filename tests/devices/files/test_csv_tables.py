@@ -205,7 +205,7 @@ def test_units_are_held_to_their_size(tmp_path: Path) -> None:
 
     assert "is labelled m/s2, but its median of 0.994 matches gravity in g" in of("acc_{}_m_s2", "gyr_{}_rad_s", G, 1.0)
     assert "is labelled g, but its median of 9.74 matches gravity in m/s2" in of("acc_{}_g", "gyr_{}_rad_s", 1.0, 1.0)
-    assert "not gravity in m/s2, g, mg. Export acceleration in m/s2 with gravity" in of(
+    assert "which does not match gravity in m/s2, g, mg. Export acceleration in m/s2 with gravity" in of(
         "acc_{}", "gyr_{}_rad_s", 3.0, 1.0
     )
     assert "are labelled rad/s, but reach 172, beyond the range of any sensor" in of(

@@ -208,7 +208,7 @@ def test_other_matlab_files_are_refused_with_their_names(tmp_path: Path) -> None
     with pytest.raises(FileRefusedError, match=r"a.mat: the file cannot be read as a MATLAB file"):
         matlab_trial([path])
     with pytest.raises(
-        FileRefusedError, match=r"the file is not a MATLAB file of version 5 or later. Save it again in MATLAB"
+        FileRefusedError, match=r"the file is not a MATLAB file of version 5 or later. Save the file again in MATLAB"
     ):
         matlab_trial([OF_MATLAB / "testdouble_4.2c_SOL2.mat"])
 
