@@ -13,6 +13,7 @@ from core.signal.pair import Pair
 from core.signal.rotations import joint_frame, turn_about_vertical
 
 RINGING_HZ = 3.0
+MIN_FILTERED = 10  # samples; the filter wants more than nine at either end
 
 
 def twist(pair: Pair, axis_1: FloatArray, axis_2: FloatArray, heading_rad: FloatArray) -> FloatArray:
@@ -74,6 +75,8 @@ def _dot(a: FloatArray, b: FloatArray) -> FloatArray:
 def ringing(off_axis: FloatArray, step_s: float) -> FloatArray:
     """What of an off-axis rate (n, 2) is above 3 Hz, where a joint hardly moves and tissue rings.
 
+    All of it at low rates, and of a stretch too short to tell, as one of several walks may leave.
+
     Parameters
     ----------
     off_axis : (n, 2)
@@ -84,7 +87,7 @@ def ringing(off_axis: FloatArray, step_s: float) -> FloatArray:
     (n, 2)
         rad/s.
     """
-    if 1 / step_s < 4 * RINGING_HZ:
+    if 1 / step_s < 4 * RINGING_HZ or len(off_axis) < MIN_FILTERED:
         return off_axis
     return np.asarray(sosfiltfilt(_above_ringing(step_s), off_axis, axis=0))
 
