@@ -42,7 +42,7 @@ class Figure:
     sd: float
 
 
-FIGURES = {  # feet: median of 25 healthy people; others as the simulated patient's with people's variation
+FIGURES = {  # feet: median of 25 healthy people; joints assumed
     "knee_stance_to_swing_deg": Figure(60.0, 2.0),
     "knee_while_loading_deg": Figure(14.0, 1.8),
     "knee_straightening_deg": Figure(14.0, 1.8),

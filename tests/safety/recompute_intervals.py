@@ -46,9 +46,10 @@ KINDS = {
         "knee_terminal_extension_deg",
     ),
     "knee shape": (
-        *("knee_range_deg", "knee_while_loading_deg", "knee_straightening_deg", "knee_stance_to_swing_deg"),
+        *("knee_range_deg", "knee_while_loading_deg", "knee_stance_to_swing_deg"),
         *("shank_heel_rocker_deg", "shank_over_flat_foot_deg", "shank_forefoot_rocker_deg"),
     ),
+    "knee straightening": ("knee_straightening_deg",),
     "ankle height": (
         *("ankle_at_initial_contact_deg", "ankle_loading_plantarflexion_deg", "ankle_stance_dorsiflexion_deg"),
         *("ankle_push_off_plantarflexion_deg", "ankle_swing_dorsiflexion_deg"),
@@ -77,6 +78,7 @@ STRAPPED_AGAIN: Mapping[str, Spread] = {
     "heel rise": _always(3.2),
     "foot flat": _always(4.8),
     "knee shape": _always(1.2, 4.0),
+    "knee straightening": _always(2.4),
     "knee height": _always(2.2, 4.0),
     "segment height": _always(2.2, 4.0),
     "ankle shape": _always(3.3),
@@ -92,6 +94,7 @@ LEFT_ON: Mapping[str, Spread] = {
     "heel rise": _always(0.9),
     "foot flat": _always(4.0),
     "knee shape": _always(1.0),
+    "knee straightening": _always(1.0),
     "knee height": _always(1.2),
     "segment height": _always(1.2),
     "ankle shape": _always(1.0),

@@ -7,7 +7,7 @@ from pathlib import Path
 import pytest
 
 from core.parameters import SPEED, STANCE
-from tests.benchmarks.null_differences import PAIRS, tally_pair
+from tests.benchmarks.null_differences import tally_pair
 from tests.benchmarks.repeat_visits import FEET, called, found, people_called
 from tests.benchmarks.repeated_people import (
     FOOT_ANGLE,
@@ -78,9 +78,9 @@ def test_healthy_legs_are_alike_and_those_after_a_stroke_are_not(folder: Path) -
 
 
 @pytest.mark.endurance
-@pytest.mark.parametrize("name", PAIRS)
-def test_a_simulated_body_that_walks_again_is_called_the_same(name: str) -> None:
-    tallies = [tally_pair(seed, name)[0] for seed in range(6)]
+@pytest.mark.parametrize("name", ["strapped again", "two days"])
+def test_a_simulated_body_strapped_again_is_called_the_same(name: str) -> None:
+    tallies = [tally_pair(seed, name)[0] for seed in range(4)]
     judged = sum(len(one.judged) for one in tallies)
     assert judged > 300
     assert sum(len(one.larger) for one in tallies) <= 0.05 * judged
