@@ -36,8 +36,6 @@ GATES_OF_FINDINGS = {
 }
 # gates that a new free motion may open
 FREE_MOTION_MENDS = frozenset({"axis", "axis_halves", "axis_motions", "pairing", "disagreement", "strap"})
-    {"axis", "axis_halves", "axis_motions", "pairing", "disagreement", "strap"}
-)  # gates that a new free motion may open
 ALL_READ = {
     1: later("The {joint} is reported."),
     2: later("Both joints are reported."),

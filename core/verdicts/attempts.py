@@ -10,7 +10,7 @@ import math
 from core.parameters import SPEED
 from core.timed.measures import COLUMNS, MeanOfAttempts
 from core.timed.protocols import TimedProtocol
-from core.verdicts.measurement_error import SENTENCE_FACTOR, Z95, Difference, ErrorSource, Judgement, Mark
+from core.verdicts.measurement_error import SENTENCE_FACTORS, Z95, Difference, ErrorSource, Judgement, Mark
 from core.verdicts.model import Assessment
 from core.verdicts.sigmas import ComparisonKind, Sigma, sigma_of
 
@@ -59,7 +59,7 @@ def compare_attempts(
     sigma, error = _sigma(column), error_between_visits(column)
     if sigma is None:
         return Difference(difference, math.nan, Judgement.NO_PUBLISHED_FIGURE)
-    factor, exceeds = 1.0 if is_chosen_before else SENTENCE_FACTOR, abs(difference) > error
+    factor, exceeds = 1.0 if is_chosen_before else SENTENCE_FACTORS[ComparisonKind.VISITS], abs(difference) > error
     return Difference(
         difference,
         error,

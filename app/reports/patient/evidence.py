@@ -258,8 +258,8 @@ def error_table() -> list[Block]:
         rows.append([name, contains, *least])
     stated = tr(
         "Minimum values at usual means: variation between strides is added (1.96 standard deviations of the "
-        "difference). A change on page 1 needs 1.2 times as much, one with a goal as much; legs need more than "
-        "95 of 100 healthy people differ by."
+        "difference). On page 1 a change needs 1.2 times as much between visits, 1.65 within a session, with a "
+        "goal as much; legs need more than 95 of 100 healthy people differ by."
     )
     return [
         heading(tr("Measurement error by type of comparison")),
