@@ -178,7 +178,7 @@ HIP_QUESTIONS: tuple[tuple[str, str, Callable[[HipIdentification], Fact]], ...] 
         _heading,
     ),
     (
-        later("Uniqueness"),
+        later("Clarity"),
         later("How many times worse the next best solution fits. Below {required}, the result is uncertain."),
         lambda found: _margin_of(found.margin, LIMITS.pairing_margin),
     ),
@@ -192,7 +192,7 @@ QUESTIONS: tuple[tuple[str, str, Callable[[JointCalibration], Fact]], ...] = (
     (later("Axis from"), later("Recording used to determine the joint axis."), _axis_from),
     (later("Calibration uncertainty"), later("One standard deviation of the joint axis direction."), _axis_certainty),
     (
-        later("Uniqueness"),
+        later("Clarity"),
         later("How many times worse the next best solution fits. Below {required}, the result is uncertain."),
         _margin,
     ),

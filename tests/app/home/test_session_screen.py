@@ -353,7 +353,7 @@ def test_the_table_states_how_each_joint_was_found(results: ResultPage) -> None:
         ["", "left knee", "right knee", "left ankle", "right ankle"],
         ["Axis from", "free motion", "free motion", "free motion, walking", "free motion, walking"],
         ["Calibration uncertainty", "± 4.2°", "± 4.2°", "± 4.2°", "± 4.2°"],
-        ["Margin", "3.4", "3.4", "1.1", "3.4"],
+        ["Clarity", "3.4", "3.4", "1.1", "3.4"],
         ["Direction", "certain", "certain", "certain", "uncertain"],
         ["Clock lag", "\N{MINUS SIGN}12 ms", "\N{MINUS SIGN}12 ms", "none", "none"],
         ["Standing reference", "posture", "none", "posture", "none"],

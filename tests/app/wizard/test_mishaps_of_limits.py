@@ -11,7 +11,7 @@ from core.body import Side, Site
 from core.samples import RecordingKind
 from tests.app.wizard.begun_visit import begin, record
 
-STATED = "Right ankle: The foot has no ankle joint. The ankle angle is that of the foot relative to the shank."
+STATED = "Right ankle: The foot has no ankle joint. Its angle is the foot relative to the shank."
 
 
 def stated(visit: Visit) -> list[str]:

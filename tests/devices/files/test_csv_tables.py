@@ -216,7 +216,7 @@ def test_units_are_held_to_their_size(tmp_path: Path) -> None:
         name: values - (G if "_z" in name and "acc" in name else 0.0)
         for name, values in named("free_acc_{}_m_s2", "gyr_{}_rad_s").items()
     }
-    assert "not gravity in m/s2. Export acceleration in m/s2 with gravity, not free or linear" in refusal(
+    assert "does not match gravity in m/s2. Export acceleration in m/s2 with gravity, not free or linear" in refusal(
         write(tmp_path / "b.csv", {"time_s": TIME_S, **free})
     )
     mixed = named("acc_{}_m_s2", "gyr_{}_rad_s")
