@@ -422,7 +422,9 @@ def words_of_mot(out: Path) -> str:
     if path.exists():
         return path.read_text(encoding="ascii")
     lines = (out / NOT_WRITTEN).read_text(encoding="utf-8").splitlines()
-    (line,) = (line for line in lines if line.startswith(f"{WALK}, mot: It has no angle to export as a pose."))
+    (line,) = (
+        line for line in lines if line.startswith(f"{WALK}, mot: This recording has no angle to export as a pose.")
+    )
     return line
 
 

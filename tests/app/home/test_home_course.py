@@ -156,7 +156,7 @@ def test_what_is_next_of_a_patient(tmp_path: Path) -> None:
 
         assert stated() == ""
         first = add_visit(library, patient.id, 0, course_of_visit(0, is_knee_not_reported=True))
-        assert stated() == "check left knee, not reported on 20 Jun."
+        assert stated() == "check left knee: no values were reported on 20 Jun."
         second = add_visit(library, patient.id, 1, course_of_visit(1))
         assert stated() == "write the report for 11 Jul."
         library.audit.note(Action.EXPORT, about("session", second), format=REPORT_FORMAT, is_document=True)

@@ -365,7 +365,7 @@ def test_one_condition_after_the_other_is_chosen_on_the_screen(
     words = [compare.kinds.itemText(k) for k in range(compare.kinds.count())]
     assert words[1:3] == ["Visits, A", "Visits, B"]
     assert (compare.kind, compare.card.title.text()) == (Contrast.VISITS, "Change from 1, A")
-    assert "Not compared, no walk in this condition: June." in compare.conclusion.text()
+    assert "Not compared, as they have no walk in this condition: June." in compare.conclusion.text()
     compare.kinds.setCurrentIndex(2)
     assert (compare.kind, compare.card.title.text()) == (Contrast.VISITS, "Change from 1, B")
     assert compare.comparison is not None
@@ -439,9 +439,9 @@ def test_visits_without_a_common_condition_are_not_compared_and_that_is_stated(
     visits = [walked("May", analysis, session, walk_1="A", walk_2=""), walked("July", analysis, session, walk_1="B")]
     compare.show_visits(visits_by_condition(visits), conditions_in_words(visits))
     assert compare.nothing.text() == (
-        "This visit shares no condition with an earlier visit, so they are not compared. "
-        "May: A, no condition recorded. July: B. “Any visits and conditions” compares any"
-        " two you choose."
+        "This visit shares no condition with an earlier visit, so the visits are not compared. "
+        "May: A, no condition recorded. July: B. To compare any two visits or conditions, choose “Any visits and "
+        "conditions”."
     )
     assert not compare.card.plot.isVisible()
     assert compare.kinds.itemText(compare.kinds.currentIndex()) == "Visits"
@@ -659,7 +659,7 @@ def measures(page: ResultPage) -> set[str]:
 
 
 NONE_LARGER = (
-    "All judged changes to visit 3 are within measurement error. Largest: left knee "
+    "All judged changes up to visit 3 are within measurement error. Largest: left knee "
     "flexion, stance to swing 0.0° (±9.2°\u2020)."
 )
 
@@ -690,7 +690,7 @@ def test_what_the_table_alone_marks_is_stated_to_be_marked_there(
     """An ankle's error is borrowed, so that no sentence speaks of it."""
     ankle = bent_more(analysis, 30.0, Joint.RIGHT_ANKLE)
     assert visits_shown(page, session, (analysis, analysis, ankle)) == (
-        "Some changes to visit 3 are beyond an error borrowed from another joint. The "
+        "Some changes up to visit 3 are beyond an error borrowed from another joint. The "
         "table marks them. Largest: right ankle range of motion +30.0° (±9.5°\u2020)."
     )
     assert marked(page) == [(Side.RIGHT, "Ankle range of motion")]
@@ -702,7 +702,7 @@ def test_where_nothing_of_the_latest_visit_is_judged_that_is_stated(
     page: ResultPage, analysis: Analysis, session: Session
 ) -> None:
     few = with_few_strides(analysis, left=5, right=5)
-    assert visits_shown(page, session, (analysis, analysis, few)) == "The changes to visit 3 could not be judged."
+    assert visits_shown(page, session, (analysis, analysis, few)) == "The changes up to visit 3 could not be judged."
     assert visits_shown(page, session, (analysis, few, analysis)) == NONE_LARGER
     page.compare.chips.choose(["1"])
     page.compare.chips.turned.emit()

@@ -170,7 +170,10 @@ def test_the_door_leads_to_what_can_be_read_and_back(page: ResultPage, analysis:
     assert page.cycles.isVisible()
     assert not page.leave_behind()
     show(page, recalibrated(analysis, [Joint.LEFT_ANKLE], axis_sd_rad=np.deg2rad(11.0)))
-    assert page.door.words == "Left ankle: not reported. Record free motion, or move longer and in more directions."
+    assert (
+        page.door.words
+        == "Left ankle: not reported. Record free motion, or let the patient move longer and in more directions."
+    )
     page.door.click()
     assert page.quality.first.text() == "3 of 4 joints: Good. Not reported: left ankle."
 
@@ -244,7 +247,7 @@ def test_a_cell_to_be_read_with_care_states_so_to_who_receives_it(page: ResultPa
     assert "*: caution." in page.cycles.peaks.note.text()
     chips = page.cycles.charts.knee.chips
     assert {side: chip.verdict for side, chip in chips.items()} == {Side.LEFT: Verdict.CARE, Side.RIGHT: Verdict.READ}
-    assert page.door.words.startswith("Left knee: caution. Calibration certainty is only ±8.0°")
+    assert page.door.words.startswith("Left knee: caution. The calibration has an uncertainty of ±8.0°")
     show(page, analysis)
     assert "caution" not in page.cycles.peaks.note.text() + page.door.words
 
@@ -299,7 +302,7 @@ def test_a_prosthetic_leg_has_no_band(page: ResultPage, analysis: Analysis) -> N
 
 def test_the_same_doubt_is_in_chart_and_table(page: ResultPage, analysis: Analysis) -> None:
     show(page, recalibrated(analysis, [Joint.LEFT_KNEE], is_sign_certain=False))
-    assert page.cycles.charts.knee.note.startswith("L: sign unclear, flexion or extension.")
+    assert page.cycles.charts.knee.note.startswith("L: it is unclear which direction is flexion.")
     assert rows_of(page)["Peak flexion, swing"][0] == "sign unclear"
     assert "sign unclear" not in rows_of(page)["Peak flexion, swing"][1]
 

@@ -213,7 +213,7 @@ def test_what_is_next_is_the_first_that_holds() -> None:
     )
     assert undecided_step(UUID(int=7), None).sentence == "include or exclude the last walk."
     assert next_step(None, latest(1, Joint.LEFT_KNEE, Joint.LEFT_ANKLE, has_report=False), TODAY) == NextStep(
-        "check left knee and left ankle, not reported on 22 Nov.", "Review", UUID(int=1)
+        "check left knee and left ankle: no values were reported on 22 Nov.", "Review", UUID(int=1)
     )
     assert next_step(None, latest(90, has_report=False), TODAY) == NextStep(
         "write the report for 25 Aug.", "Open", UUID(int=1)
