@@ -108,7 +108,7 @@ CASES = {
     "two clocks": Case(
         WalkerSettings(seed=4, recordings=(STOOD, WALKED), clock_late_s=LATE),
         {"* step time": NOT_REPORTED},
-        "Left and right sensors are not synchronised: the left step takes",
+        "Left and right sensors are not synchronised. The left step takes",
     ),
     "two strides": Case(  # of the right leg; the left made three
         WalkerSettings(seed=4, recordings=(STOOD, replace(WALKED, strides=4))),

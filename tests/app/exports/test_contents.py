@@ -204,11 +204,14 @@ def test_a_bundle_shows_who_where_and_what_as_it_was_typed(typed: tuple[Session,
         assert one["subject"] == {"reference": reported["entry"][0]["fullUrl"]}
         assert one["effectiveDateTime"] == "2026-11-21T10:00:00+01:00"
         assert one["code"]["coding"][0]["system"] == "urn:x-gaitwright:parameter"
-        assert one["code"]["text"] == one["code"]["coding"][0]["code"].replace("_", " ")
+        of = one["code"]["coding"][0]["code"]
+        is_of_legs = of.endswith("_difference")
+        words = f"{of.removesuffix('_difference')}, left less right" if is_of_legs else of
+        assert one["code"]["text"] == words.replace("_", " ")
         assert one["device"]["display"].startswith("gaitwright")
         texts = [note["text"] for note in one["note"]]
-        assert texts[0].startswith("walk")
-        assert texts[0].endswith(", barfuß")
+        assert texts[0].startswith("barfuß" if is_of_legs else "walk")
+        assert texts[0].endswith("barfuß" if is_of_legs else ", barfuß")
         assert any("Not a medical device" in text for text in texts)
         assert entry["fullUrl"].startswith("urn:uuid:")
 

@@ -84,8 +84,8 @@ def test_what_is_not_reported_leaves_no_empty_file_and_a_line_why(
     analysis = replace(visit[1], recordings=recordings)
     lines = export_from_folder(visit[0], analysis, [Format.C3D, Format.MOT, Format.XLSX], tmp_path)
     assert [str(path.relative_to(tmp_path)) for path in tmp_path.rglob("*")] == ["gaitwright.xlsx"]
-    why = "The calibration has an uncertainty of ±12.0° (limit ±9.0°). Record free motion, or let the patient move longer and in more "
-    why += "directions."
+    why = "The calibration has an uncertainty of ±12.0° (limit ±9.0°). Record free motion, or let the "
+    why += "patient move longer and in more directions."
     assert lines == [
         f"free motion, c3d: This recording has neither angles nor events to export. {why}",
         f"walk 1, c3d: This recording has neither angles nor events to export. {why}",

@@ -53,14 +53,14 @@ def test_what_is_missing_is_stated_with_its_reason_and_nothing_else_is() -> None
     taped = replace(silent, protocol=TimedProtocol.TEN_METRES, distance_m=10.0, is_end_by_key=True)
     assert why_sentence(taped).startswith("Sensor distance not reported: the L foot sensor had no signal ")
     unfinished = replace(TEN, end_s=math.nan, missing=(NotMeasured.NOT_FINISHED,))
-    assert why_sentence(unfinished) == "Time not reported: the recording ended before the test."
+    assert why_sentence(unfinished) == "Time not reported: the recording ended before the test was finished."
     assert len({reason_words(one) for one in NotMeasured}) == len(NotMeasured)
 
 
 @pytest.mark.parametrize(("own_m", "is_allowed"), [(10.3, True), (9.71, True), (10.31, False), (9.6, False)])
 def test_the_tape_is_compared_where_a_key_reported_where_it_is(own_m: float, is_allowed: bool) -> None:
     keyed = replace(TEN, is_end_by_key=True, sensor_distance_m=own_m)
-    assert f"{own_m:.2f} m, {own_m - 10.0:+.2f} m from the tape (10.00 m)" in tape_sentence(keyed)
+    assert f"{own_m:.2f} m, {own_m - 10.0:+.2f} m compared with the tape (10.00 m)" in tape_sentence(keyed)
     assert ("Check the position of the tape" in tape_sentence(keyed)) is not is_allowed
     assert tape_sentence(replace(keyed, is_end_by_key=False)) == ""
     assert tape_sentence(replace(keyed, sensor_distance_m=math.nan)) == ""
@@ -71,7 +71,7 @@ def test_pauses_and_the_course_are_reported_where_there_are_any() -> None:
     assert pauses_sentence(TWO) == ""
     assert pauses_sentence(replace(TWO, pauses_s=((10.0, 13.0),))) == "1 pause, 3.0 s."
     assert pauses_sentence(replace(TWO, pauses_s=((10.0, 13.0), (20.0, 21.5)))) == "2 pauses, 4.5 s in total."
-    assert course_sentence(TWO) == "First third 1.20 m/s, last third 1.01 m/s."
+    assert course_sentence(TWO) == "Speed: 1.20 m/s in the first third, 1.01 m/s in the last third."
     assert course_sentence(replace(TWO, thirds=())) == ""
     unknown = replace(TWO.thirds[2], speed_m_s=math.nan)
     assert course_sentence(replace(TWO, thirds=(*TWO.thirds[:2], unknown))) == ""
@@ -83,7 +83,8 @@ def test_strides_on_stairs_are_reported_apart_where_there_are_some() -> None:
     strides = tuple(StairStride(Side.LEFT, 0.0, 1.5, climb_m) for climb_m in (0.3, 0.3, -0.3))
     reported = stairs_sentence(replace(TEN, protocol=TimedProtocol.STAIRS, stairs=strides))
     assert reported == (
-        "Stair strides, excluded from walking means: strides up: 2, mean 1.50 s; strides down: 1, mean 1.50 s."
+        "Strides on stairs are excluded from the means of walking: strides up: 2, mean duration 1.50 s; strides down: 1, "
+        "mean duration 1.50 s."
     )
 
 
@@ -98,7 +99,7 @@ def test_a_planned_test_is_reported_with_its_keys() -> None:
     assert planned_words(None) == "no test"
     assert planned_words(PlannedTest(TimedProtocol.TEN_METRES)) == "10-metre walk"
     keyed = PlannedTest(TimedProtocol.TEN_METRES, 3.0, 12.25)
-    assert planned_words(keyed) == "10-metre walk, start key at 3.0 s, end key at 12.2 s"
+    assert planned_words(keyed) == "10-metre walk, start key pressed at 3.0 s, end key pressed at 12.2 s"
     assert len({name_of_test(one) for one in TimedProtocol}) == len(TimedProtocol)
 
 

@@ -321,7 +321,7 @@ def test_every_pass_of_a_walk_is_compared_and_the_samples_used_are_stated(
         assert np.rad2deg(walk.figures[joint, AngleKind.RESULT].m_rad) < 0.6
     used = walk.used[Joint.LEFT_KNEE]
     stated = list(printed(found, Patient()))
-    line = f"  Left knee: {used.used} of {used.recorded} samples are used; {used.outside} outside the reference's time span"
+    line = f"  Left knee: {used.used} of {used.recorded} samples are used; {used.outside} outside the reference"
     assert any(one.startswith(line) for one in stated)
     header, table = agreement_table(found)
     row = dict(zip(header, next(table), strict=True))
