@@ -170,7 +170,7 @@ def test_a_timed_test_is_with_its_condition_as_the_mean_of_its_attempts() -> Non
     assert test.column == COLUMNS[TimedProtocol.TEN_METRES]
     assert test.found.mean == pytest.approx(1.125)
     assert test.found.attempts == 2
-    assert test.whisker == pytest.approx(0.090090)
+    assert test.whisker == pytest.approx(0.09009, abs=1e-5)
     assert stick.tests[0].found.mean == pytest.approx(0.5)
 
 

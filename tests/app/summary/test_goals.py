@@ -1,7 +1,7 @@
 """How walks stand to goals: each sentence has a walk for which it must come, and one for which it must not.
 
-Errors by hand: strides alike but for 0.25 deg. A knee of 50 deg has a sigma of hypot(1.2, 2.0) = 2.33 deg, and the error
-of a difference is 1.96 sqrt(2) 2.33 = 6.5 deg and a little; speed's is 1.96 sqrt(2) 0.065 = 0.18 m/s.
+Errors by hand: strides alike but for 0.25 deg. A knee of 50 deg has a sigma of hypot(1.2, 2.0) = 2.33 deg, and the
+error of a difference is 1.96 sqrt(2) 2.33 = 6.5 deg and a little; speed's is 1.96 sqrt(2) 0.065 = 0.18 m/s.
 """
 
 import csv

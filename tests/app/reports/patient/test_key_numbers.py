@@ -7,9 +7,9 @@ from dataclasses import replace
 
 import pytest
 
-from app.charts.drawing import COLOURS
+from app.charts.drawing import COLOURS, MM
 from app.reports.patient.key_numbers import ALWAYS, MOST_ROWS, key_numbers, key_rows
-from app.reports.patient.key_strips import strip
+from app.reports.patient.key_strips import STRIP_WIDTH, strip
 from app.summary.facts import Facts
 from app.summary.request import AnalysedVisit, ReportRequest
 from app.theme.colours import PAPER
@@ -99,3 +99,10 @@ def test_one_leg_has_rows_without_a_difference(request_of_one_leg: ReportRequest
     shown = facts(request_of_one_leg)
     assert columns(shown)[0] == "knee_stance_to_swing_deg"
     assert cells(shown, 0)[2:6] == ["not measured", "–", "–", "no reference"]
+
+
+def test_a_strip_fits_its_column(request_of_demonstration: ReportRequest) -> None:
+    (table,) = (block for block in key_numbers(facts(request_of_demonstration), None) if block["kind"] == "table")
+    columns = table["columns"]
+    assert isinstance(columns, list)
+    assert float(columns[-1]["width"].removesuffix("mm")) * MM >= STRIP_WIDTH

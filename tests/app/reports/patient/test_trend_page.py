@@ -208,7 +208,8 @@ def test_timed_tests_stand_in_the_table_and_speed_is_reported_once(request_of_de
     reported = [one for one in sentences(blocks) if "m/s" in one]
     assert len(reported) == 1
     assert reported[0].startswith(
-        "10-metre walk is 1.25 m/s at visit 2, 0.75 m/s more than at visit 1 (0.50 m/s). Likely between 0.57 and 0.93 m/s."
+        "10-metre walk is 1.25 m/s at visit 2, 0.75 m/s more than at visit 1 (0.50 m/s). "
+        "Likely between 0.57 and 0.93 m/s."
     )
     chair = visits(*(with_test(time_s, protocol=TimedProtocol.SIT_TO_STAND) for time_s in (30.0, 12.0)))
     blocks = page(request_of_demonstration, chair)

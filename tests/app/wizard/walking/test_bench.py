@@ -99,8 +99,8 @@ def test_the_sentence_shows_the_prosthetic_sides_change_with_both_values() -> No
     assert first == "Prosthetic-side knee has 70.0° range of motion with B, 10.0° more than with A (60.0°)."
     assert re.match(r"Likely between 7° and 13°\. ", then)  # 10 -+ 1.96 sqrt(2) 1.0
     assert (
-        "The sound side does not change beyond measurement error. Sensors stayed attached. Walking speeds: 1.18 and 1.18 m/s."
-        in then
+        "The sound side does not change beyond measurement error. Sensors stayed attached. "
+        "Walking speeds: 1.18 and 1.18 m/s." in then
     )
 
 
