@@ -21,8 +21,9 @@ def interval_words(column: str, found: Difference) -> str:
     """Where a difference beyond its error is likely to be, by size: "likely between 3° and 15°"; else nothing."""
     if not found.exceeds:
         return ""
-    decimals = _edge_decimals(column, found)
-    low, high = (fixed(abs(edge), decimals) + unit_in_sentence(column) for edge in sorted(found.interval, key=abs))
+    decimals, unit = _edge_decimals(column, found), unit_in_sentence(column)
+    low, high = (fixed(abs(edge), decimals) for edge in sorted(found.interval, key=abs))
+    low, high = low + (unit if unit_of(column) is Unit.DEGREES else ""), high + unit
     return tr("likely between {low} and {high}").format(low=low, high=high)
 
 
@@ -68,9 +69,9 @@ def speed_sentence(column: str, found: Difference) -> str:
         )
     else:
         stated = (
-            tr("About {share} of it goes with walking {change} m/s slower.")
+            tr("Of this, about {share} goes with walking {change} m/s slower.")
             if part.speed_change_m_s < 0
-            else tr("About {share} of it goes with walking {change} m/s faster.")
+            else tr("Of this, about {share} goes with walking {change} m/s faster.")
         )
     return stated.format(share=share, change=change)
 

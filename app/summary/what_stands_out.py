@@ -199,13 +199,17 @@ def _since_last(facts: Facts) -> list[str]:
     for column in (KNEE, STANCE, SPEED):
         for line in lines:
             if line.column == column and line.side in (None, first) and (found := line.since_last) is not None:
-                who = "" if line.side is None else who_of_role(facts, line.side, column)
                 unit, decimals = unit_and_decimals(column)
-                change = signed(found.difference, decimals) + unit
-                stated = tr("Since {day}: {who} {measure} {change}.").format(
-                    day=date(walked[line.before].day), who=who, measure=name_in_sentence(column), change=change
+                stated = tr("Since {day}: {measure} {change}.")
+                if line.side is not None:
+                    stated = tr("Since {day}: {measure}, {side}, {change}.")
+                words = stated.format(
+                    day=date(walked[line.before].day),
+                    measure=name_in_sentence(column),
+                    side="" if line.side is None else role(facts, line.side),
+                    change=signed(found.difference, decimals) + unit,
                 )
-                return [" ".join(stated.split(" ")).replace("  ", " "), evidence(column, found)]
+                return [words, evidence(column, found)]
     return []
 
 
@@ -293,7 +297,9 @@ def _between_legs(facts: Facts) -> Iterator[Candidate]:
         is_more = found.difference > 0
         topics = (_topic(first, column, is_more), _topic(second, column, not is_more))
         stated = leg_beside_leg(facts, column, found)
-        yield Candidate(_rank(column), found.ratio, topics, stated, evidence(column, found), column)
+        shown = evidence(column, found)
+        is_agreed = facts.part.agreed.is_chosen(column, (first, second))
+        yield Candidate(_rank(column), found.ratio, topics, stated, shown, column, is_agreed=is_agreed)
 
 
 def _beyond_band(facts: Facts, bands: tuple[str, str]) -> Iterator[Candidate]:

@@ -39,9 +39,9 @@ def key_numbers(facts: Facts, comparison: Comparison | None) -> list[Block]:
         Column(tr("Measure"), "1fr", is_number=False),
         *(Column(facts.counted(side)) for side in Side),
         Column(f"{one.letter} − {other.letter}"),
-        Column(tr("likely between")),
+        Column(tr("likely between"), "23mm"),
         Column(tr("Reference")),
-        Column(tr("L above, R below, ± half the error"), "42mm", is_number=False),
+        Column(tr("L above, R below, ± half the error"), "38mm", is_number=False),
     ]
     cells: list[Row] = [_cells(row) for row in rows]
     stated = []

@@ -6,7 +6,7 @@ from app.exports.timed_csv import timed_walks
 from app.reports.blocks import Block, Cell, Column, Row, figures, heading, note, paragraph, table
 from app.reports.patient.trend_page import charts_of_tests
 from app.summary.facts import Facts
-from app.summary.numbers_in_words import DAGGER, NOTHING, dagger_note, fixed
+from app.summary.numbers_in_words import NOTHING, dagger_note, fixed
 from app.summary.plain_text import CONDITION_LENGTH, isolated, plain, typed
 from app.summary.request import ReportRequest
 from app.summary.visits import condition_in_words
@@ -54,27 +54,26 @@ def timed_page(request: ReportRequest, facts: Facts) -> list[Block]:
     if longest:
         blocks += [heading(tr("During the test: {test}").format(test=name_of_test(longest[-1].protocol)), 2)]
         blocks += [_parts(longest[-1])]
-    course, has_whiskers = _course(request, facts)
-    blocks += course
+    blocks += _course(request, facts)
     known = [_known(protocol) for protocol in protocols]
     errors = {error for _, test in tests for error in test.definition.errors}
-    if has_whiskers or any(not error.is_verified for error in errors):
+    if any(not error.is_verified for error in errors):
         known.append(dagger_note())
     return [*blocks, note(" ".join(known))]
 
 
-def _course(request: ReportRequest, facts: Facts) -> tuple[list[Block], bool]:
-    """What each test is made for over the visits, under the report's condition; whether an error is drawn."""
+def _course(request: ReportRequest, facts: Facts) -> list[Block]:
+    """What each test is made for over the visits, under the report's condition."""
     condition = request.visit.recording(request.shown).condition
     charts = charts_of_tests(request.course, condition, facts)
     if not charts:
-        return [], False
+        return []
     stated = typed(condition, CONDITION_LENGTH) if condition else condition_in_words("")
     wording = [tr("Condition: {condition}. Several attempts: mean shown.").format(condition=stated)]
     error = error_between_visits(COLUMNS[TimedProtocol.TEN_METRES])
     if TimedProtocol.TEN_METRES in charts:
-        whisker = tr("Error bar: half the measurement error of a speed change. That error is {error} m/s {dagger}.")
-        wording.append(whisker.format(error=fixed(error, 2), dagger=DAGGER))
+        whisker = tr("Error bar: half the measurement error of a speed change. That error is {error} m/s.")
+        wording.append(whisker.format(error=fixed(error, 2)))
     if set(charts) - {TimedProtocol.TEN_METRES}:
         wording.append(
             tr(
@@ -83,7 +82,7 @@ def _course(request: ReportRequest, facts: Facts) -> tuple[list[Block], bool]:
             )
         )
     drawn = figures(list(charts.values()), columns=2)
-    return [heading(tr("Progress by visit"), 2), note(" ".join(wording)), drawn], TimedProtocol.TEN_METRES in charts
+    return [heading(tr("Progress by visit"), 2), note(" ".join(wording)), drawn]
 
 
 def _name(request: ReportRequest, walk: RecordingAnalysis) -> str:

@@ -1,6 +1,8 @@
 """What is in the workbook, the C3D and the Bundle beside the numbers: cell by cell, as it was typed."""
 
+import csv
 import json
+from collections.abc import Iterator
 from dataclasses import replace
 from pathlib import Path
 from typing import Any
@@ -11,6 +13,7 @@ import openpyxl
 import pytest
 
 from app.exports.exports import Format, export_from_folder, export_from_library
+from app.exports.result_folder import write_results
 from app.exports.spreadsheet import write_spreadsheet
 from app.storage.exchange import import_session
 from app.storage.journal.disk import Room
@@ -204,11 +207,14 @@ def test_a_bundle_shows_who_where_and_what_as_it_was_typed(typed: tuple[Session,
         assert one["subject"] == {"reference": reported["entry"][0]["fullUrl"]}
         assert one["effectiveDateTime"] == "2026-11-21T10:00:00+01:00"
         assert one["code"]["coding"][0]["system"] == "urn:x-gaitwright:parameter"
-        assert one["code"]["text"] == one["code"]["coding"][0]["code"].replace("_", " ")
+        of = one["code"]["coding"][0]["code"]
+        is_of_legs = of.endswith("_difference")
+        words = f"{of.removesuffix('_difference')}, left less right" if is_of_legs else of
+        assert one["code"]["text"] == words.replace("_", " ")
         assert one["device"]["display"].startswith("gaitwright")
         texts = [note["text"] for note in one["note"]]
-        assert texts[0].startswith("walk")
-        assert texts[0].endswith(", barfuß")
+        assert texts[0].startswith("barfuß" if is_of_legs else "walk")
+        assert texts[0].endswith("barfuß" if is_of_legs else ", barfuß")
         assert any("Not a medical device" in text for text in texts)
         assert entry["fullUrl"].startswith("urn:uuid:")
 
@@ -283,3 +289,49 @@ def test_an_export_shows_how_far_it_is(visit: tuple[Session, Analysis], tmp_path
         )
     assert reported[-2:] == [(0.5, "analysing"), (1.0, "writing")]
     assert all(isinstance(what, str) and 0.0 <= share <= 1.0 for share, what in reported)
+
+
+def test_the_workbook_has_what_legs_and_conditions_differ_by_as_the_files_do(
+    visit: tuple[Session, Analysis], tmp_path: Path
+) -> None:
+    """Numbers are numbers, and what is not known is empty; of one condition there is nothing to compare it with."""
+    session, analysis = visit
+    write_results(session, analysis, tmp_path)
+    write_spreadsheet(session, analysis, tmp_path / "book.xlsx")
+    book = openpyxl.load_workbook(tmp_path / "book.xlsx")
+    header, *rows = book["Left vs right"].iter_rows(values_only=True)
+    with (tmp_path / "sides.csv").open(encoding="utf-8", newline="") as file:
+        written = list(csv.reader(file))
+    assert list(header) == written[0]
+    assert len(rows) == len(written) - 1 > 10
+    for row, line in zip(rows, written[1:], strict=True):
+        found = dict(zip(written[0], zip(row, line, strict=True), strict=True))
+        for name in ("difference", "error", "low", "high", "healthy_limit"):
+            cell, text = found[name]
+            assert cell == (float(text) if text else None)
+        assert (found["mark"][0] or "") == found["mark"][1]
+    assert "Differences" not in book.sheetnames
+
+
+def test_the_summary_has_the_interval_and_the_mark_of_the_range_of_both_legs(
+    visit: tuple[Session, Analysis], tmp_path: Path
+) -> None:
+    session, analysis = visit
+    write_results(session, analysis, tmp_path)
+    summary = json.loads((tmp_path / "summary.json").read_text(encoding="utf-8"))
+    found = [one for one in _dicts(summary) if "low_deg" in one]
+    assert found
+    for one in found:
+        error = one["error_deg"]
+        if error is not None:
+            assert one["low_deg"] == pytest.approx(one["difference_deg"] - error, abs=1e-4)
+            assert one["high_deg"] == pytest.approx(one["difference_deg"] + error, abs=1e-4)
+        assert one["beyond_speed_deg"] is None  # both legs walked at one speed
+        assert one["mark"] in ("", "beyond_error", "beyond_healthy")
+
+
+def _dicts(part: object) -> Iterator[dict[str, Any]]:
+    if isinstance(part, dict):
+        yield part
+    for inner in part.values() if isinstance(part, dict) else part if isinstance(part, list) else ():
+        yield from _dicts(inner)

@@ -73,10 +73,10 @@ def test_a_c3d_names_a_shape_and_leaves_out_what_may_be_mirrored_or_is_not_repor
     assert [text.split(":")[0] for text in stated] == ["left_knee", "right_knee", "left_ankle", "right_ankle"]
     assert stated[0] == "left_knee: read"
     assert stated[1].startswith(
-        "right_knee: range_only: Flexion and extension could not be distinguished (margin 0.10, required 0.25)"
+        "right_knee: range_only: Flexion and extension could not be distinguished (clarity 0.10, required 0.25)"
     )
     assert stated[2].startswith("left_ankle: no_zero: There is no standing reference")
-    assert stated[3].startswith("right_ankle: withheld: Calibration certainty is only +/-12.0 deg")
+    assert stated[3].startswith("right_ankle: withheld: The calibration has an uncertainty of +/-12.0 deg")
 
 
 def test_a_motion_file_leaves_out_what_is_no_pose_and_states_why(mixed: RecordingAnalysis, tmp_path: Path) -> None:
@@ -89,7 +89,7 @@ def test_a_motion_file_leaves_out_what_is_no_pose_and_states_why(mixed: Recordin
     for begin in (
         "knee_angle_r is left out, range_only: Flexion and extension could not be",
         "ankle_angle_l is left out, no_zero: There is no standing reference",
-        "ankle_angle_r is left out, withheld: Calibration certainty is only",
+        "ankle_angle_r is left out, withheld: The calibration has an uncertainty of",
     ):
         assert [line for line in lines if line.startswith(begin)], begin
 
@@ -145,7 +145,7 @@ def test_a_not_reported_figure_has_its_reason_in_place_of_a_value(
     (coding,) = one["dataAbsentReason"]["coding"]
     assert coding["system"] == "http://terminology.hl7.org/CodeSystem/data-absent-reason"
     assert coding["code"] == "error"
-    assert one["dataAbsentReason"]["text"].startswith("Calibration certainty is only ±12.0°")
+    assert one["dataAbsentReason"]["text"].startswith("The calibration has an uncertainty of ±12.0°")
     assert {part["code"]["coding"][0]["code"] for part in one["component"]} == {"side", "strides_used"}
     assert found["knee_swing_peak_deg", "right leg"]["dataAbsentReason"]["text"].startswith(
         "Flexion and extension could not be distinguished"
@@ -232,5 +232,5 @@ def test_a_workbook_has_no_number_where_a_figure_is_not_reported(
     about = {row[0]: str(row[1]) for row in book["About"].iter_rows(values_only=True)}
     name = mixed.name
     assert about[f"{name}, left knee, shape"] == "read"
-    assert about[f"{name}, right ankle, shape"].startswith("withheld: Calibration certainty is only ±12.0°")
+    assert about[f"{name}, right ankle, shape"].startswith("withheld: The calibration has an uncertainty of ±12.0°")
     assert about[f"{name}, both legs, between"] == "read"

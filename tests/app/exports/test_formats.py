@@ -200,9 +200,13 @@ def test_another_library_takes_the_bundle(visit: tuple[Session, Analysis], table
     assert (patient.gender, patient.get_resource_type()) == ("female", "Patient")
     reported = json.loads((tables / "summary.json").read_text())["walks"][walk_of(visit[1]).name]
     assert len(observations) > 30
+    differing: list[Any] = []
     for one in observations:
         name, quantity = one.code.coding[0].code, one.valueQuantity
         parts = {part.code.coding[0].code: part for part in one.component or ()}
+        if name.endswith("_difference"):
+            differing.append(one)
+            continue
         if one.bodySite is None:
             assert float(quantity.value) == reported["both"][name]
             continue
@@ -216,6 +220,19 @@ def test_another_library_takes_the_bundle(visit: tuple[Session, Analysis], table
         assert any(note.text.startswith("SIMULATED") for note in one.note)
     names = [one.fullUrl for one in read.entry]
     assert len(set(names)) == len(names)
+    with (tables / "sides.csv").open(encoding="utf-8", newline="") as file:
+        rows = {row["parameter"]: row for row in csv.DictReader(file)}
+    assert len(differing) > 5
+    for one in differing:
+        row = rows[one.code.coding[0].code.removesuffix("_difference")]
+        assert float(one.valueQuantity.value) == pytest.approx(float(row["difference"]), abs=1e-4)
+        parts = {part.code.coding[0].code: part for part in one.component or ()}
+        for end in ("low", "high", "healthy_limit"):
+            assert (end in parts) is bool(row[end])
+            if row[end]:
+                assert float(parts[end].valueQuantity.value) == pytest.approx(float(row[end]), abs=1e-4)
+        assert ("mark" in parts) is bool(row["mark"])
+        assert "beyond_speed" not in parts  # both legs walked at one speed
 
 
 def test_a_date_without_a_zone_is_reported_as_a_day(visit: tuple[Session, Analysis]) -> None:

@@ -129,4 +129,6 @@ def test_a_c3d_and_the_line_for_a_motion_file_say_what_they_left_out(folder: Pat
         bends = "knee flexion" if "Knee" in label else "ankle dorsiflexion"
         assert words == f"x: {bends} less its mean, for there is no zero; y, z not measured"
     (line,) = (line for line in (folder / "lines").read_text(encoding="utf-8").splitlines() if line.startswith("walk"))
-    assert line.startswith("walk 1, mot: It has no angle to export as a pose. There is no standing reference")
+    assert line.startswith(
+        "walk 1, mot: This recording has no angle to export as a pose. There is no standing reference"
+    )

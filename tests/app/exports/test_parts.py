@@ -84,13 +84,13 @@ def test_what_is_not_reported_leaves_no_empty_file_and_a_line_why(
     analysis = replace(visit[1], recordings=recordings)
     lines = export_from_folder(visit[0], analysis, [Format.C3D, Format.MOT, Format.XLSX], tmp_path)
     assert [str(path.relative_to(tmp_path)) for path in tmp_path.rglob("*")] == ["gaitwright.xlsx"]
-    why = "Calibration certainty is only ±12.0° (limit ±9.0°). Record free motion, or move longer and in more "
-    why += "directions."
+    why = "The calibration has an uncertainty of ±12.0° (limit ±9.0°). Record free motion, or let the "
+    why += "patient move longer and in more directions."
     assert lines == [
-        f"free motion, c3d: It has neither angles nor events to export. {why}",
-        f"walk 1, c3d: It has neither angles nor events to export. {why}",
-        f"free motion, mot: It has no angle to export as a pose. {why}",
-        f"walk 1, mot: It has no angle to export as a pose. {why}",
+        f"free motion, c3d: This recording has neither angles nor events to export. {why}",
+        f"walk 1, c3d: This recording has neither angles nor events to export. {why}",
+        f"free motion, mot: This recording has no angle to export as a pose. {why}",
+        f"walk 1, mot: This recording has no angle to export as a pose. {why}",
     ]
     assert export_from_folder(*visit, [Format.C3D, Format.MOT, Format.BIDS], tmp_path) == []
 
@@ -98,7 +98,7 @@ def test_what_is_not_reported_leaves_no_empty_file_and_a_line_why(
 def test_recordings_without_samples_are_no_set_of_data(visit: tuple[Session, Analysis], tmp_path: Path) -> None:
     bare = replace(visit[0], recordings=tuple(replace(r, is_kept=False) for r in visit[0].recordings))
     lines = export_from_folder(bare, visit[1], [Format.BIDS], tmp_path)
-    assert lines == ["bids-motion: No included recording has samples."]
+    assert lines == ["bids-motion: No included recording contains sensor data."]
     assert list(tmp_path.rglob("*")) == []
 
 

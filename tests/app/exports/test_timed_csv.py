@@ -152,7 +152,7 @@ def test_the_page_of_tests_shows_the_course_of_those_that_two_visits_have(visit:
     assert list(charts_of_tests(course, "=shoes", facts)) == [TimedProtocol.TEN_METRES]
     stated = str(timed_page(request, facts))
     assert "10-metre walk, m/s" in stated
-    assert "half the error of a speed change, 0.20 m/s" in stated
+    assert "half the measurement error of a speed change. That error is 0.18 m/s." in stated
     assert "they are not judged" not in stated
     assert charts_of_tests(course, "barefoot", facts) == {}
     alone = replace(request, course=course[1:])

@@ -15,12 +15,12 @@ from babel.messages.pofile import read_po
 from app.cli.main import SUBCOMMANDS
 from app.films.film import Film
 from app.help.help_topics import Topic, help_file, topic_title
+from app.summary.numbers_in_words import MARKS
 from app.wording.translation import use_language
-from core.parameters import QuantityKind
 from core.signal.tracks import MAX_REPORTED_GAP_S
 from core.verdicts.gates import LIMITS
-from core.verdicts.measurement_error import Z95
-from core.verdicts.sigmas import SIGMAS, ComparisonKind
+from core.verdicts.measurement_error import Mark, least_error
+from core.verdicts.sigmas import ComparisonKind
 from devices.catalogue import DRIVERS
 
 ROOT = Path(__file__).parents[3]
@@ -219,32 +219,44 @@ def test_the_limits_of_the_verdicts_are_those_in_force(language: str) -> None:
     assert {reason: figures for reason, figures in required.items() if figures not in reported} == {}
 
 
-def least_difference(kind: ComparisonKind, quantity: QuantityKind) -> str:
+USUAL = (  # means that the page names, with the unit and decimals of its table
+    ("knee_range_deg", 60.0, "°", 1),
+    ("ankle_range_deg", 28.0, "°", 1),
+    ("stance_percent", 61.0, " points", 1),
+    ("stride_length_m", 1.3, " cm", 0),
+    ("speed_m_s", 1.2, " m/s", 2),
+)
+
+
+def least_difference(kind: ComparisonKind, column: str, mean: float, unit: str, digits: int) -> str:
     """What two means have to differ by at least, as the page writes it, with its dagger."""
-    sigma = SIGMAS[kind].get(quantity)
-    if sigma is None:
+    error, is_verified = least_error(column, kind, mean)
+    if math.isnan(error):
         return ""
-    error = Z95 * math.sqrt(2) * sigma.value
-    units = {QuantityKind.KNEE_SHAPE: "°", QuantityKind.ANKLE_SHAPE: "°", QuantityKind.STANCE: " points"}
-    unit = " %" if sigma.is_relative else units.get(quantity, " m/s" if quantity is QuantityKind.SPEED else " cm")
-    if unit == " cm":
-        error *= 100
-    digits = 2 if unit == " m/s" else 0 if unit == " cm" else 1
-    return f"{error:.{digits}f}{unit}{'' if sigma.is_verified else ' †'}"
+    size = 100 * error if unit == " cm" else error
+    return f"{size:.{digits}f}{unit}{'' if is_verified else ' †'}"
 
 
 @pytest.mark.parametrize("language", LANGUAGES)
 def test_the_least_differences_are_those_that_errors_are_made_of(language: str) -> None:
-    quantities = (
-        *(QuantityKind.KNEE_SHAPE, QuantityKind.ANKLE_SHAPE, QuantityKind.STANCE),
-        *(QuantityKind.LENGTH, QuantityKind.SPEED),
-    )
     kinds = (ComparisonKind.ATTACHED, ComparisonKind.LEGS, ComparisonKind.STRAPPINGS, ComparisonKind.VISITS)
     table = text_of(language, Topic.NUMBERS).partition("| Between |" if language == "en" else "| Zwischen |")[2]
     rows = re.findall(r"(?m)^\| ([^-].*) \|$", table)[: len(kinds)]
     for kind, row in zip(kinds, rows, strict=True):
         cells = [cell.strip().replace(",", ".").replace("Punkte", "points") for cell in row.split(" |")]
-        assert cells[1:] == [least_difference(kind, quantity) for quantity in quantities], kind
+        assert cells[1:] == [least_difference(kind, *usual) for usual in USUAL], kind
+
+
+@pytest.mark.parametrize("language", LANGUAGES)
+def test_the_means_and_marks_of_the_least_differences_are_explained(language: str) -> None:
+    text = text_of(language, Topic.NUMBERS)
+    means = ("60°", "28°", "61 %", "1.3 m", "1.2 m/s")
+    stated = (
+        text.replace(",", ".").replace("\n", " ").partition("| Between |" if language == "en" else "| Zwischen |")[0]
+    )
+    assert [mean for mean in means if mean not in stated] == []
+    for mark in (Mark.HEALTHY, Mark.ERROR):
+        assert f"{MARKS[mark]} " in text
 
 
 @pytest.mark.parametrize("language", LANGUAGES)

@@ -49,7 +49,7 @@ def test_what_has_changed_is_beside_the_lanes(page: HomePage) -> None:
     assert "Walking speed" in found
     assert "1.12\N{NO-BREAK SPACE}m/s" in found
     assert "+0.41 since 20 Jun" in found
-    assert "beyond error (0.20 †)" in found
+    assert "beyond error (0.18)" in found
     assert "since last visit +0.06, within error" in found
     assert "49°" in found
     assert page.panel.count.text() == "5 visits · Shoes, stick: 3"

@@ -150,7 +150,7 @@ def test_real_tissue_that_parts_the_hips_is_not_reported_in_words() -> None:
     ("wrong", "gate", "reported"),
     [
         ({"margin": 1.4}, "pairing", "1.40"),
-        ({"disagreement": 0.31}, "hip_disagreement", "by 31 %"),
+        ({"disagreement": 0.31}, "hip_disagreement", "(difference 31 %"),
         ({"centre_proximal_m": np.array([0.0, 0.0, 0.44])}, "hip_centre", "0.44 m"),
         ({"centre_distal_m": np.array([0.03, 0.0, 0.0])}, "hip_centre", "0.03 m"),
         ({"centres_apart_m": 0.31}, "hips_apart", "0.31 m"),

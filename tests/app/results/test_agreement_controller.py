@@ -59,7 +59,7 @@ def words(page: AgreementPage) -> str:
 
 
 def test_before_anything_is_chosen_it_states_what_can_be(page: AgreementPage, controller: AgreementController) -> None:
-    assert words(page).startswith("Choose the optical system's file CSV with time_s and left_knee")
+    assert words(page).startswith("Choose the optical system's file Accepted files: CSV with time_s and left_knee")
     assert page.waiting.button.text() == "Choose reference file"
     assert not page.save.isVisible()
 
@@ -73,7 +73,7 @@ def test_pages_are_shown_and_saved_as_the_command_saves_them(
 ) -> None:
     reference = write_reference(tmp_path / "walk 1.csv", rows_of(walked[2], "walk 1"))
     controller.compare([reference])
-    assert words(page).startswith("Searching for these walks in walk 1.csv.")
+    assert words(page).startswith("Searching walk 1.csv for the recorded walks.")
     qtbot.waitUntil(lambda: page.sheets.count > 1, timeout=30_000)
     assert page.save.isVisible()
     assert page.note.text() == "Not compared, no matching recording: walk 2."

@@ -142,7 +142,7 @@ def test_a_motion_that_drew_no_curve_and_reported_no_drift_is_shown_all_the_same
     page.grab()
     stated = " ".join(text.text() for text in page.pairing.findChildren(Text))
     assert "No second of this motion" in stated
-    assert "over 100 times worse" in stated
+    assert "more than 100 times worse" in stated
 
 
 def test_ten_seconds_are_seen_closer_on_the_axis_that_they_need(page: FoundPage, found: JointDiagnostics) -> None:

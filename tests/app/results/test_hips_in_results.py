@@ -163,7 +163,7 @@ def test_figures_of_hip_and_pelvis_have_a_card_that_states_what_is_not_reported(
     rows = rows_of(page.cycles.hips.table)
     assert rows["Obliquity, range"][0][0].isdigit()
     assert rows["Tilt, range"][0] == "not reported"
-    assert "it cannot be separated from measurement error" in page.cycles.hips.note.text()
+    assert "cannot be distinguished from measurement error" in page.cycles.hips.note.text()
     assert not [name for name in rows if "otation" in name and "ip" in name.split(",")[0]]
 
 

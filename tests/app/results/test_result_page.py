@@ -170,7 +170,10 @@ def test_the_door_leads_to_what_can_be_read_and_back(page: ResultPage, analysis:
     assert page.cycles.isVisible()
     assert not page.leave_behind()
     show(page, recalibrated(analysis, [Joint.LEFT_ANKLE], axis_sd_rad=np.deg2rad(11.0)))
-    assert page.door.words == "Left ankle: not reported. Record free motion, or move longer and in more directions."
+    assert (
+        page.door.words
+        == "Left ankle: not reported. Record free motion, or let the patient move longer and in more directions."
+    )
     page.door.click()
     assert page.quality.first.text() == "3 of 4 joints: Good. Not reported: left ankle."
 
@@ -244,7 +247,7 @@ def test_a_cell_to_be_read_with_care_states_so_to_who_receives_it(page: ResultPa
     assert "*: caution." in page.cycles.peaks.note.text()
     chips = page.cycles.charts.knee.chips
     assert {side: chip.verdict for side, chip in chips.items()} == {Side.LEFT: Verdict.CARE, Side.RIGHT: Verdict.READ}
-    assert page.door.words.startswith("Left knee: caution. Calibration certainty is only ±8.0°")
+    assert page.door.words.startswith("Left knee: caution. The calibration has an uncertainty of ±8.0°")
     show(page, analysis)
     assert "caution" not in page.cycles.peaks.note.text() + page.door.words
 
@@ -299,7 +302,7 @@ def test_a_prosthetic_leg_has_no_band(page: ResultPage, analysis: Analysis) -> N
 
 def test_the_same_doubt_is_in_chart_and_table(page: ResultPage, analysis: Analysis) -> None:
     show(page, recalibrated(analysis, [Joint.LEFT_KNEE], is_sign_certain=False))
-    assert page.cycles.charts.knee.note.startswith("L: sign unclear, flexion or extension.")
+    assert page.cycles.charts.knee.note.startswith("L: it is unclear which direction is flexion.")
     assert rows_of(page)["Peak flexion, swing"][0] == "sign unclear"
     assert "sign unclear" not in rows_of(page)["Peak flexion, swing"][1]
 
@@ -336,8 +339,8 @@ def test_the_answer_is_over_the_mean_cycle_and_nothing_scrolls_for_it(page: Resu
     in_wizard = (1064.0, 672.0)  # of a window of 1280 x 800 with its rail
     page.set_room(*in_wizard)
     show(page, analysis)
-    assert page.answer.text.startswith("Left and right are similar: knee range of motion ")
-    assert page.answer.text.endswith(". All judged differences are within measurement error.")
+    assert page.answer.text.startswith("Left and right are similar: knee flexion, stance to swing ")
+    assert page.answer.text.endswith("° fits.")
     show(page, with_more(analysis, Side.LEFT, "knee_range_rad", -20.0))
     assert page.answer.text.startswith("The left knee has 21.3° less range of motion than the right: ")
     assert page.minimumSizeHint().height() <= in_wizard[1]
@@ -347,7 +350,7 @@ def test_the_answer_is_over_the_mean_cycle_and_nothing_scrolls_for_it(page: Resu
     show(page, changed(analysis, gait={}))
     page.view.choose(WHOLE)
     assert page.answer.isVisible()
-    assert page.answer.text.startswith("No results for this walk: no stride was found from a foot or shank sensor")
+    assert page.answer.text.startswith("No results for this walk: no foot or shank sensor showed a stride")
 
 
 @pytest.mark.parametrize("room", [(1064.0, 672.0), (1150.0, 640.0)])  # of windows of 1280 x 800 and 1366 x 768

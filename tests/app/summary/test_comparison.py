@@ -29,7 +29,8 @@ def test_a_change_from_the_next_visit_that_can_be_read_has_the_error_of_visits()
     assert row.against.letter == "2A"
     one, other = (found.mean(Side.LEFT, KNEE.column, ComparisonKind.VISITS) for found in (row.part, row.against))
     assessments = tuple(found.assessment(Side.LEFT, KNEE.column) for found in (row.part, row.against))
-    assert row.difference == compare(KNEE.column, ComparisonKind.VISITS, one, other, assessments)
+    judged = compare(KNEE.column, ComparisonKind.VISITS, one, other, assessments)
+    assert (row.difference.difference, row.difference.error) == (judged.difference, judged.error)
     attached = compare(KNEE.column, ComparisonKind.ATTACHED, one, other, assessments)
     assert attached.error < row.difference.error  # which would have stated more than can be known
 

@@ -117,7 +117,12 @@ def test_legs_are_set_side_by_side_with_their_status(tmp_path: Path) -> None:
     found = {row["parameter"]: row for row in table(tmp_path / "sides.csv")}
     knee, ankle, time = (found[name] for name in ("knee_range_deg", "ankle_range_deg", "stride_time_s"))
     assert (knee["difference"], knee["status"], knee["verdict"]) == ("15.00000", "read", "exceeds_error")
-    assert float(knee["error"]) == pytest.approx(9.2, abs=0.3)  # and what 1 ms of lag makes of each leg
+    # 1.96 times hypot(1.2, 0.04 * 75) and hypot(1.2, 0.04 * 60) is 8.24, and 1 ms of lag in each leg
+    assert float(knee["error"]) == pytest.approx(8.3, abs=0.05)
+    assert knee["mark"] == "beyond_healthy"
+    assert float(knee["healthy_limit"]) == pytest.approx(10.25, abs=0.06)
+    assert float(knee["low"]) == pytest.approx(15.0 - float(knee["error"]), abs=1e-4)
+    assert float(knee["high"]) == pytest.approx(15.0 + float(knee["error"]), abs=1e-4)
     assert "clock" in knee["error_sources"]
     assert (ankle["status"], ankle["verdict"]) == ("withheld", "withheld")
     assert ankle["difference"] == ankle["error"] == ankle["right_mean"] == ankle["symmetry_index_percent"] == ""
@@ -157,7 +162,7 @@ def test_measures_for_fitting_are_reported_with_their_errors(tmp_path: Path) -> 
     found = differences(tmp_path, before, after)
     rise, pitch = found["left", "foot_heel_rise_deg"], found["left", "foot_pitch_at_contact_deg"]
     assert (rise["difference"], rise["verdict"], rise["status"]) == ("6.00000", "exceeds_error", "read")
-    assert float(rise["error"]) == pytest.approx(1.96 * np.sqrt(2) * 1.3, abs=0.01)
+    assert float(rise["error"]) == pytest.approx(1.96 * np.sqrt(2) * 0.9, abs=0.01)
     assert (pitch["difference"], pitch["verdict"]) == ("1.00000", "inside_error")
     assert ("left", "foot_flat_percent") not in found  # was not measured
     names = [parameter for side, parameter in found if side == "left"]
@@ -177,14 +182,72 @@ def test_legs_differ_in_measures_for_fitting_by_more_than_their_error(tmp_path: 
     found = {row["parameter"]: row for row in table(tmp_path / "sides.csv")}
     rise, pitch = found["foot_heel_rise_deg"], found["foot_pitch_at_contact_deg"]
     assert (rise["difference"], rise["verdict"]) == ("15.00000", "exceeds_error")
-    assert float(rise["error"]) == pytest.approx(9.2, abs=0.01)
+    assert float(rise["error"]) == pytest.approx(8.5, abs=0.01)  # healthy people's; 3.2 would make 8.9 of it
+    assert (rise["mark"], rise["healthy_limit"], pitch["mark"]) == ("beyond_healthy", "8.50000", "beyond_healthy")
     assert rise["symmetry_index_percent"] != ""
     assert pitch["symmetry_index_percent"] == ""  # it may be nought, or on both sides of it
 
 
+def test_an_interval_is_the_difference_less_and_plus_its_error_in_every_row(tmp_path: Path) -> None:
+    """And of what is not judged there is none."""
+    found = differences(tmp_path, part("A"), part("B", left=leg(Side.LEFT, knee_range_deg=66.0)))
+    judged = [row for row in found.values() if row["verdict"] in ("exceeds_error", "inside_error")]
+    assert len(judged) > 20
+    for row in judged:
+        low, high = float(row["difference"]) - float(row["error"]), float(row["difference"]) + float(row["error"])
+        assert [float(row["low"]), float(row["high"])] == pytest.approx([low, high], abs=2e-5)
+        assert row["mark"] == ("beyond_error" if row["verdict"] == "exceeds_error" else "")
+        assert row["healthy_limit"] == ""  # legs of one walk have it, no walks
+    for row in found.values():
+        assert row in judged or row["low"] == row["high"] == row["mark"] == ""
+    knee = found["left", "knee_range_deg"]  # 1.96 sqrt(2) 1.0
+    assert [float(knee["low"]), float(knee["high"])] == pytest.approx([3.23, 8.77], abs=0.01)
+    assert knee["beyond_speed"] == ""  # both walked at one speed
+
+
+def test_what_goes_with_speed_is_taken_out_beside_and_the_error_of_the_difference_stays(tmp_path: Path) -> None:
+    """0.2 m/s faster at over 0.8 m/s makes -1 point of stance, and 0.3 of that in the error: 0.55, 0.55 and 0.3."""
+
+    def at(letter: str, speed_m_s: float, stance_percent: float) -> Part:
+        left, right = (leg(side, length_m=1.1 * speed_m_s, stance_percent=stance_percent, time_s=1.1) for side in Side)
+        return part(letter, left=left, right=right)
+
+    slow, fast = at("A", 1.0, 62.0), at("B", 1.2, 58.0)
+    row = differences(tmp_path, slow, fast)["left", "stance_percent"]
+    assert float(row["difference"]) == pytest.approx(-4.0)
+    assert float(row["error"]) == pytest.approx(1.96 * np.hypot(0.55, 0.55), abs=0.01)
+    assert float(row["beyond_speed"]) == pytest.approx(-3.0, abs=1e-4)
+    error = 1.96 * np.sqrt(0.55**2 + 0.55**2 + 0.3**2)
+    assert float(row["beyond_speed_low"]) == pytest.approx(-3.0 - error, abs=0.01)
+    assert float(row["beyond_speed_high"]) == pytest.approx(-3.0 + error, abs=0.01)
+    assert differences(tmp_path, slow, fast)["left", "ankle_range_deg"]["beyond_speed"] == ""  # no slope is known
+
+
+def test_stride_length_is_set_side_by_side_and_never_judged(tmp_path: Path) -> None:
+    """Feet travel equally far: of healthy people 41 of 100 would be called."""
+    one = part("A", left=leg(Side.LEFT, length_m=1.5), right=leg(Side.RIGHT, length_m=1.2))
+    write_sides([one], (Side.LEFT, Side.RIGHT), tmp_path / "sides.csv")
+    rows = {row["parameter"]: row for row in table(tmp_path / "sides.csv")}
+    length = rows["stride_length_m"]
+    assert float(length["left_mean"]) > float(length["right_mean"])
+    assert (length["verdict"], length["mark"], length["low"]) == ("no_published_figure", "", "")
+
+
+@pytest.mark.parametrize(("stance", "mark"), [(62.0, ""), (63.6, "beyond_error"), (65.0, "beyond_healthy")])
+def test_legs_bear_the_mark_of_what_they_differ_by(tmp_path: Path, stance: float, mark: str) -> None:
+    """The right has 60 %; the error is 3.0 points, and 95 of 100 healthy people differ by less than 4.0."""
+    write_sides(
+        [part("A", left=leg(Side.LEFT, stance_percent=stance))], (Side.LEFT, Side.RIGHT), tmp_path / "sides.csv"
+    )
+    row = next(row for row in table(tmp_path / "sides.csv") if row["parameter"] == "stance_percent")
+    assert row["mark"] == mark
+    assert float(row["healthy_limit"]) == pytest.approx(4.0, abs=0.1)
+
+
 COLUMNS = (  # as other programs read them
     "part,name,walks,against_part,against_name,against_walks,side,parameter,n,mean,sd,against_n,against_mean,"
-    "against_sd,difference,error,error_sources,status,verdict,left_out_by_hand,against_left_out_by_hand,chosen_before"
+    "against_sd,difference,error,error_sources,status,verdict,left_out_by_hand,against_left_out_by_hand,chosen_before,"
+    "low,high,beyond_speed,beyond_speed_low,beyond_speed_high,mark,healthy_limit"
 )
 
 

@@ -46,7 +46,7 @@ def test_a_not_reported_joint_comes_first_with_why_what_to_do_and_whose_motion_m
     assert found.first == "2 of 4 joints: Good. Caution: right knee. Not reported: left ankle."
     first, second, *_ = found.lines
     assert (first.where, first.verdict, first.side) == ("Left ankle", Verdict.NOT_REPORTED, Side.LEFT)
-    assert first.why == "Calibration certainty is only ±11.0° (limit ±9.0°)."
+    assert first.why == "The calibration has an uncertainty of ±11.0° (limit ±9.0°)."
     assert first.to_do.startswith("Record free motion")
     assert (second.where, second.verdict, second.side) == ("Right knee", Verdict.CARE, Side.RIGHT)
     door = door_words(found)

@@ -85,7 +85,7 @@ def test_not_reported_abduction_leaves_the_joints_to_be_read() -> None:
     assert found.first == "All six joints are reported."
     (line,) = caveats(facts)
     assert line.startswith("Abduction of ")
-    assert "Thigh heading against the pelvis is too uncertain (7.0°, limit 6.0°)" in line
+    assert "The direction of the thigh relative to the pelvis is too uncertain (7.0°, limit 6.0°)" in line
 
 
 @pytest.mark.parametrize(
@@ -111,15 +111,20 @@ def test_how_the_legs_have_one_time_is_stated(
             0.04,
             0.005,
             ClockStatus.FOUND,
-            "offset found from hip movement. The right leg was 40 ms late, 1 SD 5 ms; corrected.",
+            "time offset found from hip movement. The right leg was 40 ± 5 ms late (1 SD). This was corrected.",
         ),
-        (-0.004, 0.005, ClockStatus.FOUND, "offset found from hip movement. The left leg was 4 ms late, 1 SD 5 ms."),
-        (0.001, 0.005, ClockStatus.PROVEN, "synchronised, confirmed."),
+        (
+            -0.004,
+            0.005,
+            ClockStatus.FOUND,
+            "time offset found from hip movement. The left leg was 4 ± 5 ms late (1 SD).",
+        ),
+        (0.001, 0.005, ClockStatus.PROVEN, "synchronisation confirmed."),
         (
             math.nan,
             math.nan,
             ClockStatus.NOT_REPORTED,
-            "hip movement does not show their time offset.",
+            "their time offset cannot be found from hip movement.",
         ),
     ],
 )
@@ -171,7 +176,7 @@ def test_the_pelvis_has_its_table_and_the_tilt_its_reason() -> None:
     table = rows(blocks)
     assert set(table) == {"Obliquity, range", "Drop in swing", "Rotation, range", "Mean tilt, forward +", "Tilt, range"}
     assert table["Tilt, range"] == ["not reported", "not reported"]
-    assert "Up to 5.0° it cannot be separated from measurement error" in stated(blocks)
+    assert "A range up to 5.0° cannot be distinguished from measurement error" in stated(blocks)
     assert "1 turn." in stated(blocks)
 
 

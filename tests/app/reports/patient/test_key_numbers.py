@@ -7,9 +7,9 @@ from dataclasses import replace
 
 import pytest
 
-from app.charts.drawing import COLOURS
+from app.charts.drawing import COLOURS, MM
 from app.reports.patient.key_numbers import ALWAYS, MOST_ROWS, key_numbers, key_rows
-from app.reports.patient.key_strips import strip
+from app.reports.patient.key_strips import STRIP_WIDTH, strip
 from app.summary.facts import Facts
 from app.summary.request import AnalysedVisit, ReportRequest
 from app.theme.colours import PAPER
@@ -51,9 +51,8 @@ def test_a_row_shows_both_legs_their_difference_its_error_and_whether_it_exceeds
 ) -> None:
     analysis = with_more(request_of_demonstration.visit.analysis, Side.LEFT, "knee_stance_to_swing_rad", -20.0)
     stated = cells(facts(request_of_demonstration, analysis), 0)
-    assert stated[:4] == ["Knee flexion, stance to swing, °", "40.7 ± 0.8", "62.0 ± 1.0", "\u221221.3"]
-    assert stated[4].endswith("\u2020")
-    assert 9.2 < float(stated[4][:-1]) < 9.6
+    assert stated[:4] == ["Knee flexion, stance to swing, °", "40.7 ± 0.8", "62.0 ± 1.0", "● \u221221.3"]
+    assert stated[4] == "\u221228 to \u221214"  # hypot(1.2, 0.04 * 40.7) and hypot(1.2, 0.04 * 62): 6.7; clock 0.1
     assert stated[5:] == ["no reference", ""]
     assert is_bold(facts(request_of_demonstration, analysis), 0)
     assert not is_bold(facts(request_of_demonstration), 0)
@@ -100,3 +99,10 @@ def test_one_leg_has_rows_without_a_difference(request_of_one_leg: ReportRequest
     shown = facts(request_of_one_leg)
     assert columns(shown)[0] == "knee_stance_to_swing_deg"
     assert cells(shown, 0)[2:6] == ["not measured", "–", "–", "no reference"]
+
+
+def test_a_strip_fits_its_column(request_of_demonstration: ReportRequest) -> None:
+    (table,) = (block for block in key_numbers(facts(request_of_demonstration), None) if block["kind"] == "table")
+    columns = table["columns"]
+    assert isinstance(columns, list)
+    assert float(columns[-1]["width"].removesuffix("mm")) * MM >= STRIP_WIDTH

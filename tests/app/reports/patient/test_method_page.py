@@ -47,7 +47,7 @@ def test_the_page_of_the_method_states_how_it_was_measured(request_of_demonstrat
             "instantaneous angular rates. A joint angle is the rotation of the lower segment relative to the upper one "
             "about the joint's own axis. It is one of three"
         ),
-        "Events and strides": "Initial contact and toe\u2011off: from foot pitch; for feet that hardly roll",
+        "Events and strides": "Initial contact and toe\u2011off: from the tilt of the foot; for feet that hardly roll",
         "Accuracy": "Not tested on patients, after knee replacement or on real prostheses",
         "Software": "Gaitwright 9.8.7, the robust method",
     }.items():

@@ -30,8 +30,8 @@ from core.body import Side
 from core.gait.spatiotemporal import MeanAndSd
 
 DIGITS = 1e-5
-# 1.96 * sqrt(2) * 1.0 deg, the published upper end, 0.5, 2.5 / (1.96 sqrt 2), 3.0 points; and "over 100"
-ERRORS = (2.772, 9.2, 1.386, 2.5, 8.316, 100.0)
+# 1.96 sqrt(2) times 1.0 deg, hypot(1.2, 2.4), 3.3, 0.55 and 1.1 points; healthy ankles; and "over 100"
+ERRORS = (2.772, 7.438, 9.147, 1.524, 3.049, 6.2, 100.0)
 NUMBER = re.compile(rf"[{MINUS}]?\d+(?:\.\d+)?")
 
 
@@ -73,10 +73,10 @@ def known(results: Path, walk: str = "walk_1") -> set[str]:
     values += [fmean(float(row[name]) for row in cycles) for name in cycles[0] if name.endswith("_sd_deg")]
     if (results / "differences.csv").exists():
         differences = table(results / "differences.csv")
-        names = ("mean", "sd", "against_mean", "against_sd", "difference", "error")
+        names = ("mean", "sd", "against_mean", "against_sd", "difference", "error", "low", "high", "healthy_limit")
         values += [number for name in names for number in column(differences, name)]
     for line in table(results / "sides.csv") if (results / "sides.csv").exists() else []:
-        values += [float(line[name]) for name in ("difference", "error") if line[name]]
+        values += [float(line[name]) for name in ("difference", "error", "low", "high", "healthy_limit") if line[name]]
     summary = json.loads((results / "summary.json").read_text())
     values += [*numbers_in(summary["walks"]), *numbers_in(summary["joints"]), *ERRORS]
     values += [v for value in time_distance_classes()[1].values.values() for v in (value.mean, value.sd)]

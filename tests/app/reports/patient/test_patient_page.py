@@ -148,7 +148,7 @@ def test_what_was_agreed_is_stated_plainly_and_reached_only_where_it_is_by_more_
     low, near = (Goal(KNEE, GoalOf.LEFT, value, day) for value in (50.0, 60.0))
     words = "Bend of your left knee: at least 50 degrees. We agreed this on 30 September."
     request = english(request_of_demonstration)
-    assert goals_on_page(request, low) == [f"{words} You have reached it."]
+    assert goals_on_page(request, low) == [f"{words} You have reached this goal."]
     assert goals_on_page(request, low, is_not_reported=True) == [words]
     assert goals_on_page(request, replace(low, agreed=datetime.date(2026, 11, 23))) == [
         words.replace("30 September", "23 November")

@@ -70,9 +70,9 @@ def test_a_change_beyond_the_error_is_a_sentence_with_both_values(request_of_dem
     found = sentences(page(request_of_demonstration, visits(walk(31), walk(36), walk(52))))
     assert len(found) == 1
     assert found[0].startswith(
-        "Left knee flexes 52.0° from stance to swing at visit 3, 21.0° more than at visit 1 (31.0°). Error between"
+        "Left knee flexes 52.0° from stance to swing at visit 3, 21.0° more than at visit 1 (31.0°). Likely between 1"
     )
-    assert "Since visit 2 +16.0°: beyond error." in found[0]
+    assert "Since visit 2 +16.0°, likely +10 to +22." in found[0]
 
 
 def test_a_change_inside_the_error_is_none(request_of_demonstration: ReportRequest) -> None:
@@ -145,14 +145,16 @@ def test_a_goal_is_dotted_with_who_and_when_and_a_sentence_states_how_the_last_v
     seen = visits(*(walk(knee_deg=knee_deg) for knee_deg in (31.0, 36.0, 39.0, 45.0, 52.0)))
     blocks = page(with_goals(request_of_demonstration, knee_goal(41.0)), seen)
     assert sentences(blocks)[-1] == (
-        "Goal: Knee flexion, stance to swing, left: at least 41°; measured 52.0°, reached, beyond measurement error "
-        "(±9.3°). First reached at visit 4."
+        "Goal: Knee flexion, stance to swing, left: at least 41°; measured 52.0°, reached; the difference is beyond "
+        "measurement error (±6.8°). More than 9 of 10 such measurements are at the goal. First reached at visit 4."
     )
     (drawn,) = (block["pictures"] for block in blocks if block["kind"] == "figures")
     assert "goal L 41°, agreed 16 Sep" in str(drawn)
     assert "Keller" in str(drawn)
     inside = sentences(page(with_goals(request_of_demonstration, knee_goal(55.0)), seen))[-1]
-    assert inside.endswith("not reached, but within measurement error (±9.3°).")
+    assert inside.endswith(
+        "not reached; the difference is within measurement error (±6.8°). 1 of 10 such measurements is at the goal."
+    )
 
 
 def test_a_goal_agreed_on_the_day_of_the_visit_is_drawn_and_stated_to_be_nothing(
@@ -202,11 +204,12 @@ def with_test(time_s: float, speed_m_s: float = 1.0, protocol: TimedProtocol = T
 
 def test_timed_tests_stand_in_the_table_and_speed_is_reported_once(request_of_demonstration: ReportRequest) -> None:
     blocks = page(request_of_demonstration, visits(with_test(20.0, 0.6), with_test(8.0, 1.0)))
-    assert rows(blocks)["10-metre walk, m/s", ""] == ["0.50", "1.25", "–", "+0.75", "0.20†", "beyond"]
+    assert rows(blocks)["10-metre walk, m/s", ""] == ["0.50", "1.25", "–", "+0.75", "+0.57 to +0.93", "○"]
     reported = [one for one in sentences(blocks) if "m/s" in one]
     assert len(reported) == 1
     assert reported[0].startswith(
-        "10-metre walk is 1.25 m/s at visit 2, 0.75 m/s more than at visit 1 (0.50 m/s). Error between"
+        "10-metre walk is 1.25 m/s at visit 2, 0.75 m/s more than at visit 1 (0.50 m/s). "
+        "Likely between 0.57 and 0.93 m/s."
     )
     chair = visits(*(with_test(time_s, protocol=TimedProtocol.SIT_TO_STAND) for time_s in (30.0, 12.0)))
     blocks = page(request_of_demonstration, chair)

@@ -1,5 +1,6 @@
 """The prosthetist's bench: the chain and the next change, what it states of two alignments, and its page by keys."""
 
+import re
 from dataclasses import replace
 from types import SimpleNamespace
 from typing import Any, cast
@@ -96,10 +97,10 @@ def test_the_sentence_shows_the_prosthetic_sides_change_with_both_values() -> No
     outcome, first, then = reported_of(part("B", left=leg(Side.LEFT, knee_range_deg=70.0)), part("A"))
     assert outcome is Outcome.DIFFERS
     assert first == "Prosthetic-side knee has 70.0° range of motion with B, 10.0° more than with A (60.0°)."
-    assert then.startswith("Beyond measurement error (±")
+    assert re.match(r"Likely between 7° and 13°\. ", then)  # 10 -+ 1.96 sqrt(2) 1.0
     assert (
-        "The sound side does not change beyond measurement error. Sensors stayed on. Walking speed 1.18 and 1.18 m/s."
-        in then
+        "The sound side does not change beyond measurement error. Sensors stayed attached. "
+        "Walking speeds: 1.18 and 1.18 m/s." in then
     )
 
 
@@ -123,7 +124,7 @@ def test_where_only_the_sound_side_changes_no_sentence_is_of_the_prosthetic_one(
     outcome, first, then = reported_of(part("B", right=leg(Side.RIGHT, knee_range_deg=70.0)), part("A"))
     assert outcome is Outcome.NOTHING
     assert first == "Prosthetic side: knee range of motion is similar with A and with B, 60.0° and 60.0°."
-    assert then.startswith("The change of 0.0° may be measurement error: likely between −")
+    assert then.startswith("Difference 0.0°, which may be measurement error: anything from −3° to +3° fits.")
     assert "The sound side also changes beyond measurement error." in then
 
 
@@ -138,8 +139,8 @@ def test_strapped_on_again_between_the_error_is_the_larger_and_stated_so() -> No
 
 
 def test_a_change_that_the_table_marks_is_reported_with_its_error_however_little_it_is_beyond() -> None:
-    """63.5 against 60 is beyond the error of 2.8, and by less than a sentence on paper needs."""
-    one, other = part("B", left=leg(Side.LEFT, knee_range_deg=63.5)), part("A")
+    """63.2 against 60 is beyond the error of 2.8, and by less than a sentence on paper needs, 3.3."""
+    one, other = part("B", left=leg(Side.LEFT, knee_range_deg=63.2)), part("A")
     (row,) = (
         row
         for row in Comparison(Contrast.CONDITIONS, (other, one)).rows
@@ -149,15 +150,15 @@ def test_a_change_that_the_table_marks_is_reported_with_its_error_however_little
     assert not row.difference.is_worth_a_sentence
     outcome, first, then = reported_of(one, other)
     assert outcome is Outcome.DIFFERS
-    assert first == "Prosthetic-side knee has 63.5° range of motion with B, 3.5° more than with A (60.0°)."
-    assert then.startswith("Just beyond measurement error (±")
+    assert first == "Prosthetic-side knee has 63.2° range of motion with B, 3.2° more than with A (60.0°)."
+    assert then.startswith("Likely between 0.4° and 6.0°.")  # 3.2 -+ 2.8
 
 
 def test_what_may_be_error_is_reported_with_what_fits() -> None:
     outcome, first, then = reported_of(part("B", left=leg(Side.LEFT, knee_range_deg=61.0)), part("A"))
     assert outcome is Outcome.NOTHING
     assert first == "Prosthetic side: knee range of motion is similar with A and with B, 60.0° and 61.0°."
-    assert then.startswith("The change of +1.0° may be measurement error: likely between −1.")
+    assert then.startswith("Difference 1.0°, which may be measurement error: anything from −2° to +4° fits.")
 
 
 @pytest.mark.parametrize("is_biased", [True, False])
@@ -181,7 +182,7 @@ def test_stance_of_a_prosthetic_foot_is_compared_at_the_bench_nowhere(
 def test_under_ten_strides_nothing_is_judged() -> None:
     outcome, first, then = reported_of(part("B", left=leg(Side.LEFT, 7, knee_range_deg=80.0)), part("A"))
     assert (outcome, first) == (Outcome.OPEN, "B and A: too few strides to assess a change.")
-    assert then == "Provisional: B has 7 strides on the prosthetic side; 10 are needed for a measurement error."
+    assert then == "Provisional: B has 7 strides on the prosthetic side; 10 are needed to determine measurement error."
 
 
 def test_few_strides_are_ten() -> None:
