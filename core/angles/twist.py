@@ -75,7 +75,7 @@ def _dot(a: FloatArray, b: FloatArray) -> FloatArray:
 def ringing(off_axis: FloatArray, step_s: float) -> FloatArray:
     """What of an off-axis rate (n, 2) is above 3 Hz, where a joint hardly moves and tissue rings.
 
-    All of it at low rates, and of a stretch too short to tell, as one of several walks may leave.
+    All of it at low rates, and of a stretch too short to filter, as one of several walks may leave.
 
     Parameters
     ----------

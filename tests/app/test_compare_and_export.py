@@ -147,7 +147,7 @@ def test_the_terminal_marks_errors_that_nobody_could_check_and_states_not_report
         for span in analysis.calibrations
     )
     (comparison,) = comparisons_of([(session, judged(replace(analysis, calibrations=spans)))])
-    lines = {tuple(line.split()[:2]): line for line in _table(comparison)}
+    lines = {tuple(line.split()[:2]): line for line in _table(comparison, {})}
     assert re.search(r"\d† (inside|beyond) measurement error$", lines["L", "knee_range_deg"])
     assert re.search(r"\d  (inside|beyond) measurement error$", lines["L", "stride_time_s"])
     assert lines["L", "knee_swing_peak_deg"].split() == ["L", "knee_swing_peak_deg", "withheld"]

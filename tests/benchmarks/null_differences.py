@@ -139,7 +139,7 @@ def strapped_again(seed: int) -> list[tuple[Session, Analysis]]:
 
 
 def two_days(seed: int) -> list[tuple[Session, Analysis]]:
-    """One body, two visits: what was drawn in the one tells nothing of the other."""
+    """One body, two visits: what was drawn in the one shows nothing of the other."""
     motions = (Standing(), FreeMotion(), Walk(strides=WALK))
     visits = []
     for of_day in (2 * seed, 2 * seed + 1):

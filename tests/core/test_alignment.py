@@ -98,7 +98,7 @@ def test_what_no_chain_ties_is_not_known_and_a_ring_ends() -> None:
     ],
 )
 def test_what_is_off_its_step_beyond_its_limit_or_states_nothing_is_no_change(wrong: dict[str, float | str]) -> None:
-    with pytest.raises(ValueError, match=r"expected|nothing is said"):
+    with pytest.raises(ValueError, match=r"expected|nothing is stated"):
         PartChange(PYLON, **wrong)  # type: ignore[arg-type]  # as the cases have them
 
 

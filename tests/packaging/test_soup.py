@@ -78,6 +78,6 @@ def test_what_is_missing_or_there_twice_is_named(soup: ModuleType, monkeypatch: 
     monkeypatch.setattr(soup, "reported", lambda: {"development": {"names": ["pytest"]}})
     assert list(soup.faults()) == [
         "pytest is there twice",
-        "new-part is locked, and nothing says why",
+        "new-part is locked, and nothing states why",
         "gone is not in the lock",
     ]

@@ -247,7 +247,7 @@ def structure_faults(row: Cells, first: str, second: str, *, is_legs: bool) -> I
 def recomputed_faults(
     row: Cells, means: tuple[Sequence[float], Sequence[float]], speeds: tuple[float, float], spread: Spread
 ) -> Iterator[str]:
-    """What the strides of both means tell otherwise."""
+    """What the strides of both means show otherwise."""
     own = math.hypot(*map(uncertainty, means))
     column, is_legs = row["parameter"], "against_mean" not in row
     sizes = [sum(one) / len(one) for one in means]

@@ -1,4 +1,4 @@
-"""What is said beside a difference: each word has a difference for which it must come, and one for which it must not.
+"""What is stated beside a difference: each word has a difference for which it must come, and one for which it must not.
 
 Figures by hand: an error is 1.96 sqrt(2) sigma, as nothing but attachment lies between two means that are sure.
 """
@@ -120,7 +120,7 @@ def test_without_a_slope_or_another_speed_nothing_is_stated_of_it() -> None:
     assert speed_sentence(STRIDE_LENGTH, Difference(0.2, 0.1, BEYOND)) == ""
 
 
-def test_a_dagger_stands_behind_an_interval_that_rests_on_a_source_that_was_not_read() -> None:
+def test_a_dagger_follows_an_interval_that_rests_on_a_source_that_was_not_read() -> None:
     assert evidence("ankle_range_deg", Difference(30.0, 9.0, BEYOND, is_unverified=True)).endswith("39°. †")
     assert "†" not in evidence("ankle_range_deg", Difference(30.0, 9.0, BEYOND))
 

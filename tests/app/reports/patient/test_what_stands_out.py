@@ -23,7 +23,15 @@ from app.summary.facts import Facts
 from app.summary.measure_sentences import unit_and_decimals
 from app.summary.measures import MEASURES, Measure
 from app.summary.request import AnalysedVisit, ReportRequest
-from app.summary.what_stands_out import MAX_FINDINGS, Candidate, Rank, Since, nothing_found, printed_findings
+from app.summary.what_stands_out import (
+    LEAST_CERTAIN,
+    MAX_FINDINGS,
+    Candidate,
+    Rank,
+    Since,
+    nothing_found,
+    printed_findings,
+)
 from app.wording.measures import name_in_sentence
 from core.body import Joint, Side
 from core.goals import Goal, GoalOf, agreed_by
@@ -570,8 +578,14 @@ def test_every_compared_column_has_a_sentence_on_paper_and_screen_in_every_compa
     assert any(one.column == measure.column and one.stated for one in reported) is not has_other_zero
 
 
-@pytest.mark.parametrize("column", BETWEEN_LEGS)
-def test_every_column_that_is_compared_between_the_legs_has_a_sentence(
+def test_the_least_certain_measure_makes_no_sentence_between_the_legs(monkeypatch: pytest.MonkeyPatch) -> None:
+    (column,) = LEAST_CERTAIN
+    forged(monkeypatch, column)
+    assert not any(one.column == column for one in printed_findings(hip_facts(), None))
+
+
+@pytest.mark.parametrize("column", [one for one in BETWEEN_LEGS if one not in LEAST_CERTAIN])
+def test_every_other_column_that_is_compared_between_the_legs_has_a_sentence(
     monkeypatch: pytest.MonkeyPatch, column: str
 ) -> None:
     forged(monkeypatch, column)

@@ -173,7 +173,7 @@ def test_an_audit_whose_entry_was_changed_or_whose_end_is_missing_is_refused(
     (line,) = capsys.readouterr().out.splitlines()
     longer = line.replace(f" {line.split()[1]} ", " 1000 ")
     assert cli.main(["audit", str(opened.folder), *key, "--since", longer]) == 2
-    assert "entry 1000 is not what the checkpoint tells of, or is missing" in capsys.readouterr().out
+    assert "entry 1000 is not what the checkpoint names, or is missing" in capsys.readouterr().out
     with opened.library.database.rebuilding() as connection:
         connection.exec_driver_sql("DROP TRIGGER audit_no_update")
         connection.exec_driver_sql("UPDATE audit SET action = 'view' WHERE number = 2")

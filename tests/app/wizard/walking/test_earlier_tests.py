@@ -92,13 +92,13 @@ def test_the_result_shows_what_has_changed_and_draws_it(qtbot: QtBot, look: Them
     view = results(look, 14.1, 9.4, 8.9)
     qtbot.addWidget(view)
     view.show()
-    space, error = "\N{NO-BREAK SPACE}", "error (0.20 †)"
+    space, error = "\N{NO-BREAK SPACE}", "error (0.18)"
     assert view.first.text() == "10-metre walk: 1.12 m/s, 8.9 s."
     assert view.then.text() == (
         f"+0.06{space}m/s since 20 Jul, within {error}. +0.41{space}m/s since 20 Jun, beyond {error}."
     )
     assert view.course.isVisible()
-    assert "beyond error (0.20 †)" in [text.text() for text in view.course.findChildren(Text)]
+    assert "beyond error (0.18)" in [text.text() for text in view.course.findChildren(Text)]
 
 
 def test_a_first_test_has_no_course_and_nothing_is_stated_of_a_change(qtbot: QtBot, look: ThemeNotifier) -> None:
