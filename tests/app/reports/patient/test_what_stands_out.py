@@ -224,7 +224,7 @@ def test_a_stride_length_beyond_two_sd_of_its_band(
     reported = [one for one in stated(request_of_demonstration, analysis) if one.startswith("Stride length, ")]
     assert bool(reported) is is_reported
     if is_reported:
-        assert "more than 2 SD above the reference [2] (1.30 ± 0.11 m)." in reported[0]
+        assert "more than 2 SD above the reference [2] (1.30 ± 0.11 m with measurement error)." in reported[0]
 
 
 @pytest.mark.parametrize(
