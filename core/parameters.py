@@ -303,14 +303,15 @@ MOVEMENTS: Mapping[JointKind, tuple[str, ...]] = {  # of a joint, without a zero
     JointKind.HIP: ("hip_range_deg", "hip_abduction_range_deg"),
     JointKind.ANKLE: (PUSH_OFF, "ankle_rocker_deg", "ankle_heel_rocker_deg", "ankle_toes_lifted_deg", ANKLE_RANGE),
 }
+FOOT = ("foot_pitch_at_contact_deg", "foot_heel_rise_deg")  # what people who came twice repeat best
 BETWEEN_LEGS = (  # of hips no error of a difference is known: it is shown in tables and never in a sentence
-    *MOVEMENTS[JointKind.KNEE], *MOVEMENTS[JointKind.ANKLE], STANCE, STEP_TIME, "hip_range_deg"
+    *MOVEMENTS[JointKind.KNEE], *MOVEMENTS[JointKind.ANKLE], STANCE, STEP_TIME, *FOOT, "hip_range_deg"
 )  # fmt: skip
 COMPARED = (  # between walks, visits and legs, as tables have them; those with `most` as goals have them
     *(KNEE, "knee_while_loading_deg", "knee_swing_peak_deg", KNEE_RANGE),
     *(PUSH_OFF, "ankle_rocker_deg", ANKLE_RANGE),
     *("hip_range_deg", "hip_extension_peak_deg", "pelvis_obliquity_range_deg", "pelvis_drop_deg"),
-    *(STANCE, STRIDE_LENGTH, SPEED, CADENCE),
+    *(STANCE, *FOOT, STRIDE_LENGTH, SPEED, CADENCE),
 )
 OF_WALK = (SPEED, CADENCE)  # both legs have the same
 ALIGNED = (  # by an alignment: the bench names those larger than their error
