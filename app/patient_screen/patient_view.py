@@ -63,7 +63,7 @@ def title_of(target: Target) -> str:
 def unit_words(measure: TargetMeasure) -> str:
     """What the bare figure of a measure is, where that is not given by its sign."""
     return {
-        TargetMeasure.STANCE_RATIO: tr("of the time on the other leg"),
+        TargetMeasure.STANCE_RATIO: tr("of the other leg's standing time"),
         TargetMeasure.CADENCE: tr("steps per minute"),
     }.get(measure, "")
 

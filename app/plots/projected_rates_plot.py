@@ -139,7 +139,7 @@ class ProjectedRatesPlot(Themed):
         paired, turned = (100 * share for share in (self._shown.congruence, self._shown.reversed_congruence))
         return (
             tr("As paired: {percent} % agreement").format(percent=f"{paired:.0f}"),
-            tr("One axis reversed: {percent} % agreement").format(percent=f"{turned:.0f}"),
+            tr("With one axis reversed: {percent} % agreement").format(percent=f"{turned:.0f}"),
         )
 
     def _font(self, weight: QFont.Weight) -> QFont:

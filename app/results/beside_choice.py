@@ -34,7 +34,7 @@ class BesideChoice(Choice):
     def __init__(self, look: ThemeNotifier) -> None:
         super().__init__(look, tr("Compare with"))
         self.let_shrink(NARROWEST, WIDEST)  # conditions are typed
-        self.keep_whole(tr("Versus reference"), tr("Legs only"))
+        self.keep_whole(tr("Versus reference"), tr("Left and right only"))
         self._visit: AnalysedVisit | None = None
         self._walks: Mapping[str, Part] = {}  # of this session, each alone
         self._shown = ""
@@ -52,7 +52,7 @@ class BesideChoice(Choice):
         self.clear()
         self.addItem(tr("Versus reference"), Beside.BAND)
         self.setItemData(0, tr("Reference: inner area 1 SD, outer area 2 SD."), Qt.ItemDataRole.ToolTipRole)
-        self.addItem(tr("Legs only"), Beside.LEGS)
+        self.addItem(tr("Left and right only"), Beside.LEGS)
         for name in self._walks if shown in self._walks else ():
             if name != shown:
                 self.addItem(tr("Versus {walk}").format(walk=called.get(name, name)), name)

@@ -48,7 +48,7 @@ def figures_of(found: JointDiagnostics) -> dict[str, FoundFigure]:
     unknown = math.nan
     joint = found.joint
     near, far = segment_name(joint.proximal.segment), segment_name(joint.distal.segment)
-    residual, best = calibration.hinge_residual_rad_s, tr("Angle, axis in use to best fit, {segment}")
+    residual, best = calibration.hinge_residual_rad_s, tr("Angle between axis in use and best fit, {segment}")
     rows = [
         ("data_sets", tr("Data sets, 10 per second"), float(found.excitation.sets), "", 0),
         ("moving_s", tr("Movement used"), found.excitation.moving_s, "s", 1),

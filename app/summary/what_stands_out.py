@@ -340,13 +340,13 @@ def _beyond_band(facts: Facts, bands: tuple[str, str]) -> Iterator[Candidate]:
                 unit, decimals = unit_and_decimals(column)
                 pattern = (
                     tr(
-                        "{measure}, {side}: {value}, more than 2\N{NO-BREAK SPACE}SD below the {group} ({band} with measurement "
-                        "error)."
+                        "{measure}, {side}: {value}, more than 2\N{NO-BREAK SPACE}SD below the {group} "
+                        "({band} with measurement error)."
                     )
                     if away < 0
                     else tr(
-                        "{measure}, {side}: {value}, more than 2\N{NO-BREAK SPACE}SD above the {group} ({band} with measurement "
-                        "error)."
+                        "{measure}, {side}: {value}, more than 2\N{NO-BREAK SPACE}SD above the {group} "
+                        "({band} with measurement error)."
                     )
                 )
                 stated = pattern.format(

@@ -81,7 +81,9 @@ ENDINGS = {  # refusals that lack only their place
 
 
 UNANSWERED = {
-    child.MEMORY: FileRefusedError("SQL", "this query exceeds the memory limit", "Query less data at a time"),
+    child.MEMORY: FileRefusedError(
+        "SQL", "this query was stopped because it needs more memory than allowed", "Query less data at a time"
+    ),
     TIME: FileRefusedError("SQL", "this query exceeds the time limit", "Query less data at a time"),
     CRASH: FileRefusedError("SQL", "this query stopped early; the log has the reason", "Query less data at a time"),
 }

@@ -86,7 +86,7 @@ def read_figures(path: Path) -> OwnFigures:
     FileRefusedError
         The file cannot be read, or is none of this kind.
     """
-    remedy = tr("Choose the {file} that gaitwright repeatability wrote").format(file=FIGURES)
+    remedy = tr("Choose the {file} written by the command “gaitwright repeatability”").format(file=FIGURES)
     try:
         if path.stat().st_size > MOST_BYTES:
             raise FileRefusedError(str(path), tr("this file is no study of repeatability"), remedy)

@@ -133,7 +133,7 @@ def _pages(study: AgreementStudy, patient: Patient, pictures: Mapping[str, Pictu
 def _what_was_compared(study: AgreementStudy) -> str:
     names = dict.fromkeys(walk.reference.file for walk in study.walks if walk.reference is not None)
     stated = tr(
-        "Differences are measured minus reference. Reference: {files}. Walks, numbered as below: {walks}."
+        "Difference: measured value minus reference value. Reference: {files}. Walks, numbered as below: {walks}."
     ).format(
         files=", ".join(typed(name, NAME_LENGTH) for name in names),
         walks=", ".join(f"{k} {typed(w.recording.name, NAME_LENGTH)}" for k, w in enumerate(study.walks, 1)),

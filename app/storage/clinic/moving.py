@@ -368,7 +368,9 @@ def _refuse_difference(one: Database, other: Database, remedy: str) -> None:
         They do not.
     """
     if tables := differing_tables(one, other):
-        what = tr("The copy does not match the original: {tables}").format(tables=", ".join(tables))
+        what = tr("The copy of the library does not match the original. These tables differ: {tables}").format(
+            tables=", ".join(tables)
+        )
         raise LibraryError(what, remedy)
 
 

@@ -84,7 +84,7 @@ def words_beside(page: ResultPage) -> list[str]:
 
 def test_another_walk_is_offered_with_its_condition_and_the_shown_one_is_not(page: ResultPage) -> None:
     offered = [page.beside.itemText(row) for row in range(page.beside.count())]
-    assert offered == ["Versus reference", "Legs only", "Versus B AFO", "Versus last visit"]
+    assert offered == ["Versus reference", "Left and right only", "Versus B AFO", "Versus last visit"]
     show(page, "walk 2")
     assert page.beside.itemText(2) == "Versus A shoes"
 
