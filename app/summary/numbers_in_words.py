@@ -115,8 +115,8 @@ def judged_in_words(found: Difference) -> str:
 def marks_note() -> str:
     """What the marks mean, below a table."""
     return tr(
-        "\N{BLACK CIRCLE} beyond what 95 of 100 healthy people differ by; \N{WHITE CIRCLE} beyond measurement error; "
-        "no mark: may be measurement error."
+        "\N{BLACK CIRCLE} beyond 95 of 100 healthy people, \N{WHITE CIRCLE} beyond measurement error, "
+        "none: may be error."
     )
 
 

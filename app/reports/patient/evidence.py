@@ -246,20 +246,19 @@ def error_table() -> list[Block]:
         (
             ComparisonKind.ATTACHED,
             tr("Two walks, sensors left in place"),
-            tr("variation of strides and walks, drift, synchronisation"),
+            tr("strides, walks, drift, synchronisation"),
         ),
-        (ComparisonKind.LEGS, tr("Left vs right"), tr("as first row, plus attachment per leg, event bias")),
-        (ComparisonKind.STRAPPINGS, tr("Sensors reattached"), tr("as first row, plus attachment")),
-        (ComparisonKind.VISITS, tr("Two visits"), tr("as first row, plus attachment, another day")),
+        (ComparisonKind.LEGS, tr("Left vs right"), tr("the same; attachment, event bias")),
+        (ComparisonKind.STRAPPINGS, tr("Sensors reattached"), tr("the same; attachment")),
+        (ComparisonKind.VISITS, tr("Two visits"), tr("the same; attachment, another day")),
     )
     rows: list[Row] = []
     for kind, name, contains in reported:
         least = (least_error_in_words(column, kind) for column in (KNEE_RANGE, ANKLE_RANGE, STANCE))
         rows.append([name, contains, *least])
     stated = tr(
-        "Minimum values at usual means: variation between strides is added (1.96 standard deviations of the "
-        "difference). On page 1 a change needs 1.2 times as much between visits, 1.65 within a session, with a "
-        "goal as much; legs need more than 95 of 100 healthy people differ by."
+        "Least values at usual means; variation between strides is added. Page 1: changes need 1.2 times as much "
+        "between visits, 1.65 in a session, with a goal as much; legs more than 95 of 100 healthy people differ by."
     )
     return [
         heading(tr("Measurement error by type of comparison")),

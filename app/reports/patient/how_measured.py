@@ -217,10 +217,9 @@ def _accuracy() -> str:
 def _words() -> str:
     return tr(
         "Reference: mean ± 1 and 2 SD of other, healthy people, measured with optical markers; not a "
-        "target. Likely between: 95 of 100 such measurements contain the true difference. For a knee range of "
-        "motion of 60° at two visits the error is at least {knee_error}° (people measured twice and simulated "
-        "strappings). This shows how large a difference is, not whether it is good. Certainty of a joint axis is never "
-        "given below {floor}°, from walking alone never below {walking}°. Knees are measured 9 ± 4 % "
+        "target. Likely between: 95 of 100 such measurements hold the true difference. At two visits the error of a "
+        "60° knee range of motion is at least {knee_error}°. That is a size, not a judgement. Certainty of a joint "
+        "axis is never given below {floor}°, from walking alone never below {walking}°. Knees are measured 9 ± 4 % "
         "too flexed; they are judged as measured and divided by {overread}. Not reported: measured, "
         "but not reliable; the cause is named."
     ).format(

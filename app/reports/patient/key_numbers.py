@@ -41,7 +41,7 @@ def key_numbers(facts: Facts, comparison: Comparison | None) -> list[Block]:
         Column(f"{one.letter} − {other.letter}"),
         Column(tr("likely between"), "23mm"),
         Column(tr("Reference")),
-        Column(tr("L above, R below, ± half the error"), "38mm", is_number=False),
+        Column(tr("L above, R below, ± half the error"), "31mm", is_number=False),
     ]
     cells: list[Row] = [_cells(row) for row in rows]
     stated = []

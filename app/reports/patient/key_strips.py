@@ -9,7 +9,7 @@ from app.theme.colours import PAPER
 from app.wording.body import side_name
 from core.body import Side
 
-STRIP_WIDTH, STRIP_HEIGHT = 36 * MM, 8.4 * MM
+STRIP_WIDTH, STRIP_HEIGHT = 29 * MM, 8.4 * MM
 SCALE_WIDTH, SCALE_HEIGHT = 18 * MM, 9.0
 SCALE_DEG, LABORATORIES_DEG = 15.0, 7.0  # what a scale reaches, and how much laboratories differ in height
 EDGE = 5.0

@@ -11,13 +11,13 @@ from app.summary.conditions import by_hand_in_words
 from app.summary.facts import Facts
 from app.summary.interval_words import interval_in_figures
 from app.summary.numbers_in_words import (
+    MARKS,
     NOTHING,
     away_in_words,
     band_in_figures,
     care_note,
     each_side,
     fixed,
-    in_brief,
     marked,
     marks_note,
     signed,
@@ -55,8 +55,7 @@ def peaks_table(facts: Facts) -> list[Block]:
         Column(tr("Measure, °"), "1fr", is_number=False),
         *(_side_column(facts, side) for side in Side),
         Column(f"{one.letter} − {other.letter}"),
-        Column(tr("Error")),
-        Column(tr("{one} − {other} is").format(one=one.letter, other=other.letter), is_number=False),
+        Column(tr("likely between")),
         Column(tr("Ref. [1]")),
         Column(tr("Against reference"), "27mm", is_number=False),
     ]
@@ -197,11 +196,11 @@ def value_cell(facts: Facts, side: Side, column: str) -> Cell | str:
 
 
 def _difference_cells(facts: Facts, column: str) -> list[Cell | str]:
-    """The difference, its error, and both in words. There is none where either leg is not reported."""
+    """The difference with its mark, and where it is likely to be; none where either leg is not reported."""
     if not all(facts.value(side, column).n for side in Side):
-        return [NOTHING] * 3
+        return [NOTHING] * 2
     found = compare_legs(facts.part, column, facts.first_and_second)
     if not found.is_reported:
-        return [NOTHING] * 3
-    words, error = in_brief(found), interval_in_figures(column, found)
-    return [Cell(signed(found.difference, 1), is_bold=found.exceeds), error, Cell(words, is_bold=found.exceeds)]
+        return [NOTHING] * 2
+    apart = f"{MARKS[found.mark]} {signed(found.difference, 1)}".strip()
+    return [Cell(apart, is_bold=found.exceeds), interval_in_figures(column, found)]

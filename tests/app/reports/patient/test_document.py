@@ -156,7 +156,7 @@ def test_nothing_of_a_page_is_left_for_the_next(
         pages = texts(make_report(required))
         assert len(pages) == 5
         assert "Where values are measured" in pages[1]
-        assert "the first is thin and pale" in " ".join(pages[4].split())
+        assert "the first curve is thin and pale" in " ".join(pages[4].split())
 
 
 @pytest.mark.usefixtures("pseudo_language")

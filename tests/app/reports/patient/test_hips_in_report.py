@@ -146,10 +146,10 @@ def test_the_gates_of_a_hip_stand_with_their_limits_and_what_failed_is_not_repor
 def test_no_difference_of_hips_is_judged_and_rotation_is_named_as_unreadable() -> None:
     facts = hip_facts()
     table = rows(peaks_table(facts))
-    left, right, difference, error, judged, *_ = table["Abduction range of motion"]
+    left, right, difference, likely, *_ = table["Abduction range of motion"]
     assert left.endswith(tuple("0123456789"))
     assert right != left
-    assert (difference != "–", error, judged) == (True, "–", "not judged")
+    assert (difference[0] in "+−", likely) == (True, "–")
     assert (
         "For hips and pelvis the measurement error of a difference is not known: differences are given but not judged"
     ) in stated(peaks_table(facts))
@@ -165,7 +165,7 @@ def test_no_sentence_shows_how_hips_or_pelvis_differ_however_much() -> None:
         return replace(walk, gait={**walk.gait, Side.LEFT: replace(left, parameters=halved)})
 
     facts = hip_facts(rewalked(hip_analysis(), stiffened))
-    assert rows(peaks_table(facts))["Abduction range of motion"][4] == "not judged"
+    assert rows(peaks_table(facts))["Abduction range of motion"][3] == "–"
     words = stated(list(asdict(answer_of(facts)).values())).casefold()
     assert words
     assert not [word for word in ("hip", "pelvis") if word in words]
