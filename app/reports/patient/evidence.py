@@ -6,7 +6,7 @@ from functools import partial
 
 import numpy as np
 
-from app.reports.blocks import Block, Cell, Column, Row, heading, note, table
+from app.reports.blocks import Block, Cell, Column, Row, heading, if_room, note, table
 from app.summary.facts import Facts, joint_of
 from app.summary.numbers_in_words import NOTHING, dagger_note, fixed, least_error_in_words, signed
 from app.summary.quality import slipped_straps
@@ -32,8 +32,9 @@ Criterion = tuple[str, str, Callable[[Joint, JointCalibration], str], str]
 
 
 def evidence(facts: Facts) -> list[Block]:
-    """What each verdict rests on, and how large a difference must be."""
-    return [*evidence_table(facts), *hips_table(facts), *error_table()]
+    """What each verdict rests on, and how large a difference must be, where strides are compared; with hips, if room."""
+    hips, errors = hips_table(facts), error_table() if facts.gait else []
+    return [*evidence_table(facts), *hips, *([if_room(errors)] if hips and errors else errors)]
 
 
 def evidence_table(facts: Facts) -> list[Block]:
