@@ -95,7 +95,7 @@ def test_one_leg_alone_is_not_compared(request_of_demonstration: ReportRequest) 
     pages = shown(request)
     assert list(readable(request)) == ["Left knee", "Left ankle", "Distance"]
     assert "Right knee" not in pages[0]
-    assert "Stride time, s 1.08 ± 0.01 not measured – – –" in pages[2]
+    assert "Stride time, s 1.08 ± 0.01 not measured – – – –" in pages[2]
     assert "Range of motion 61.7 ± 0.8 not measured – – " in pages[1]
     assert not re.search(r"similar|\bvs\b|\bright\b", pages[0].split("Summary")[1].split("Data quality")[0])
 
