@@ -31,7 +31,7 @@ def test_it_writes_tables_curves_figures_and_a_report(folder: Path, capsys: pyte
     assert main(arguments) == 0
     stated = capsys.readouterr().out
     assert "M: RMSE, mean removed, degrees" in stated
-    assert "walk 2: no walk and trial match, so it was not compared" in stated
+    assert "walk 2: no matching counterpart, so it was not compared" in stated
     assert stated.rstrip().endswith("1 recording compared. Research use. Not a medical device.")
     assert json.loads((out / "agreement.json").read_text(encoding="utf-8"))["format"] == "gaitwright-agreement/1"
     with (out / "agreement.csv").open(newline="") as file:

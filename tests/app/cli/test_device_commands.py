@@ -31,7 +31,7 @@ def test_what_is_played_is_listed(kind: str, monkeypatch: pytest.MonkeyPatch) ->
     monkeypatch.setenv(MORE_PORTS, os.pathsep.join(reported[:2]))
     lines = list(list_devices())
     playing.join()
-    assert lines[0] == "Sensors that were heard:"
+    assert lines[0] == "Sensors found:"
     assert "free motion 1: 6 s" in reported
     assert sum(line.startswith("- ") and line.endswith(", simulated") for line in lines) == 2
     assert sum(driver.proof in line for driver in DRIVERS for line in lines) == len(DRIVERS)

@@ -123,7 +123,7 @@ def test_the_report_has_a_page_of_tests_where_there_were_some(visit: AnalysedVis
     stated = str(timed_page(request, facts_of(request)))
     for words in (
         "2-minute walk: distance not measured.",
-        "First third 1.10 m/s, last third 1.05 m/s.",
+        "Speed: 1.10 m/s in the first third, 1.05 m/s in the last third.",
         "1 pause, 3.5 s.",
         "Distance not reported",
         "Third 3",

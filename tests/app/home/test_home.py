@@ -551,7 +551,7 @@ def test_an_operator_is_removed_with_a_change_of_the_key_and_comes_back_with_a_n
     shutil.copy(folder / KEYS, folder.parent / "old.json")
     row()[0].click()
     assert (
-        "Earlier backups keep their old key: anyone who has one can still read it with the old passphrase"
+        "Earlier backups keep their old key: anyone who has such a backup can still read it with the old passphrase"
     ) in page.operators.leaving_words.text()
     page.operators.keep.click()
     assert not page.operators.remove.isVisible()

@@ -172,12 +172,12 @@ def test_other_units_and_broken_frames_are_refused(tmp_path: Path) -> None:
 def test_damaged_xml_is_refused_and_entities_take_no_memory(tmp_path: Path) -> None:
     path = mvnx(tmp_path / "a.mvnx", elements(two(), "sensorFreeAcceleration", "sensorOrientation"))
     path.write_text(path.read_text()[:-100])
-    assert "a.mvnx: this is not a complete XML file" in refusal(path)
+    assert "a.mvnx: the file is not a complete XML file" in refusal(path)
     levels = "".join(f'<!ENTITY e{k} "{f"&e{k - 1};" * 10}">' for k in range(1, 12))
     (tmp_path / "b.mvnx").write_text(
         f'<?xml version="1.0"?><!DOCTYPE mvnx [<!ENTITY e0 "0">{levels}]>'
         '<mvnx version="4"><comment>&e11;</comment></mvnx>'
     )
-    assert "b.mvnx: this is not a complete XML file" in refusal(tmp_path / "b.mvnx")
+    assert "b.mvnx: the file is not a complete XML file" in refusal(tmp_path / "b.mvnx")
     with pytest.raises(FileRefusedError, match="an MVNX file contains all sensors of a trial"):
         mvnx_trial([path, path])

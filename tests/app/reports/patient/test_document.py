@@ -168,14 +168,14 @@ def test_what_explains_the_peaks_takes_no_page_of_its_own(request_of_demonstrati
 def test_a_walk_is_called_as_on_the_screen(request_of_alignments: ReportRequest) -> None:
     assert "walk: C alignment C" in first_page(request_of_alignments)
     two = replace(request_of_alignments, walks=("walk 2", "walk 3"))
-    assert "Compared (C shown here): B alignment B · C alignment C" in first_page(two)
+    assert "Compared: B alignment B · C alignment C (this page shows C)" in first_page(two)
     visit = request_of_alignments.visit
     reported = visit.session.recordings
     alike = tuple(replace(one, condition="shoes" if one.name.startswith("walk") else "") for one in reported)
     same = AnalysedVisit(replace(visit.session, recordings=alike), visit.analysis)
     first = first_page(replace(two, visit=same))
     assert "walk: A3 shoes" in first
-    assert "Compared (A3 shown here): A2 shoes · A3 shoes" in first
+    assert "Compared: A2 shoes · A3 shoes (this page shows A3)" in first
     unnamed = tuple(replace(one, condition="") for one in reported)
     bare = AnalysedVisit(replace(visit.session, recordings=unnamed), visit.analysis)
     assert "walk: walk 3" in first_page(replace(two, visit=bare, walks=("walk 3",)))
@@ -186,7 +186,7 @@ def test_page_one_alone_states_what_was_measured_and_what_differs(
 ) -> None:
     first = first_page(request_of_alignments)
     assert "Knee and ankle of both legs · 6 motion sensors" in first
-    assert "Compared (C shown here): A alignment A · B alignment B · C alignment C" in first
+    assert "Compared: A alignment A · B alignment B · C alignment C (this page shows C)" in first
     assert "Speed A: 1.05, B: 1.16, C: 1.20 m/s: part of a difference may be due to speed." in first
     before = walked_under(request_of_one_leg.visit, request_of_alignments)
     with_one_leg_before = replace(request_of_alignments, earlier=before)
@@ -206,7 +206,8 @@ def test_two_visits_are_compared_by_the_error_of_a_new_attachment(
     page = texts(make_report(replace(request_of_alignments, earlier=alignments)))[4]
     assert "Comparison of visits" in page
     assert "Two visits, sensors reattached" in page
-    assert "9.2" in page
+    # 1.96 x sqrt(2) x hypot(1.2, 0.04 x 60)
+    assert "Differences between walks alone account for 7.4° of knee range of motion" in " ".join(page.split())
 
 
 def test_a_visit_of_another_alignment_is_not_compared_and_the_report_states_so(
@@ -221,7 +222,7 @@ def test_a_visit_of_another_alignment_is_not_compared_and_the_report_states_so(
     request = replace(request_of_alignments, earlier=before)
     assert comparison_of(request) is None
     pages = texts(make_report(request))
-    stated = "has no walk in this condition (alignment C), so it is not compared. It has: alignment A."
+    stated = "has no walk in this condition (alignment C), so it is not compared. Its conditions: alignment A."
     assert sum(stated in " ".join(page.split()) for page in pages) == 1
     assert not any("Two visits, sensors reattached" in page for page in pages)
     same = comparison_of(replace(request, earlier=alignments))

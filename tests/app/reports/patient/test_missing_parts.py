@@ -78,9 +78,9 @@ def test_without_a_zero_no_height_is_reported(request_of_demonstration: ReportRe
         "Absolute angle of all joints: There is no standing reference, so absolute angles are not reported." in pages[0]
     )
     assert "none: no absolute angles" in pages[0]
-    assert "Knee range of motion" in pages[0]
+    assert "Knee flexion, stance to swing" in pages[0]
     assert "° vs reference" not in pages[0]
-    assert "Left knee, ° from its mean" in pages[0]
+    assert "Left knee minus its mean, °" in pages[0]
     assert (
         "It is shifted to the level of each curve to compare shape; the absolute angle is shown beside it"
     ) in pages[0]  # a shape needs no zero
@@ -172,14 +172,14 @@ def test_an_axis_beyond_its_limit_is_marked_and_a_worse_one_not_reported(
     request = with_joints(request_of_demonstration, axis_sd_rad=np.deg2rad(8.0))
     pages = shown(request)
     assert readable(request)["Left knee"] == readable(request)["Right ankle"] == [CARE, CARE, READ]
-    assert "All joints: Calibration certainty is only ±8.0° (limit ±6.5°). Record free motion" in pages[0]
+    assert "All joints: The calibration has an uncertainty of ±8.0° (limit ±6.5°). Record free motion" in pages[0]
     assert "0.9 *" in pages[1]
     assert "*: caution; reason on page 1." in pages[1]
     request = with_joints(request_of_demonstration, Joint.LEFT_ANKLE, axis_sd_rad=np.deg2rad(9.5))
     pages = shown(request)
     assert readable(request)["Left ankle"] == [NOT_REPORTED, NOT_REPORTED, READ]
     assert readable(request)["Left knee"] == [READ] * 3
-    assert "Left ankle: Calibration certainty is only ±9.5° (limit ±9.0°)." in pages[0]
+    assert "Left ankle: The calibration has an uncertainty of ±9.5° (limit ±9.0°)." in pages[0]
     assert beside(request, "Left ankle")[0].startswith("Record free motion")
     assert "*" not in pages[1]
 
@@ -189,7 +189,7 @@ def test_an_uncertain_sign_leaves_the_range_alone(request_of_demonstration: Repo
     assert (
         "All values of left knee except range of motion: Flexion and extension could not be distinguished" in pages[0]
     )
-    assert "Not drawn: left knee, not reported." in pages[1]
+    assert "Not drawn: left knee (not reported)." in pages[1]
     assert "loading (5–30 %) not reported 14.0" in pages[1]
     assert re.search(r"Range of motion 61\.7 ± 0\.8 63\.0", pages[1])
 
@@ -206,14 +206,14 @@ def test_sensors_that_are_no_adjacent_leave_no_number_of_their_joint(
     assert reported["Right ankle"] == [NOT_REPORTED, NOT_REPORTED, CARE]
     assert reported["Left knee"] == reported["Left ankle"] == [READ] * 3
     assert (reported["Left vs right"], reported["Distance"]) == ([READ], [CARE])
-    stated = "Right ankle: Sensor positions could not be confirmed (margin 1.05, required 1.50)."
+    stated = "Right ankle: Sensor positions could not be confirmed (clarity 1.05, required 1.50)."
     assert stated in pages[0].split("Key values")[0]
     assert stated in pages[0].split("Summary")[1].split("Data quality")[0]  # the caveat
     assert stated in pages[1]
     assert re.search(r"Ankle plantarflexion, push-off, ° \d+\.\d ± \d\.\d not reported – – no reference", pages[0])
     ankle = pages[1].split("Ankle: movement ranges")[1].split("Windows in brackets")[0]
     assert ankle.count("not reported") == 10  # four movements, the range, five angles
-    assert "Not drawn: right ankle, not reported." in pages[1]
+    assert "Not drawn: right ankle (not reported)." in pages[1]
     assert "Double support (% gait cycle) not reported" in pages[2]
     assert "not reported" not in "".join(usual[:3]).casefold()
 
@@ -238,10 +238,10 @@ def test_visits_with_different_zeros_are_compared_in_shape_and_range_only(
     assert (
         "The standing reference is missing or of another kind: only range of motion and timing are compared."
     ) in page
-    assert "Left: knee, degrees from its mean (flexion +)" in page
+    assert "Left: knee angle minus its mean, degrees (flexion +)" in page
     assert "Reference mean, ±1 SD" not in page
     assert "Peak knee flexion, swing not reported 58.8 ± 0.9 – – not reported" in page
-    assert re.search(r"Knee range of motion 61\.7 ± 0\.8 61\.7 ± 0\.8 0\.0 \d+\.\d within error", page)
+    assert re.search(r"Knee range of motion 61\.7 ± 0\.8 61\.7 ± 0\.8 0\.0 −\d+ to \+\d+ may be error", page)
     assert "degrees (flexion +" in shown(replace(request_of_demonstration, earlier=visit))[4]
 
 
@@ -259,7 +259,7 @@ def test_gaps_and_slips_are_stated(request_of_demonstration: ReportRequest) -> N
     assert "moved: R shank" in pages[0]
     assert readable(request)["Left ankle"][:2] == [CARE, CARE]
     remarks = pages[3].split("Data quality findings")[1]
-    assert "Gaps over 50 ms take 4.2 % of the strides used (1.0 % at most)." in remarks
+    assert "Signal gaps over 50 ms take up 4.2 % of the strides used (1.0 % at most)." in remarks
     assert "Right leg: Strap moved; strides from 2.0 s on are excluded." in remarks
     assert "more finding on page 4" in pages[0] or "more findings on page 4" in pages[0]
 

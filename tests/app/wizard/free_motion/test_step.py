@@ -414,13 +414,13 @@ def test_two_legs_that_begin_together_are_reported_apart_by_asking(
     assert unplaced._answer == (shanks[0], Side.RIGHT)
     for _ in range(3):
         step.labels.ask_for_side(together)  # the estimator has not taken it yet
-    assert question.notice.text == f"{shanks[0]} set to the right leg."
+    assert question.notice.text == f"{shanks[0]} is now assigned to the right leg."
     assert [button.text() for button in question.buttons if not button.isHidden()] == ["Undo"]
     step.page.answered.emit(1)
     assert step.labels.named is None
     assert "Both legs moved at once" in question.notice.text
     step.page.answered.emit(0)
-    assert question.notice.text == f"{shanks[0]} set to the left leg."
+    assert question.notice.text == f"{shanks[0]} is now assigned to the left leg."
 
 
 def test_a_leg_that_was_named_wrongly_changes_places_when_that_is_undone(
@@ -437,7 +437,7 @@ def test_a_leg_that_was_named_wrongly_changes_places_when_that_is_undone(
     for number in (1, 0):
         step.page.answered.emit(number)
     assert visit.sensors.site_of == worn
-    assert step.page.question.notice.text == f"{shank} set to the left leg."
+    assert step.page.question.notice.text == f"{shank} is now assigned to the left leg."
     step._stop()
     ticks(qtbot, step, step.page.question.isHidden)
 
