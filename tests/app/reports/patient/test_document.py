@@ -191,10 +191,10 @@ def test_page_one_alone_states_what_was_measured_and_what_differs(
     before = walked_under(request_of_one_leg.visit, request_of_alignments)
     with_one_leg_before = replace(request_of_alignments, earlier=before)
     first = first_page(with_one_leg_before)
-    assert "No difference is far enough beyond measurement error to be listed here" in first
+    assert "95 of 100 healthy people differ by less." in first
     first = first_page(request_of_one_leg)
     assert "Knee and ankle of the left leg · 3 motion sensors" in first
-    assert "All judged peaks are within 2 SD of the reference, shifted to the level of each curve." in first
+    assert "All judged peaks are within 2 SD of the reference." in first
     assert "Right, n = 0" not in first
     assert "peaks within 2 SD" in first
     assert "Right knee" not in first
