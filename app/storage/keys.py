@@ -29,6 +29,7 @@ from app.wording.translation import tr
 MIN_PASSPHRASE = 10
 RECOVERY_BYTES = 20
 GROUP = 4  # letters of the recovery key that stand together
+ASKED = 2  # its last groups, which are typed from its sheet
 LETTERS = "0123456789ABCDEFGHJKMNPQRSTVWXYZ"  # Crockford's: no I, L, O, U to be misread
 MISREAD = str.maketrans({"I": "1", "L": "1", "O": "0"})
 BUSY_S = 5.0  # another program's change takes a tenth of it
@@ -364,9 +365,10 @@ def new_recovery_key() -> str:
     return "-".join(letters[k : k + GROUP] for k in range(0, len(letters), GROUP))
 
 
-def is_same_recovery_key(typed: str, printed: str) -> bool:
-    """Whether what was typed back is what was printed; spaces, dashes and misread letters do not count."""
-    return secrets.compare_digest(_letters(typed), _letters(printed))
+def is_end_of_recovery_key(typed: str, printed: str) -> bool:
+    """Whether the last groups of what was printed were typed; spaces, dashes and misread letters do not count."""
+    end = "".join(printed.split("-")[-ASKED:])
+    return secrets.compare_digest(_letters(typed), _letters(end))
 
 
 def _letters(text: str) -> str:

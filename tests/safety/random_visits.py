@@ -37,9 +37,9 @@ class SensibleUser(Hands):
     def _on_first_start(self, page: Any) -> str:
         if page.typed.isVisible():
             self.recovery_key = "-".join(page._key_words.text.split())
-            self.type_into(page.typed.line_edit, self.recovery_key)
+            self.type_into(page.typed.line_edit, "-".join(self.recovery_key.split("-")[-2:]))
             self.press(Key.Key_Return)
-            return "types the key back"
+            return "types the end of the key"
         if not page.make.isEnabled():
             return "waits"
         texts = (OPERATOR, "R. Keys", PASSPHRASE, PASSPHRASE)

@@ -209,11 +209,11 @@ def _do(application: Application, stop: Stop, deed: str) -> None:
 
 
 def _recovery_key(seen: Seen) -> str:
-    """What a user would copy from the paper: groups of letters and figures, in lines."""
+    """What a user would copy from the paper: the last two of the key's groups."""
     for words in seen.words:
         groups = words.split()
         if len(groups) > 4 and all(re.fullmatch("[0-9A-Z]{1,4}", group) for group in groups):
-            return "-".join(groups)
+            return "-".join(groups[-2:])
     raise TourError(f"No recovery key is shown.\n{_in_words(seen)}")
 
 

@@ -43,7 +43,7 @@ class Stop:
         What the screen must say before anything is done.
     does
         One after the other: "press Return" (keys as xdotool names them), "type P-1" ("{home}" is the tour's own
-        folder), "copy key" (types the recovery key that is shown), "to Stop" (presses Tab until a control whose name
+        folder), "copy key" (types the end of the recovery key shown), "to Stop" (presses Tab until a control whose name
         begins with Stop has the focus), "click Stop", "drag 0A09 to L thigh", "await Rerun" (another program's window,
         by its title), "raise Gaitwright" (before all others).
     lingers_s
@@ -141,7 +141,7 @@ KEYBOARD: tuple[Stop, ...] = (
         ),
     ),
     Stop("02-typed", at("FirstStartPage"), ("press Return",)),
-    Stop("03-recovery-key", states("Your recovery key"), ("to Type it", "copy key")),
+    Stop("03-recovery-key", states("Your recovery key"), ("to Last two groups", "copy key")),
     Stop("04-typed-back", states("Your recovery key"), ("press Return",)),
     Stop("05-home", offers("New patient"), ("press ctrl+n",), lingers_s=1.0),
     Stop(

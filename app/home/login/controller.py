@@ -30,7 +30,7 @@ SHORTEST = 10  # as app.storage.keys has it
 
 
 class Entry(QObject):
-    """`entered` comes when the library is open and, where it is new, its recovery key was typed back."""
+    """`entered` comes when the library is open and, where it is new, its recovery key was confirmed."""
 
     entered = Signal(object)  # OpenedState
     uncovered = Signal()
@@ -49,7 +49,7 @@ class Entry(QObject):
         self._cover_of = self._tried = ""
         self._delay: LoginDelay | None = None
         self._sheet: KeySheet | None = None
-        self.first_start = FirstStartPage(look, SHORTEST, _is_same_key)
+        self.first_start = FirstStartPage(look, SHORTEST, _is_end_of_key)
         self.log_in = LogInPage(look, SHORTEST)
         self.join = JoinPage(look)
         self.waiting = WorkingPage(look)
@@ -371,7 +371,7 @@ class Entry(QObject):
 
 
 def _confirming(typed: str) -> "Callable[[OpenedLibrary], None]":
-    """What keeps that the recovery key was typed back; then nobody is asked for it any more."""
+    """What keeps that the recovery key was confirmed; then nobody is asked for it any more."""
 
     def confirm(opened: "OpenedLibrary") -> None:
         from app.storage.opened import slots_of
@@ -394,7 +394,7 @@ def _too_many() -> str:
     return tr("Wrong passphrases were entered before. Wait for the next attempt, or use the recovery key.")
 
 
-def _is_same_key(typed: str, shown: str) -> bool:
-    from app.storage.keys import is_same_recovery_key
+def _is_end_of_key(typed: str, shown: str) -> bool:
+    from app.storage.keys import is_end_of_recovery_key
 
-    return is_same_recovery_key(typed, shown)
+    return is_end_of_recovery_key(typed, shown)

@@ -1,8 +1,8 @@
 """First start: whose library it is, what opens it, and what opens it when that is forgotten.
 
-All on one page. The recovery key is shown once; the way on opens when it has been typed back from the paper or file.
-Where a library was opened here before and is missing, the page reports it, and makes a new one only if that is asked
-for.
+All on one page. The recovery key is shown once; the way on opens when its last two groups have been typed from the
+paper or file. One that was never confirmed is kept nowhere, and is asked for whole. Where a library was opened here
+before and is missing, the page reports it, and makes a new one only if that is asked for.
 """
 
 from collections.abc import Callable
@@ -26,12 +26,12 @@ LONGEST_CODE = 12
 
 
 class FirstStartPage(EntryPage):
-    """`is_same_key` compares the recovery key as it was typed back with the one that was shown."""
+    """`is_end_of_key` compares the groups that were typed with the end of the recovery key that was shown."""
 
     made = Signal(str, str, str)  # code, name, passphrase
     print_requested = Signal(str)  # the recovery key
     save_requested = Signal(str)
-    done = Signal()  # the recovery key was typed back
+    done = Signal()  # the end of the recovery key was typed
     typed_back = Signal(str)  # a recovery key that is not shown here, to be compared with the library's
     renew_requested = Signal()
     put_off = Signal()
@@ -39,9 +39,9 @@ class FirstStartPage(EntryPage):
     join_requested = Signal()  # the library that a clinic's stations share
     look_requested = Signal()  # whether the library that is missing is there now
 
-    def __init__(self, look: ThemeNotifier, shortest: int, is_same_key: Callable[[str, str], bool]) -> None:
+    def __init__(self, look: ThemeNotifier, shortest: int, is_end_of_key: Callable[[str, str], bool]) -> None:
         super().__init__(look)
-        self._shortest, self._is_same_key, self.recovery_key = shortest, is_same_key, ""
+        self._shortest, self._is_end_of_key, self.recovery_key = shortest, is_end_of_key, ""
         self._missing = ""
         self._is_asking = False
         self._missing_title = Text(look, tr("Your library is missing"), size=26, weight=SEMIBOLD, wraps=True)
@@ -86,7 +86,7 @@ class FirstStartPage(EntryPage):
         self._key_words = KeyGroups(look)
         self.print = Button(look, tr("Print"), ButtonKind.SECONDARY, Icon.PRINT)
         self.save = Button(look, tr("Save as a file"), ButtonKind.SECONDARY, Icon.IMPORT)
-        self.typed = Field(look, tr("Type it from the printout or the file"), is_code=True)
+        self.typed = Field(look, "", is_code=True)
         self.go = Button(look, tr("Continue"), ButtonKind.PRIMARY, None, tr("Enter"))
         self.renew = Button(look, tr("Create a new recovery key"))
         self.later = Button(look, tr("Later: ask at next login"), ButtonKind.QUIET, height=44)
@@ -240,6 +240,8 @@ class FirstStartPage(EntryPage):
             part.setVisible(has_key)
         for part in (self._asking_lead, self.renew, self.later):
             part.setVisible(is_asking)
+        whole = tr("Type it from the printout or the file")
+        self.typed.set_label(whole if is_asking else tr("Last two groups, from the printout or the file"))
         self._strength.setText(strength_in_words(self.passphrase.text, self._shortest, self._known))
 
     @property
@@ -287,8 +289,8 @@ class FirstStartPage(EntryPage):
         if self._is_asking:
             self.typed_back.emit(self.typed.text)
             return
-        if not self._is_same_key(self.typed.text, self.recovery_key):
-            self.typed.set_wrong(tr("This does not match the key above. Compare it group by group."))
+        if not self._is_end_of_key(self.typed.text, self.recovery_key):
+            self.typed.set_wrong(tr("These are not the last two groups above. Compare them."))
             self.typed.setFocus()
             return
         self.recovery_key = ""

@@ -16,7 +16,7 @@ from app.storage.files import held, replace_file
 from app.storage.keys import (
     KeyRefusedError,
     KeySlots,
-    is_same_recovery_key,
+    is_end_of_recovery_key,
     new_recovery_key,
 )
 from app.storage.slots import Cost, Slot
@@ -210,8 +210,14 @@ def test_a_mistyped_letter_of_the_recovery_key_is_noticed() -> None:
             wrong = key[:k] + ("2" if letter != "2" else "3") + key[k + 1 :]
             with pytest.raises(KeyRefusedError, match="A character of the recovery key is wrong"):
                 slots.open_with_recovery_key(wrong)
-    assert is_same_recovery_key(key.lower().replace("0", "o").replace("1", "l"), key)
-    assert not is_same_recovery_key(key[:-1], key)
+
+
+def test_nothing_but_the_last_two_groups_confirms_a_key() -> None:
+    key = "0123-4567-89AB-CDEF-GHJK-MNPQ-RSTV-W10Z-Y"
+    for typed in ("W10Z-Y", "w1oz y", " WLOZY "):
+        assert is_end_of_recovery_key(typed, key)
+    for typed in ("", "Y", "W10Z", "W10ZZ", "Y-W10Z", "RSTV-W10Z-Y", key, key[:-1]):
+        assert not is_end_of_recovery_key(typed, key)
 
 
 def test_wrapping_the_same_key_twice_shows_no_likeness() -> None:
