@@ -81,9 +81,7 @@ def test_without_a_zero_no_height_is_reported(request_of_demonstration: ReportRe
     assert "Knee flexion, stance to swing" in pages[0]
     assert "° vs reference" not in pages[0]
     assert "Left knee minus its mean, °" in pages[0]
-    assert (
-        "The reference is shifted to the level of each curve to compare shape"
-    ) in pages[0]  # a shape needs no zero
+    assert ("The reference is shifted to the level of each curve to compare shape") in pages[0]  # a shape needs no zero
     assert "minus its mean, degrees" in pages[1]
     assert "No reference band: without a standing reference there are no absolute angles to compare" in pages[1]
     assert "At initial contact" not in pages[1]
