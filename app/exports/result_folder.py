@@ -126,7 +126,7 @@ def check_place(out: Path, session: Path) -> None:
     out, session = out.resolve(), session.resolve()
     if out == session or session in out.parents:
         what = "this lies inside the session, which stays as it was recorded"
-        raise FileRefusedError(str(out), what, "Choose a folder outside the library for --out")
+        raise FileRefusedError(str(out), what, "Choose a folder outside the session for --out")
     if _is_free(out):
         return
     if read_summary(out / SUMMARY) is None:

@@ -21,7 +21,6 @@ from core.verdicts.measurement_error import Difference, Judgement
 from core.verdicts.model import Verdict
 
 BRIEF = ("knee_stance_to_swing_deg", "knee_while_loading_deg", "ankle_push_off_deg", "stance_percent")
-JUDGED = (Judgement.EXCEEDS_ERROR, Judgement.INSIDE_ERROR)
 MOST_STATED = 3  # sentences about differences; the table has all of them
 
 ERROR = later("Grey: measurement error. It includes {sources}.")
@@ -53,7 +52,7 @@ def unit_behind(measure: Measure) -> str:
 
 def is_judged(row: Compared | SideRow) -> bool:
     """Whether it is known to be larger than its error or inside it."""
-    return row.is_reported and row.difference.judgement in JUDGED
+    return row.is_reported and row.difference.is_judged
 
 
 def interval_of(row: Compared | SideRow) -> str:
@@ -164,7 +163,7 @@ def largest_sentence(row: Compared | SideRow) -> str:
 
 def error_in_words(reported: Sequence[Difference]) -> str:
     """What the error contains, and what of it is not to be relied on."""
-    judged = [found for found in reported if found.error > 0]
+    judged = [found for found in reported if found.is_judged]
     if not judged:
         return ""
     stated = [tr(ERROR).format(sources=sources_in_words(judged))]

@@ -139,7 +139,7 @@ def _strip(row: LegsRow) -> TableCell:
     found = row.difference
     if not found.is_reported:
         return TextCell(tr("difference not reported"), align=CENTRE, size=12, tone="ink2")
-    if not row.is_judged:
+    if not row.difference.is_judged:
         word = tr("too few strides") if found.judgement is Judgement.TOO_FEW_STRIDES else tr("no published error")
         return TextCell(word, align=CENTRE, size=12, tone="ink2")
     return ErrorStrip(found.difference, found.error, SCALE * found.error, is_judged=True, spoken=judged_in_words(found))

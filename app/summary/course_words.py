@@ -70,7 +70,7 @@ def last_in_words(one: LaneChange, kind: LaneKind) -> str:
 
 def judged_in_words(found: Difference, kind: LaneKind) -> str:
     """Whether a change is larger than its error; the dagger marks an error whose source could not be read."""
-    if not found.error > 0:
+    if not found.is_judged:
         return _verdict(found)
     error = fixed(found.error, max(1, decimals(kind.column))) + (f" {DAGGER}" if found.is_unverified else "")
     return tr("{verdict} ({error})").format(verdict=_verdict(found), error=error)
@@ -85,7 +85,7 @@ def since_last_in_words(found: Difference, kind: LaneKind) -> str:
 def _verdict(found: Difference) -> str:
     if found.judgement is Judgement.TOO_FEW_STRIDES:
         return tr("too few strides to judge")
-    if not found.error > 0:
+    if not found.is_judged:
         return tr("not judged")
     return tr("beyond error") if found.exceeds else tr("within error")
 

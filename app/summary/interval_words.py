@@ -73,7 +73,7 @@ def speed_sentence(column: str, found: Difference) -> str:
             if part.speed_change_m_s < 0
             else tr("Of this, about {share} goes with walking {change} m/s faster.")
         )
-    return stated.format(share=share, change=change)
+    return stated.format(share=share, change=change) + (f" {DAGGER}" if part.is_unverified else "")
 
 
 def _edge_decimals(column: str, found: Difference) -> int:

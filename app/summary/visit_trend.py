@@ -38,7 +38,7 @@ def trend_of(found: Comparison, row: Compared) -> Trend:
     """The measure of `row`, which is the change to one visit, over all visits that are compared."""
     values = _values(found, row)
     error = row.difference.error
-    is_judged = row.is_reported and error > 0
+    is_judged = row.is_reported and row.difference.is_judged
     band = (row.other.mean - error, row.other.mean + error) if is_judged else None
     known = [value for value in values if math.isfinite(value)]
     drawn = [*known, *(band or ())]

@@ -43,11 +43,6 @@ class LegsRow:
     band: Band | None
     goals: tuple[Goal, ...] = ()
 
-    @property
-    def is_judged(self) -> bool:
-        """Whether the difference is compared with an error."""
-        return self.difference.is_reported and self.difference.error > 0
-
 
 def what_differs(facts: Facts) -> tuple[LegsRow, ...]:
     """Judged differences by how many errors they are large, then those without an error, then those not reported."""
@@ -57,7 +52,7 @@ def what_differs(facts: Facts) -> tuple[LegsRow, ...]:
 
 def _weight(row: LegsRow) -> tuple[bool, bool, bool, float]:
     """What is reported first is least: measures with goals, then what is judged by how many errors it is large."""
-    return not row.goals, not row.is_judged, not row.difference.is_reported, -row.difference.ratio
+    return not row.goals, not row.difference.is_judged, not row.difference.is_reported, -row.difference.ratio
 
 
 def _row(facts: Facts, column: str) -> LegsRow:

@@ -12,7 +12,7 @@ from app.charts.cycles import is_mean_enough
 from app.summary import quality
 from app.summary.comparison import Compared, Comparison, Contrast, compare_legs
 from app.summary.facts import KINDS, Facts, joint_of, role
-from app.summary.interval_words import evidence
+from app.summary.interval_words import evidence, interval_words
 from app.summary.measure_sentences import (
     CLAUSES,
     Reported,
@@ -86,6 +86,11 @@ _RANKS = {
 }
 FAMILIES = {KNEE_RANGE: KNEE, ANKLE_RANGE: PUSH_OFF}
 LEAST_CERTAIN = ("ankle_toes_lifted_deg",)  # attached again it differs by 3 deg, and simulated healthy legs by more
+STATED_BETWEEN_LEGS = tuple(  # each leg has a zero of its own, so no height is among them
+    column
+    for column in BETWEEN_LEGS
+    if column not in LEAST_CERTAIN and BY_COLUMN[column].rests_on is not QuantityClass.HEIGHT
+)
 FIRST_OF_ALIKE = (KNEE, "knee_while_loading_deg", STANCE, SPEED)
 Topic = tuple[Joint | Side | None, Rank | None, bool]
 """A joint, or a leg and a kind of figure, with the direction: of each, one finding is reported."""
@@ -172,17 +177,26 @@ def _legs_alike(facts: Facts) -> list[str]:
     if len(facts.gait) < len(Side):
         return []
     found = {column: compare_legs(facts.part, column, facts.first_and_second) for column in BETWEEN_LEGS}
-    judged = [column for column, one in found.items() if one.is_judged]
+    judged = [column for column in STATED_BETWEEN_LEGS if found[column].is_judged]
+    unsure = [_unsure(column, found[column]) for column in LEAST_CERTAIN if found[column].exceeds]
     beyond = [column for column in judged if found[column].mark is Mark.ERROR]
     if beyond:
         column = max(beyond, key=lambda one: (not found[one].is_unverified, found[one].ratio))
-        return [leg_beside_leg(facts, column, found[column]), evidence(column, found[column])]
+        return [leg_beside_leg(facts, column, found[column]), evidence(column, found[column]), *unsure]
     shown = [column for column in (KNEE, STANCE) if column in judged] or judged[:1]
     if not shown:
-        return []
+        return unsure
     values = [_both_values(facts, column) for column in shown]
     stated = tr("Left and right are similar: {values}.").format(values=", ".join(values))
-    return [stated, evidence(shown[0], found[shown[0]])]
+    return [stated, evidence(shown[0], found[shown[0]]), *unsure]
+
+
+def _unsure(column: str, found: Difference) -> str:
+    """What tables mark and no finding reports: named, so that legs are not called similar above its mark."""
+    unit, decimals = unit_and_decimals(column)
+    stated = tr("{measure} differs by {size}, {likely}; it is the least certain measure.")
+    size, likely = fixed(abs(found.difference), decimals) + unit, interval_words(column, found)
+    return stated.format(measure=capitalised(name_in_sentence(column)), size=size, likely=likely)
 
 
 def _both_values(facts: Facts, column: str) -> str:
@@ -229,7 +243,7 @@ def judged_differences(facts: Facts, comparison: Comparison | None) -> dict[str,
     """Those that are reported and have an error, whether they exceed it or not: of each column the largest."""
     found: dict[str, Difference] = {}
     for column, one in _differences(facts, comparison):
-        if one.is_reported and one.error > 0 and (column not in found or one.ratio > found[column].ratio):
+        if one.is_judged and (column not in found or one.ratio > found[column].ratio):
             found[column] = one
     return found
 
@@ -285,14 +299,13 @@ def _since_visits(facts: Facts) -> Iterator[Candidate]:
 
 
 def _between_legs(facts: Facts) -> Iterator[Candidate]:
-    """What differs between the legs. Each has a zero of its own, so no height is among them."""
+    """What differs between the legs."""
     if len(facts.gait) < len(Side):
         return
     first, second = facts.first_and_second
-    for column in BETWEEN_LEGS:
+    for column in STATED_BETWEEN_LEGS:
         found = compare_legs(facts.part, column, (first, second))
-        is_certain = column not in LEAST_CERTAIN and BY_COLUMN[column].rests_on is not QuantityClass.HEIGHT
-        if not (is_certain and found.is_reported and found.is_worth_a_sentence):
+        if not (found.is_reported and found.is_worth_a_sentence):
             continue
         is_more = found.difference > 0
         topics = (_topic(first, column, is_more), _topic(second, column, not is_more))

@@ -65,8 +65,7 @@ class LibraryHolder:
                 library, recovery_key = opening()
                 ends.enter_context(library)
                 state = replace(_look_through(library, ends), rollback=self._look_back(library))
-                ends.callback(use, PUBLISHED)
-                use(figures_of(library.library))
+                _judge_by_its_figures(library, ends)
                 self._library, self._ends = library, ends.pop_all()
         except Exception as error:  # reported where the library was to be opened
             is_away = station is not None and isinstance(error, ServerSilentError) and is_station(station)
@@ -211,8 +210,7 @@ class LibraryHolder:
             # held again: where the disk was mounted again meanwhile, the watch held it, which has ended
             ends.enter_context(held_alone(library.folder))
             begin_station(library)
-            ends.callback(use, PUBLISHED)
-            use(figures_of(library.library))
+            _judge_by_its_figures(library, ends)
             self._library, self._ends = library, ends.pop_all()
         if before.data_key is not None and before.data_key is not key:
             before.data_key.wipe()
@@ -287,6 +285,12 @@ class LibraryHolder:
         station = station_of(folder)
         server = server_name(station.database) if station is not None else None
         return LibraryPlace(folder, slots.exists, codes, remembered, is_there_a_keyring(), delay, server)
+
+
+def _judge_by_its_figures(library: OpenedLibrary, ends: ExitStack) -> None:
+    """Judge differences by the library's error figures until it is closed."""
+    ends.callback(use, PUBLISHED)
+    use(figures_of(library.library))
 
 
 def _look_through(library: OpenedLibrary, ends: ExitStack) -> OpenedState:

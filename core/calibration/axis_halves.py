@@ -15,7 +15,7 @@ from core.angles.measure import Geometry, is_anchored, pairs_of
 from core.angles.twist import twist
 from core.body import Joint, Side, knee_of
 from core.calibration import certainty
-from core.calibration.calibrated import standing_twist_of
+from core.calibration.calibrated import Bases, standing_twist_of
 from core.calibration.heading import heading_over, residual_scales
 from core.calibration.identified import Identified, downs_of, walked_axes
 from core.calibration.identify import (
@@ -52,8 +52,6 @@ class AxesOfPart:
 
 
 Parts = tuple[AxesOfPart, AxesOfPart]
-Bases = Mapping[tuple[str, Joint], Basis]
-"""What calibrates each joint in each recording, by the recording's name."""
 Slipped = dict[tuple[str, Side], float]
 """From when on a side's straps are not to be trusted, by the walk's name, on its clock."""
 

@@ -32,7 +32,7 @@ Z95 = 1.96
 ANGLE_PER_LAG_DEG_S = 400.0  # what a joint turns in swing: so much of its angle is at stake per second of lag
 # How many errors a change needs on page one, which chooses among some 16 measures. Between visits 1.5 would find 4
 # points of stance in 14 of 100 healthy people, 1.2 in 61. Within a session errors are small, and 1.2 made a false
-# sentence in 19 of 100 simulated reports: there it is where one in twenty has one (tests.benchmarks.null_differences).
+# sentence in 9 and 6 of 48 simulated reports, these factors in 3 and 3 (tests.benchmarks.null_differences).
 SENTENCE_FACTORS: Mapping[ComparisonKind, float] = {
     ComparisonKind.HALVES: 1.65,
     ComparisonKind.ATTACHED: 1.65,
@@ -136,7 +136,7 @@ class Difference:
     @property
     def is_judged(self) -> bool:
         """Whether it has an interval."""
-        return self.is_reported and self.error > 0
+        return self.judgement in (Judgement.EXCEEDS_ERROR, Judgement.INSIDE_ERROR) and self.error > 0
 
     @property
     def interval(self) -> tuple[float, float]:
@@ -202,10 +202,8 @@ def compare(
     sigma = sigma_of(name, kind)
     if sigma is None:
         return Difference(difference, nothing, Judgement.NO_PUBLISHED_FIGURE)
-    own, (between, is_verified) = (
-        math.hypot(one.uncertainty, other.uncertainty),
-        _between(name, kind, sigma, (one.mean, other.mean), speeds_m_s),
-    )
+    own = math.hypot(one.uncertainty, other.uncertainty)
+    between, is_verified = _apart(name, kind, sigma, (one.mean, other.mean), speeds_m_s)
     limit = healthy_between_legs(name) if kind is ComparisonKind.LEGS else nothing
     error, healthy = Z95 * math.hypot(own, between), math.hypot(limit, Z95 * own)
     exceeds = abs(difference) > error
@@ -239,11 +237,11 @@ def least_error(name: str, kind: ComparisonKind, mean: float) -> tuple[float, bo
     sigma = sigma_of(name, kind)
     if sigma is None:
         return math.nan, True
-    between, is_verified = _between(name, kind, sigma, (mean, mean), UNKNOWN)
+    between, is_verified = _apart(name, kind, sigma, (mean, mean), UNKNOWN)
     return Z95 * between, is_verified
 
 
-def _between(
+def _apart(
     name: str, kind: ComparisonKind, sigma: Sigma, means: tuple[float, float], speeds_m_s: Speeds
 ) -> tuple[float, bool]:
     """What lies between two means, one SD, and whether its source is verified.

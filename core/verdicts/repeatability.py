@@ -21,12 +21,12 @@ from scipy.special import gammaincinv
 
 from core.body import Side
 from core.parameters import CADENCE, SPEED, STEP_TIME, QuantityKind
+from core.verdicts.measurement_error import Z95
 from core.verdicts.norms import MIN_STRIDES_FOR_SD
 from core.verdicts.own_figures import MIN_PEOPLE, PUBLISHED_SIGMAS, Between, OwnEstimate, OwnFigures, OwnSigma
 from core.verdicts.sigmas import HEALTHY_BETWEEN_LEGS, KINDS, Sigma
 from core.verdicts.stride_means import MeanOfStrides
 
-Z95 = 1.96
 # by stride time alone, as the published figure is; swing is the rest of stance
 _LEFT_OUT = (SPEED, STEP_TIME, CADENCE, "swing_percent")
 COLUMNS: Mapping[QuantityKind, tuple[str, ...]] = {

@@ -73,23 +73,21 @@ class Sigma:
 
 
 _TWO_VISITS = Source(
-    "two visits, foot sensors (Felius et al., Zenodo 10.5281/zenodo.11044903)", "25 healthy, 28 after a stroke", 53
+    "two visits, foot sensors (Felius et al., Zenodo 10.5281/zenodo.11044903)", "25 healthy, 23 after a stroke", 48
 )
-_ONE_SESSION = Source(
-    "repeated walks, sensors left on, our analysis of foot sensors", "healthy, another laboratory", 26
-)
+_ONE_SESSION = Source("repeated walks, sensors left on, our analysis of foot sensors", "healthy, another laboratory", 0)
 _KNEES = Source(
     "two days, another maker's sensors (Elias 2018, github arlindoelias/Sensor_reliability_study), and simulated "
     "strappings",
     "14 healthy",
     14,
 )
-_WALKS = Source("repeated walks of one strapping, our recordings and simulation", "19 people, and simulated ones", 19)
+_WALKS = Source("repeated walks of one strapping, simulated", "simulated", 36)
 _ANKLES = Source(
     "no figure of this method: another maker's sensors gave 2.8 to 5 deg on two days", "14 healthy", 14, False
 )
 _OF_KNEE = Source("that of the knee, for want of one of segments", "14 healthy", 14, False)
-_OF_STANCE = Source("that of stance, for want of one", "25 healthy, 28 after a stroke", 53, False)
+_OF_STANCE = Source("that of stance, for want of one", "25 healthy, 23 after a stroke", 48, False)
 _LEGS = Source("left against right, our analysis of walks, natural asymmetry and strapping included", "healthy", 40)
 _BIAS = Source("events 10 ms early or late, alike in every stride of one leg: an estimate", "nobody", 0, False)
 _FUKUCHI = Source("slow to fast walking (Fukuchi et al. 2018, doi 10.7717/peerj.4640)", "42 adults", 42, False)

@@ -21,7 +21,7 @@ from app.summary.differences import comparisons_of, rows_of
 from core.analysis import analyse
 from core.body import Side
 from core.samples import FloatArray
-from core.verdicts.measurement_error import Z95, Judgement, Mark, compare
+from core.verdicts.measurement_error import Z95, Mark, compare
 from core.verdicts.model import READ
 from core.verdicts.sigmas import HEALTHY_BETWEEN_LEGS, ComparisonKind, sigma_of
 from core.verdicts.stride_means import MeanOfStrides, mean_of_strides
@@ -175,8 +175,7 @@ def whole_session(seed: int, change: str, tissue: Tissue) -> Outcome:
     for row in (row for comparison in found for row in rows_of(comparison)):
         if row.side is Side.LEFT and row.parameter == column:
             reported = row.difference
-            is_judged = reported.judgement in (Judgement.EXCEEDS_ERROR, Judgement.INSIDE_ERROR)
-            return Outcome(is_judged, reported.exceeds, reported.difference, reported.error)
+            return Outcome(reported.is_judged, reported.exceeds, reported.difference, reported.error)
     return Outcome(False, False, math.nan, math.nan)
 
 

@@ -317,7 +317,7 @@ def _how_judged(comparison: Comparison) -> str:
     kind = max(kinds, key=list(ComparisonKind).index)
     knee, stance = (least_error_in_words(name, kind) for name in (KNEE_RANGE, STANCE))
     rows = [_compared(comparison, row.measure, row.side, row.part) for row in comparison.rows]
-    reported = [row.difference for row in rows if row.is_reported and row.difference.error > 0]
+    reported = [row.difference for row in rows if row.is_reported and row.difference.is_judged]
     stated = tr(
         "Measurement error: 1.96 times the standard deviation of the difference. It includes "
         "{sources}. Differences between walks alone account for {knee}° of knee range of motion and "

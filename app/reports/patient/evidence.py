@@ -21,6 +21,7 @@ from core.parameters import ANKLE_RANGE, KNEE_RANGE, STANCE
 from core.results import JointCalibration, ZeroKind
 from core.samples import FloatArray
 from core.verdicts.gates import LIMITS, MIN_STRIDES_TO_SPLIT
+from core.verdicts.measurement_error import SENTENCE_FACTORS
 from core.verdicts.model import NOT_MEASURED, GateReason, JointVerdicts
 from core.verdicts.quantities import assessment_of, raw_values
 from core.verdicts.sigmas import ComparisonKind
@@ -258,8 +259,13 @@ def error_table() -> list[Block]:
         least = (least_error_in_words(column, kind) for column in (KNEE_RANGE, ANKLE_RANGE, STANCE))
         rows.append([name, contains, *least])
     stated = tr(
-        "Least values at usual means; variation between strides is added. Page 1: changes need 1.2 times as much "
-        "between visits, 1.65 in a session, with a goal as much; legs more than 95 of 100 healthy people differ by."
+        "Least values at usual means; variation between strides is added. Page 1: changes need {visits} times as much "
+        "between visits, {reattached} after reattaching in a session, {left_on} with sensors left in place, with a "
+        "goal as much; legs more than 95 of 100 healthy people differ by."
+    ).format(
+        visits=fixed(SENTENCE_FACTORS[ComparisonKind.VISITS], 1),
+        reattached=fixed(SENTENCE_FACTORS[ComparisonKind.STRAPPINGS], 1),
+        left_on=fixed(SENTENCE_FACTORS[ComparisonKind.ATTACHED], 2),
     )
     return [
         heading(tr("Measurement error by type of comparison")),

@@ -45,9 +45,9 @@ def key_numbers(facts: Facts, comparison: Comparison | None) -> list[Block]:
     ]
     cells: list[Row] = [_cells(row) for row in rows]
     stated = []
-    if any(row.is_judged for row in rows):
+    if any(row.difference.is_judged for row in rows):
         stated.append(marks_note())
-    if any(row.is_judged and row.difference.is_unverified for row in rows):
+    if any(row.difference.is_judged and row.difference.is_unverified for row in rows):
         stated.append(dagger_note())
     notes = [note(" ".join(stated))] if stated else []
     return [heading(tr("Key values")), table(columns, cells), *notes]

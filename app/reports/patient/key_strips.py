@@ -19,7 +19,7 @@ AROUND = 1.25  # what is drawn reaches so much farther than what lies in it
 def strip(row: LegsRow) -> Picture:
     """The left leg's value above, the right leg's below, each with half of the error as whisker, over the band."""
     values = {side: value.mean for side, value in row.values.items() if math.isfinite(value.mean)}
-    reach = row.difference.error / 2 if row.is_judged else 0.0
+    reach = row.difference.error / 2 if row.difference.is_judged else 0.0
     ends = [value + sign * reach for value in values.values() for sign in (-1, 1)]
     if row.band is not None:
         ends += row.band

@@ -146,7 +146,7 @@ def _first_visit(request: ReportRequest, side: Side) -> _First | None:
         ):
             continue
         since = change(current, walked, KNEE, side)
-        if since is not None and since.is_reported and since.error > 0:
+        if since is not None and since.is_judged:
             return _First(visit, walked, figure.found.mean, since)
     return None
 
@@ -186,7 +186,7 @@ def _texts(
     texts = [[say(later("What this means")), " ".join(meaning)]]
     other_deg = _knee_deg(facts, other)
     between = compare_legs(facts.part, KNEE, (side, other)) if math.isfinite(other_deg) else None
-    if between is not None and between.is_reported and between.error > 0:
+    if between is not None and between.is_judged:
         apart = abs(round(now_deg) - round(other_deg))
         stated = [
             say(LEFT_OTHER if other is Side.LEFT else RIGHT_OTHER).format(other=round(other_deg)),

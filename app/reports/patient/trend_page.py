@@ -128,7 +128,7 @@ def _sentences(lines: Sequence[TrendLine], facts: Facts, visits: int) -> list[st
         if line.since_first is not None and line.since_first.is_worth_a_sentence and line.side in (None, first)
     ]
     if not worth:
-        judged = [line.since_first for line in lines if line.since_first is not None and line.since_first.error > 0]
+        judged = [line.since_first for line in lines if line.since_first is not None and line.since_first.is_judged]
         if not judged:
             return [tr("No change could be judged.")]
         if any(one.exceeds for one in judged):
@@ -162,7 +162,7 @@ def _sentence(line: TrendLine, facts: Facts, visits: int) -> str:
     since = line.since_last
     if since is None or line.before == line.first:
         return wording
-    if not since.error > 0:
+    if not since.is_judged:
         return wording
     words = tr("Since visit {number} {change}, likely {interval}.")
     change, interval = signed(since.difference, decimals) + unit, interval_in_figures(line.column, since)

@@ -19,7 +19,7 @@ from app.summary.numbers_in_words import MARKS
 from app.wording.translation import use_language
 from core.signal.tracks import MAX_REPORTED_GAP_S
 from core.verdicts.gates import LIMITS
-from core.verdicts.measurement_error import Mark, least_error
+from core.verdicts.measurement_error import SENTENCE_FACTORS, Mark, least_error
 from core.verdicts.sigmas import ComparisonKind
 from devices.catalogue import DRIVERS
 
@@ -245,6 +245,36 @@ def test_the_least_differences_are_those_that_errors_are_made_of(language: str) 
     for kind, row in zip(kinds, rows, strict=True):
         cells = [cell.strip().replace(",", ".").replace("Punkte", "points") for cell in row.split(" |")]
         assert cells[1:] == [least_difference(kind, *usual) for usual in USUAL], kind
+
+
+def found_in_nine_of_ten() -> list[list[str]]:
+    """The figures of each measure that `tests.benchmarks.power` has measured, as its README has them."""
+    measured = (ROOT / "tests" / "benchmarks" / "README.md").read_text(encoding="utf-8")
+    rows = re.findall(r"(?m)^\| (\w+) \| (.* % false.*) \|$", measured)
+    figures = {
+        column: [re.sub(r",.*| \(.*?\)", "", cell).strip(" -") for cell in row.split(" | ")] for column, row in rows
+    }
+    return list(figures.values())
+
+
+@pytest.mark.parametrize("language", LANGUAGES)
+def test_the_changes_found_in_nine_of_ten_are_those_that_were_measured(language: str) -> None:
+    head = "| Found in nine of ten |" if language == "en" else "| In neun von zehn gefunden |"
+    table = text_of(language, Topic.NUMBERS).partition(head)[2].partition("\n\n")[0]
+    rows = [re.sub(r"°| points| Punkte| m/s| s\b| m\b", "", row).replace(",", ".") for row in table.splitlines()[2:]]
+    stated = sorted([cell.strip() for cell in row.strip("| ").split(" |")][1:] for row in rows)
+    found = found_in_nine_of_ten()
+    assert len(found) > 12
+    assert stated == sorted(found)
+
+
+@pytest.mark.parametrize("language", LANGUAGES)
+def test_what_page_one_needs_is_what_is_in_force(language: str) -> None:
+    text = text_of(language, Topic.NUMBERS).replace("\n", " ")
+    tables_mark = text.partition("Tables mark" if language == "en" else "Tabellen markieren")[2].replace(",", ".")
+    factors = dict.fromkeys(f"{SENTENCE_FACTORS[kind]:g}" for kind in SENTENCE_FACTORS)
+    pattern = r"(\d\.\d+) times" if language == "en" else r"(\d\.\d+)-Fache"
+    assert sorted(re.findall(pattern, tables_mark.partition("## ")[0])) == sorted(factors)
 
 
 @pytest.mark.parametrize("language", LANGUAGES)

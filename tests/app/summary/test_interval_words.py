@@ -4,6 +4,7 @@ Figures by hand: an error is 1.96 sqrt(2) sigma, as nothing but attachment lies 
 """
 
 import math
+from dataclasses import replace
 
 import pytest
 
@@ -114,6 +115,13 @@ def test_what_goes_with_speed_is_stated_and_what_goes_the_other_way_is_not(
     found = Difference(-4.1, 3.2, BEYOND, by_speed=part)
     assert plain(speed_sentence(STANCE, found)) == stated
     assert plain(evidence(STANCE, found)).endswith(stated or "7.3 % of the gait cycle.")
+
+
+def test_a_dagger_follows_a_slope_whose_source_was_not_read() -> None:
+    part = SpeedPart(-1.8, -2.3, 3.2, 0.1, is_unverified=True)
+    found = Difference(-4.1, 3.2, BEYOND, by_speed=part)
+    assert speed_sentence(STANCE, found).endswith("m/s faster. †")
+    assert "†" not in speed_sentence(STANCE, replace(found, by_speed=replace(part, is_unverified=False)))
 
 
 def test_without_a_slope_or_another_speed_nothing_is_stated_of_it() -> None:

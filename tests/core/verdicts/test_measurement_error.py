@@ -367,7 +367,9 @@ def test_every_sigma_has_a_source_with_its_people() -> None:
     for sigma in found:
         assert sigma.source.text
         assert sigma.source.people
-        assert sigma.is_verified is (sigma.source.n > 1 or sigma.source.people == "one") or not sigma.is_verified
+        # of two, nobody counted the people in what can be read
+        has_people = sigma.source.n > 0 or "another laboratory" in sigma.source.people
+        assert has_people or not sigma.is_verified
     assert {KINDS[name] for name in HEALTHY_BETWEEN_LEGS} <= set(SIGMAS[LEGS])
 
 
