@@ -1,57 +1,36 @@
 """Spoken prompts: every hint has its phrase in each language, and each is spoken once, if at all."""
 
-import math
 import runpy
 import wave
-from collections.abc import Iterator
-from itertools import product
 from pathlib import Path
 
 import pytest
 
 from app.system.prompts import AGAIN_AFTER_S, Prompter
-from app.widgets.hint import Hint
-from app.wizard.free_motion.hints import (
-    first_hint,
-    hint_for,
-    hip_hint,
-    last_hint,
-    played_hint,
-    recorded_hint,
-    unplaced_hint,
-)
 from app.wording.translation import LANGUAGES, use_language
-from core.body import LEG_JOINTS, LEG_SITES, Joint, Side
-from core.live.excitation import Missing, Movement
-from core.live.free_motion import FreeMotionState
-from tests.app.wizard.free_motion.test_hints import motion, state
+from tests.app.wizard.free_motion.test_hints import every_hint
 
 ROOT = Path(__file__).parents[3]
 FOLDER = ROOT / "resources" / "sounds" / "spoken"
 PHRASES = runpy.run_path(str(ROOT / "packaging" / "make_prompts.py"))["PHRASES"]
 ELSEWHERE = {"swapped", "stand-still"}  # of a banner, and of standing
+SPELLED_OUT = {"walk-with-turn", "loose-several"}  # a unit is spoken as a word, a count is not spoken
 LARGEST_BYTES = 3_000_000
-
-
-def every_hint() -> Iterator[Hint]:
-    closed = {joint: state(0.8, 6.0, None, is_closed=True) for joint in LEG_JOINTS}
-    loose = state(0.4, 4.0, None, axis_sd_with_floor_rad=math.radians(6.0), is_closed=True)
-    stuck = {joint: state(3.8, 6.0, is_plateau=True) for joint in LEG_JOINTS}
-    both = frozenset(Side)
-    for movement, site, sides in product(Movement, LEG_SITES, (frozenset[Side](), both)):
-        yield hint_for(Missing(site, movement), sides)
-    yield from (first_hint(), unplaced_hint(), hip_hint(), played_hint(True), played_hint(False))
-    yield last_hint(motion(closed))
-    yield last_hint(motion(stuck))
-    for knees in ((Joint.LEFT_KNEE,), (Joint.RIGHT_KNEE,), (Joint.LEFT_KNEE, Joint.RIGHT_KNEE)):
-        yield last_hint(motion(closed | dict.fromkeys(knees, loose)), both)
-    yield recorded_hint(FreeMotionState())
-    yield recorded_hint(motion({joint: state(9.0, 40.0) for joint in LEG_JOINTS}))
-    yield recorded_hint(motion(closed))
 
 
 def test_every_hint_has_its_phrase_and_no_phrase_is_without_one() -> None:
     assert {hint.phrase for hint in every_hint()} | ELSEWHERE == set(PHRASES)
+
+
+@pytest.mark.parametrize("language", LANGUAGES)
+def test_what_is_spoken_is_what_the_screen_shows(language: str) -> None:
+    use_language(language)
+    try:
+        hints = [hint for hint in every_hint() if hint.phrase not in SPELLED_OUT]
+    finally:
+        use_language("en")
+    differing = {hint.sentence for hint in hints if PHRASES[hint.phrase][language] != f"{hint.sentence}."}
+    assert differing == set()
 
 
 @pytest.mark.parametrize("language", LANGUAGES)

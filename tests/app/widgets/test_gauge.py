@@ -177,7 +177,7 @@ class Recorder(QPainter):
     written: ClassVar[list[tuple[str, QRectF]]] = []
     round: ClassVar[list[QRectF]] = []
 
-    def drawEllipse(self, place: QRectF) -> None:  # type: ignore[override]  # noqa: N802  as above
+    def drawEllipse(self, place: QRectF) -> None:  # type: ignore[override]  # noqa: N802  the form that rings use
         self.round.append(QRectF(place))
         super().drawEllipse(place)
 
