@@ -7,6 +7,7 @@ from PySide6.QtCore import Qt
 from PySide6.QtTest import QTest
 from pytestqt.qtbot import QtBot
 
+from app.system.prompts import prompter
 from app.theme.notifier import ThemeNotifier
 from app.widgets.action_bar import VerbButton
 from app.widgets.body_figure import SensorMark
@@ -121,6 +122,21 @@ def test_sensors_that_look_swapped_take_the_hints_place_and_walking_waits_for_th
     assert (page.swapped.isHidden(), page.band.isHidden()) == (True, False)
     assert walking.cannot_enter != bar.note
     walking.deleteLater()
+
+
+def test_what_the_step_shows_is_spoken_while_it_is_in_sight(
+    visit: Visit, moved: FreeMotionStep, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    asked: list[str] = []
+    monkeypatch.setattr(prompter, "speak", asked.append)
+    moved.enter()
+    visit.sensors.doubt(MIXED)
+    moved.enter()
+    assert asked == ["recorded", "swapped"]
+    moved.leave()
+    for _ in range(9):
+        moved.tick()
+    assert len(asked) == 2
 
 
 def test_gauges_of_swapped_sensors_show_no_figure_but_what_they_need(visit: Visit, moved: FreeMotionStep) -> None:
