@@ -8,7 +8,7 @@ import numpy as np
 from app.charts.cycles import Band
 from app.wording.body import name_of
 from app.wording.translation import capitalised, tr
-from core.body import Joint, JointKind
+from core.body import Joint, JointKind, Side
 from core.samples import FloatArray
 
 MOST_MARKS = 2  # in one chart; more would hide the curves
@@ -26,6 +26,33 @@ class Point:
 
     def lowered(self, height_deg: float) -> "Point":
         return replace(self, angle_deg=self.angle_deg - height_deg)
+
+
+@dataclass(frozen=True, slots=True)
+class CurveLabel:
+    """A named point of a curve with its value beside it: "R 58°", as the tables have it."""
+
+    point: Point
+    text: str
+
+    @property
+    def side(self) -> Side:
+        return self.point.joint.side
+
+    @property
+    def kind(self) -> JointKind:
+        return self.point.joint.kind
+
+    def lowered(self, height_deg: float) -> "CurveLabel":
+        return replace(self, point=self.point.lowered(height_deg))
+
+
+@dataclass(frozen=True, slots=True)
+class HiddenCurve:
+    """A leg whose curve is not reported, in whose place a hatched box has the reason: "±9.8°, limit ±9°"."""
+
+    side: Side
+    reason: str
 
 
 @dataclass(frozen=True, slots=True)

@@ -7,7 +7,7 @@ import numpy as np
 
 from app.charts.axes import ABOUT_MEAN_DEG, USUAL_DEG
 from app.charts.cycles import Band, SideCycle, is_mean_enough, is_spread_enough
-from app.charts.marks import Deviation, Gap
+from app.charts.marks import CurveLabel, Deviation, Gap, HiddenCurve
 from app.wording.translation import tr
 from core.body import JointKind, Side
 from core.gait.cycles import POINTS
@@ -62,8 +62,9 @@ class StrideChart:
     """One joint over 0 to 100 % of the stride.
 
     `chosen` is one stride (101,) over all others. `not_reported` states why nothing of it may be read, and is
-    empty where something may. `alt` are the chart's words, for who cannot see it. `beside`: another walk's means, which
-    the screen draws thin, without spread and toe-off.
+    empty where something may. `alt` are the chart's words, for who cannot see it. `beside`: another walk's means, drawn
+    thin, without spread and toe-off. `labels` are the values at peaks, `deviations` the brackets: a bar between two
+    points with its words. `hidden` are legs whose curve is not reported.
     """
 
     axis: Axis
@@ -77,6 +78,8 @@ class StrideChart:
     not_reported: str = ""
     deviations: tuple[Deviation, ...] = ()
     gaps: tuple[Gap, ...] = ()
+    labels: tuple[CurveLabel, ...] = ()
+    hidden: tuple[HiddenCurve, ...] = ()
 
     @property
     def is_comparison(self) -> bool:

@@ -5,7 +5,7 @@ from collections.abc import Mapping
 import numpy as np
 
 from app.charts.cycles import Band, is_mean_enough
-from app.charts.marks import BAND_SDS, Deviation, Gap, Point, extreme_of, gaps_outside, laid_at_height_of
+from app.charts.marks import BAND_SDS, CurveLabel, Deviation, Gap, Point, extreme_of, gaps_outside, laid_at_height_of
 from app.summary.comparison import Comparison
 from app.summary.facts import KINDS, Facts, joint_of
 from app.summary.numbers_in_words import fixed
@@ -19,13 +19,33 @@ from app.summary.what_stands_out import (
     ranked_findings,
 )
 from app.wording.translation import tr
-from core.body import Joint, Side
+from core.body import Joint, JointKind, Side
 from core.parameters import BY_COLUMN, QuantityClass
 from core.samples import FloatArray
 from core.verdicts.norms import KNEE_OVERREAD
-from core.verdicts.quantities import EXCURSIONS_BY_COLUMN
+from core.verdicts.quantities import EXCURSIONS_BY_COLUMN, WINDOWS
 
+LABELLED = {  # peaks whose values are on the curves
+    JointKind.KNEE: ("knee_swing_peak_deg",),
+    JointKind.ANKLE: ("ankle_stance_dorsiflexion_deg", "ankle_push_off_plantarflexion_deg"),
+}
 CONTACT, ALL = (0.0, 0.0), (0.0, 100.0)  # percent of the stride
+
+
+def labels_of(facts: Facts, kind: JointKind) -> list[CurveLabel]:
+    """The peaks of each leg's curve with the values that the tables have: "R 58°"; none where a peak is not reported.
+
+    Degrees as measured: who draws a curve about its mean lowers its labels with it, and states no value.
+    """
+    found: list[CurveLabel] = []
+    for column in LABELLED.get(kind, ()):
+        window = WINDOWS[column]
+        for side in Side:
+            value, curve = facts.value(side, column), facts.measured_curve_deg(side, kind)
+            if is_mean_enough(value.n) and np.isfinite(curve).all() and not facts.is_no_peak(side, column):
+                at = extreme_of(kind.of(side), curve, window.first, window.last, is_maximum=window.is_maximum)
+                found.append(CurveLabel(at, f"{side.letter} {fixed(value.mean, 0)}°"))
+    return found
 
 
 def deviations_of(facts: Facts) -> list[Deviation]:
