@@ -10,10 +10,10 @@ from PySide6.QtWidgets import QHBoxLayout, QSizePolicy
 from app.summary.drawn_legs import HALF_WIDTHS_M
 from app.summary.mean_legs import MeanLegs
 from app.theme.icons import Icon
+from app.theme.leg_chip import CHIP, paint_chip
 from app.theme.notifier import ThemeNotifier
 from app.widgets.button import Button, ButtonKind
 from app.widgets.card import Card
-from app.widgets.chip import CHIP, paint_chip
 from app.widgets.limb import limb_outline
 from app.widgets.segmented import Segmented
 from app.widgets.text import MEDIUM, SEMIBOLD, Text

@@ -20,7 +20,7 @@ from app.summary.conditions import Part, conditions_of
 from app.summary.course_lanes import CourseVisit
 from app.summary.data_quality import data_quality, quality_without_walk
 from app.summary.facts import Facts
-from app.summary.marks_on_curves import deviations_of, gaps_of
+from app.summary.marks_on_curves import deviations_of, gaps_of, labels_of
 from app.summary.mean_legs import mean_legs
 from app.summary.reference_bands import age_and_height
 from app.summary.request import AnalysedVisit, default_walks
@@ -192,7 +192,7 @@ class ResultPage(Themed):
     def _fit_table(self) -> None:
         """Show as many rows of what differs as leave the charts their room."""
         frames = self.cycles.charts.frames
-        is_not_reported = any(panel.text for frame in frames for panel in frame.not_reported.values())
+        is_not_reported = any(frame.not_reported for frame in frames)
         taken = BESIDE_TABLE + (NOT_REPORTED if is_not_reported else 0) + (NOTE if self.cycles.by_hand.text() else 0)
         taken += PELVIS if self.show_legs.isChecked() and len(frames) > len(LEG_KINDS) else 0
         self.differs.set_room(self._height - taken)
@@ -435,8 +435,7 @@ class ResultPage(Themed):
         is_beside = view == ANSWER and (has_hips or (room.has_two_charts and (room.is_spacious or not has_legs)))
         is_crowded = has_hips and (has_legs or not room.is_spacious)
         charts.set_side_by_side(is_beside)
-        charts.set_tight(is_tight=is_crowded, is_narrow=is_crowded and is_beside and (room.is_narrow or has_legs))
-        charts.set_brief(room.is_compact or view == STRIDES or is_crowded)
+        charts.set_tight(is_tight=is_crowded)
         self.cycles.set_notes_shown(is_answer)
         self.strides.setVisible(view == STRIDES)
         self._show_strides()
@@ -498,6 +497,7 @@ class ResultPage(Themed):
         else:
             self.key_figures.show_figures(key_figures_beside(key_figures(facts), found))
             charts.show_marks(changes_on_curves(found))
+        charts.show_labels([label for kind in facts.kinds for label in labels_of(facts, kind)])
         self.differs.show_facts(facts, found)
         self._show_answer()
         self._fit_table()

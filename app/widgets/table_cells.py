@@ -8,8 +8,8 @@ from PySide6.QtCore import QPointF, QRectF, Qt
 from PySide6.QtGui import QColor, QFont, QFontMetrics, QPainter
 
 from app.theme.icons import Icon, paint_icon
+from app.theme.leg_chip import CHIP, paint_chip
 from app.theme.theme import Theme
-from app.widgets.chip import CHIP, paint_chip
 from app.widgets.text import REGULAR
 from core.body import Side
 

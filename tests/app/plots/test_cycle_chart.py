@@ -11,7 +11,8 @@ from app.charts.axes import ANKLE_DEG, KNEE_DEG
 from app.charts.cycles import SideCycle
 from app.charts.marks import Deviation, Gap, Point
 from app.charts.stride_chart import toe_off_labels
-from app.plots.cycle_chart import CycleChart, CycleCharts
+from app.plots.cycle_chart import CycleChart
+from app.plots.cycle_charts import CycleCharts
 from app.summary.reference_bands import reference_curves
 from app.theme.notifier import ThemeNotifier
 from core.body import Joint, Side
