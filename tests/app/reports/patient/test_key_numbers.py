@@ -52,7 +52,7 @@ def test_a_row_shows_both_legs_their_difference_its_error_and_whether_it_exceeds
     analysis = with_more(request_of_demonstration.visit.analysis, Side.LEFT, "knee_stance_to_swing_rad", -20.0)
     stated = cells(facts(request_of_demonstration, analysis), 0)
     assert stated[:4] == ["Knee flexion, stance to swing, °", "40.7 ± 0.8", "62.0 ± 1.0", "● \u221221.3"]
-    assert stated[4] == "\u221228 to \u221214"  # hypot(1.2, 0.04 * 40.7) and hypot(1.2, 0.04 * 62): 6.7; clock 0.1
+    assert stated[4] == "\u221229 to \u221214"  # hypot(1.2, 0.043 * 40.7) and hypot(1.2, 0.043 * 62): 7.1, with clocks 7.4
     assert stated[5:] == ["no reference", ""]
     assert is_bold(facts(request_of_demonstration, analysis), 0)
     assert not is_bold(facts(request_of_demonstration), 0)
