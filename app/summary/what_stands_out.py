@@ -178,7 +178,7 @@ def _legs_alike(facts: Facts) -> list[str]:
         return []
     found = {column: compare_legs(facts.part, column, facts.first_and_second) for column in BETWEEN_LEGS}
     judged = [column for column in STATED_BETWEEN_LEGS if found[column].is_judged]
-    unsure = [_unsure(column, found[column]) for column in LEAST_CERTAIN if found[column].exceeds]
+    unsure = [unsure_sentence(column, found[column]) for column in LEAST_CERTAIN if found[column].exceeds]
     beyond = [column for column in judged if found[column].mark is Mark.ERROR]
     if beyond:
         column = max(beyond, key=lambda one: (not found[one].is_unverified, found[one].ratio))
@@ -191,7 +191,7 @@ def _legs_alike(facts: Facts) -> list[str]:
     return [stated, evidence(shown[0], found[shown[0]]), *unsure]
 
 
-def _unsure(column: str, found: Difference) -> str:
+def unsure_sentence(column: str, found: Difference) -> str:
     """What tables mark and no finding reports: named, so that legs are not called similar above its mark."""
     unit, decimals = unit_and_decimals(column)
     stated = tr("{measure} differs by {size}, {likely}; it is the least certain measure.")

@@ -144,7 +144,7 @@ def test_a_lane_states_every_value_with_its_day_and_unit() -> None:
     stance = lane_in_words(lane(found, STANCE_LANE), visits)
     assert stance == (
         "Stance, left minus right: \N{MINUS SIGN}4.0 percent of the gait cycle on 20 Jun,"
-        " 0.0 percent of the gait cycle on 20 Nov. +4.0 since 20 Jun, not judged."
+        " 0.0 percent of the gait cycle on 20 Nov. +4.0 since 20 Jun, within error (5.2)."
     )
     assert visit_in_words(0, found, visits) == (
         "20 Jun. Walking speed: 0.71 metres per second. Knee flexion, stance to swing, "
