@@ -53,7 +53,7 @@ BELOW_MARK = 11.0  # of a plot's top, so that why it is not reported does not ru
 SIZE_OF_WORDS, PER_LETTER = 7.0, 0.6  # a letter's width on its height; an SVG cannot be asked
 
 
-class _Paper(Frame):
+class PaperFrame(Frame):
     """What lies beyond the axis is drawn at its edge."""
 
     def y(self, angle_deg: FloatArray | float) -> FloatArray:
@@ -62,7 +62,7 @@ class _Paper(Frame):
 
 def frame_of(chart: StrideChart, plot_width: float) -> Frame:
     """Where the chart's plot lies on its picture, points."""
-    return _Paper(LEFT_MARGIN, TOP + TOP_LABELS, plot_width, 0.75 * plot_width, chart.axis.low, chart.axis.high)
+    return PaperFrame(LEFT_MARGIN, TOP + TOP_LABELS, plot_width, 0.75 * plot_width, chart.axis.low, chart.axis.high)
 
 
 def compared_look(k: int, count: int, side: Side) -> tuple[str, float]:
@@ -90,11 +90,11 @@ def draw(chart: StrideChart, plot_width: float) -> Picture:
     foot = NARROW_FOOT if is_narrow else FOOT
     parts = [text(0, 8, chart.title, 7.6, weight=600)]
     if chart.not_reported:
-        parts += _hatches(frame) + _axes(frame, chart.axis, is_narrow=is_narrow) + _why_not_reported(frame, chart)
+        parts += hatches(frame) + _axes(frame, chart.axis, is_narrow=is_narrow) + _why_not_reported(frame, chart)
         alt = " ".join(filter(None, [chart.alt, f"{_not_reported_word()}. {chart.not_reported}"]))
         return picture(parts, frame.right + RIGHT_MARGIN, frame.bottom + foot, alt)
     if chart.band is not None:
-        parts += _band(frame, chart.band)
+        parts += band_on_paper(frame, chart.band)
     parts += _axes(frame, chart.axis, is_narrow=is_narrow)
     parts += _toe_offs(frame, [one for one in chart.curves if not one.is_bare], is_narrow=is_narrow)
     drawn = [one for one in chart.curves if not one.is_bare]
@@ -169,7 +169,8 @@ def _points_of(frame: Frame, chart: StrideChart, places: Sequence[MarkPlace]) ->
     return taken
 
 
-def _band(frame: Frame, band: Band) -> list[str]:
+def band_on_paper(frame: Frame, band: Band) -> list[str]:
+    """Mean, 1 and 2 SD, with edges that survive a photocopier."""
     x, mean, sd = frame.x(PERCENT), band.mean_deg, band.sd_deg
     return [
         area(x, frame.y(mean - 2 * sd), frame.y(mean + 2 * sd), PAPER.band_2sd, PAPER.band_2sd_edge, 0.35),
@@ -182,7 +183,7 @@ def _not_reported_word() -> str:
     return verdict_alone(Verdict.NOT_REPORTED)
 
 
-def _hatches(frame: Frame) -> list[str]:
+def hatches(frame: Frame) -> list[str]:
     """Hatching over the whole plot, so that nobody takes it for a curve."""
     parts = []
     for along in np.arange(-frame.height, frame.width, HATCH_APART):
