@@ -8,6 +8,8 @@ from app.charts.cycles import Band, is_mean_enough
 from app.charts.marks import BAND_SDS, CurveLabel, Deviation, Gap, Point, extreme_of, gaps_outside, laid_at_height_of
 from app.summary.comparison import Comparison
 from app.summary.facts import KINDS, Facts, joint_of
+from app.summary.headline import Headline, Rule, rounded
+from app.summary.measure_sentences import unit_and_decimals
 from app.summary.numbers_in_words import fixed
 from app.summary.what_differs import LegsRow, what_differs
 from app.summary.what_stands_out import (
@@ -18,6 +20,7 @@ from app.summary.what_stands_out import (
     printed_findings,
     ranked_findings,
 )
+from app.wording.dates import short_date
 from app.wording.translation import tr
 from core.body import Joint, JointKind, Side
 from core.parameters import BY_COLUMN, QuantityClass
@@ -29,6 +32,7 @@ LABELLED = {  # peaks whose values are on the curves
     JointKind.KNEE: ("knee_swing_peak_deg",),
     JointKind.ANKLE: ("ankle_stance_dorsiflexion_deg", "ankle_push_off_plantarflexion_deg"),
 }
+MARKED = (QuantityClass.SHAPE, QuantityClass.EXCURSION)
 CONTACT, ALL = (0.0, 0.0), (0.0, 100.0)  # percent of the stride
 
 
@@ -46,6 +50,48 @@ def labels_of(facts: Facts, kind: JointKind) -> list[CurveLabel]:
                 at = extreme_of(kind.of(side), curve, window.first, window.last, is_maximum=window.is_maximum)
                 found.append(CurveLabel(at, f"{side.letter} {fixed(value.mean, 0)}°"))
     return found
+
+
+def bracket_of(facts: Facts, headline: Headline) -> Deviation | None:
+    """The movement that the headline is of, on its leg's curve, with its numbers; None where it is of none.
+
+    Degrees as measured: who draws a curve about its mean lowers its bracket with it.
+    """
+    column, side = headline.column, headline.side
+    kind = next((kind for kind in facts.kinds if column.startswith(kind)), None)
+    if kind is None or side is None or BY_COLUMN[column].rests_on not in MARKED:
+        return None
+    curve, value = facts.measured_curve_deg(side, kind), facts.value(side, column)
+    if not is_mean_enough(value.n) or not np.isfinite(curve).all():
+        return None
+    now, more = _numbers_of(facts, headline, value.mean)
+    high, low = windows_of(column)
+    joint, unit = kind.of(side), unit_and_decimals(column)[0]
+    return Deviation(
+        extreme_of(joint, curve, *low, is_maximum=False),
+        extreme_of(joint, curve, *high, is_maximum=True),
+        words=f"{side.letter} {now}{unit}",
+        more=more,
+        is_larger_than_error=True,
+    )
+
+
+def _numbers_of(facts: Facts, headline: Headline, now: float) -> tuple[str, str]:
+    """The headline's value and what it is compared with, rounded as the headline has them."""
+    column, side, since = headline.column, headline.side, headline.since
+    assert side is not None
+    unit = unit_and_decimals(column)[0]
+    if headline.rule in (Rule.LEGS, Rule.LEGS_BEYOND_ERROR):
+        other = facts.value(side.other, column).mean
+        _, value, size = rounded(column, (other, now, abs(now - other)), is_other_shown=False)
+        pattern = tr("{size} less than {other}") if now < other else tr("{size} more than {other}")
+        return value, pattern.format(size=size + unit, other=side.other.letter)
+    walked = since.course.condition(facts.condition) if since is not None and since.course is not None else None
+    figure = walked.figure(column, side) if walked is not None else None
+    if since is None or figure is None or not figure.is_reported:
+        return fixed(now, 0), ""
+    then, value, _ = rounded(column, (figure.found.mean, now, abs(now - figure.found.mean)))
+    return value, f"{short_date(since.day)}: {then}{unit}"
 
 
 def deviations_of(facts: Facts) -> list[Deviation]:
@@ -99,10 +145,7 @@ def _is_between(one: Candidate, rows: Mapping[str, LegsRow]) -> bool:
 
 
 def _has_extremes(row: LegsRow, kind: str) -> bool:
-    return row.column.startswith(kind) and BY_COLUMN[row.column].rests_on in (
-        QuantityClass.SHAPE,
-        QuantityClass.EXCURSION,
-    )
+    return row.column.startswith(kind) and BY_COLUMN[row.column].rests_on in MARKED
 
 
 def _on_leg(facts: Facts, row: LegsRow, kind: str) -> Deviation:

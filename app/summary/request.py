@@ -61,6 +61,8 @@ class ReportRequest:
         every page.
     made_at
         When the report is made; must know its time zone.
+    comment, comment_by
+        The clinical comment that was confirmed, and who confirmed it; empty: none is printed.
     earlier
         A visit before this one to compare with, in place of the conditions.
     course
@@ -80,6 +82,7 @@ class ReportRequest:
     earlier: AnalysedVisit | None = None
     course: tuple[CourseVisit, ...] = ()
     patient_language: str = ""
+    comment_by: str = ""
 
     def __post_init__(self) -> None:
         if self.made_at.tzinfo is None:
