@@ -37,7 +37,8 @@ class TileChange:
     rises: bool | None = None
     is_beyond_error: bool = False
     brief: str = ""
-    """Without what the arrow states, where room is short."""
+    """Without what the arrow states, where room is short; `size` alone where it is shorter."""
+    size: str = ""
 
 
 @dataclass(frozen=True, slots=True)
@@ -170,7 +171,9 @@ def _of_both(values: list[TileValue], changes: list[TileChange]) -> TileChange:
         return known[0][1] if known else TileChange("")
     value, leading = max(rising, key=lambda pair: pair[1].is_beyond_error)
     letter = value.side.letter if value.side is not None else ""
-    return replace(leading, words=f"{letter} {leading.words}", brief=f"{letter} {leading.brief}")
+    return replace(
+        leading, words=f"{letter} {leading.words}", brief=f"{letter} {leading.brief}", size=f"{letter} {leading.size}"
+    )
 
 
 def _beside_other(facts: Facts, side: Side) -> TileChange | None:
@@ -237,9 +240,9 @@ def _change(column: str, found: Difference, day: str) -> TileChange:
     size = signed(found.difference, DECIMALS[column]) + ("°" if column == KNEE else "")
     brief = tr("{change} since {day}").format(change=size, day=day)
     if not found.is_judged:
-        return TileChange(brief, brief=brief)
+        return TileChange(brief, brief=brief, size=size)
     words = brief if found.exceeds else tr("{change} since {day}, within error").format(change=size, day=day)
-    return TileChange(words, found.difference > 0, found.exceeds, brief)
+    return TileChange(words, found.difference > 0, found.exceeds, brief, size)
 
 
 def _with_goals(facts: Facts, tile: Tile, *kinds: GoalOf) -> Tile:
