@@ -94,7 +94,6 @@ def _not_reported() -> str:
 
 def _axes(frame: Frame, chart: StrideChart) -> list[str]:
     axis = chart.axis
-    grey = {"fill": PAPER.note}
     parts = [line(frame.left, float(frame.y(0)), frame.right, float(frame.y(0)), PAPER.note, 0.5)]
     parts.append(line(frame.left, frame.top, frame.left, frame.bottom, PAPER.note, 0.6))
     parts.append(line(frame.left, frame.bottom, frame.right, frame.bottom, PAPER.note, 0.6))
@@ -102,14 +101,16 @@ def _axes(frame: Frame, chart: StrideChart) -> list[str]:
     for degrees in np.arange(first, axis.high + 1, axis.label_every):
         y = float(frame.y(degrees))
         parts.append(line(frame.left - 3, y, frame.left, y, PAPER.note, 0.6))
-        parts.append(text(frame.left - 6, y + 3.2, angle_in_words(float(degrees)), SMALL, anchor="end", **grey))
+        parts.append(
+            text(frame.left - 6, y + 3.2, angle_in_words(float(degrees)), SMALL, anchor="end", fill=PAPER.note)
+        )
     for percent in range(0, 101, 20):
         x = float(frame.x(percent))
         parts.append(line(x, frame.bottom, x, frame.bottom + 3, PAPER.note, 0.6))
         stated = f"{percent}" if percent < 100 else "100 %"
-        parts.append(text(x, frame.bottom + 12.5, stated, SMALL, anchor="middle", **grey))
+        parts.append(text(x, frame.bottom + 12.5, stated, SMALL, anchor="middle", fill=PAPER.note))
     middle = (frame.left + frame.right) / 2
-    parts.append(text(middle, frame.bottom + 24.5, tr("Gait cycle"), SMALL, anchor="middle", **grey))
+    parts.append(text(middle, frame.bottom + 24.5, tr("Gait cycle"), SMALL, anchor="middle", fill=PAPER.note))
     return parts
 
 
@@ -121,7 +122,9 @@ def _toe_offs(frame: Frame, chart: StrideChart) -> list[str]:
         dash = "2.6 1.7" if one.side is Side.RIGHT else ""
         parts.append(line(x, frame.top - 9, x, frame.bottom, CURVES[one.side], TOE_OFF, dash))
         at, anchor = (x - 3, "end") if k == 0 else (x + 3, "start")
-        parts.append(text(at, frame.top - 3, labels[one.side], SMALL, anchor=anchor, weight=500, fill=LETTERS[one.side]))
+        parts.append(
+            text(at, frame.top - 3, labels[one.side], SMALL, anchor=anchor, weight=500, fill=LETTERS[one.side])
+        )
     return parts
 
 
@@ -158,6 +161,11 @@ def chip(x: float, y: float, side: Side, size: float = CHIP) -> str:
     fill = PAPER.paper if is_left else LETTERS[side]
     letter = text(x + size / 2, y + size / 2 + 3.2, side.letter, SMALL, anchor="middle", weight=600, fill=fill)
     return f"<rect {place} {look}/>{letter}"
+
+
+def chip_picture(side: Side, size: float, words: str = "") -> Picture:
+    """The same by itself; without words it is decoration."""
+    return picture([chip(0, 0, side, size)], size, size, words)
 
 
 def _words(frame: Frame, layout: Layout) -> list[str]:

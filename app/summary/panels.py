@@ -220,7 +220,7 @@ def band_in_words(facts: Facts, *, is_at_height: bool) -> str:
             )
         )
     elif JointKind.HIP in facts.kinds:
-        stated.append(tr("At the hip, the reference has another zero and is shown on page 1 only."))
+        stated.append(tr("At the hip, the reference has another zero and is not shown."))
     if facts.bands.are_curves_of_other_ages:
         stated.append(tr(OTHER_AGES))
     if not facts.sides_with_band.issuperset(facts.gait):

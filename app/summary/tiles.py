@@ -39,6 +39,7 @@ class TileChange:
     brief: str = ""
     """Without what the arrow states, where room is short; `size` alone where it is shorter."""
     size: str = ""
+    day: str = ""
 
 
 @dataclass(frozen=True, slots=True)
@@ -82,6 +83,17 @@ class Tile:
     goal: str = ""
     why: str = ""
     goal_words: str = ""
+
+    @property
+    def last(self) -> str:
+        """The values at the visit that the change is since: "23 Sep 48°"; empty without one."""
+        known = [value for value in self.values if math.isfinite(value.last)]
+        if not known or not self.change.day:
+            return ""
+        letters = [f"{one.side.letter}\u00a0" if one.side is not None and len(self.values) > 1 else "" for one in known]
+        write, unit = signed if self.column == STANCE else fixed, "°" if self.column == KNEE else ""
+        values = (write(value.last, DECIMALS[self.column]) + unit for value in known)
+        return " ".join([self.change.day, *map("".join, zip(letters, values, strict=True))])
 
     @property
     def in_words(self) -> str:
@@ -240,9 +252,9 @@ def _change(column: str, found: Difference, day: str) -> TileChange:
     size = signed(found.difference, DECIMALS[column]) + ("°" if column == KNEE else "")
     brief = tr("{change} since {day}").format(change=size, day=day)
     if not found.is_judged:
-        return TileChange(brief, brief=brief, size=size)
+        return TileChange(brief, brief=brief, size=size, day=day)
     words = brief if found.exceeds else tr("{change} since {day}, within error").format(change=size, day=day)
-    return TileChange(words, found.difference > 0, found.exceeds, brief, size)
+    return TileChange(words, found.difference > 0, found.exceeds, brief, size, day)
 
 
 def _with_goals(facts: Facts, tile: Tile, *kinds: GoalOf) -> Tile:
