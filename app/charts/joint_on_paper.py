@@ -131,10 +131,16 @@ def _toe_offs(frame: Frame, chart: StrideChart) -> list[str]:
 def _key(chart: StrideChart, width: float) -> list[str]:
     """At the right of the title: each leg's chip and line, the thin line with its date, the reference's swatch."""
     parts, right, y = [], width - 1, 7.5
+    legs = [one for one in chart.curves if one.is_known]
     if chart.band is not None:
         words, (swatch, high) = tr("Reference"), SWATCH
-        parts.append(text(right, y + 3.2, words, SMALL, anchor="end", fill=PAPER.note))
-        right -= _width(words, SMALL) + KEY_APART + swatch
+        needed = len(legs) * (CHIP + KEY_APART + KEY_LINE + KEY_GAP) + swatch + _width(words, SMALL) + KEY_APART
+        if chart.beside:
+            needed += KEY_GAP + KEY_LINE + KEY_APART + _width(chart.beside[0].letter, SMALL)
+        if _width(chart.title, TITLE) + KEY_GAP + needed <= width:  # else its swatch alone has room
+            parts.append(text(right, y + 3.2, words, SMALL, anchor="end", fill=PAPER.note))
+            right -= _width(words, SMALL) + KEY_APART
+        right -= swatch
         parts.append(box(right, y - high / 2, swatch, high, PAPER.band_2sd, PAPER.band_2sd_edge, 0.35))
         parts.append(box(right, y - high / 4, swatch, high / 2, PAPER.band_1sd))
         right -= KEY_GAP
@@ -144,7 +150,7 @@ def _key(chart: StrideChart, width: float) -> list[str]:
         colour = LETTERS[chart.beside[0].side] if len(chart.beside) == 1 else PAPER.note
         parts.append(line(right, y, right + KEY_LINE, y, colour, THIN))
         right -= KEY_GAP
-    for one in reversed([one for one in chart.curves if one.is_known]):
+    for one in reversed(legs):
         right -= KEY_LINE
         parts.append(line(right, y, right + KEY_LINE, y, CURVES[one.side], LINE, _dash(one.side)))
         right -= KEY_APART + CHIP

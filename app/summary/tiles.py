@@ -149,7 +149,9 @@ def _knee(facts: Facts, walked: list[CourseVisit]) -> Tile:
     each = [_knee_of(facts, walked, side) for side in sides]
     values, changes = [value for value, _ in each], [one for _, one in each]
     missing = [value for value in values if not math.isfinite(value.value)]
-    why = " ".join([*(one.side.letter for one in missing if one.side and len(values) > 1), tr(NOT_REPORTED)])
+    is_worn = any(facts.is_worn(side, KNEE) for side in sides)
+    letters = [one.side.letter for one in missing if one.side is not None and len(missing) < len(values)]
+    why = " ".join([*letters, tr(NOT_REPORTED) if is_worn else tr("not measured")])
     stated = changes[0] if len(changes) == 1 else _of_both(values, changes)
     if len(values) == 1 and len(walked) < 2 and not missing:
         stated = _beside_other(facts, sides[0]) or stated

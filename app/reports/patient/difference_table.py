@@ -12,12 +12,14 @@ from app.summary.interval_words import interval_in_figures
 from app.summary.numbers_in_words import CARE, DAGGER, NOTHING, dagger_note, fixed, marked, signed
 from app.summary.trend_lines import walked_visits
 from app.summary.what_differs import LegsRow, since_last, what_differs, without_family
+from app.summary.what_stands_out import FAMILIES
 from app.theme.colours import LIGHT, PAPER
 from app.wording.body import side_name
 from app.wording.dates import day_in_words
+from app.wording.measures import with_unit
 from app.wording.translation import tr
 from core.body import Side
-from core.parameters import Unit, unit_of
+from core.parameters import KNEE, Unit, unit_of
 from core.verdicts.measurement_error import Difference, Mark
 from core.verdicts.model import Verdict
 
@@ -31,7 +33,7 @@ FILLED, HOLLOW = 2.4, 2.0  # radii
 def difference_table(facts: Facts) -> dict[str, object] | None:
     """Up to five rows, a hip's among them where one was measured; None where nothing was. One leg: its values alone."""
     rows = _rows(facts)
-    if not rows:
+    if not any(row.values for row in rows):
         return None
     sides = [side for side in Side if side in facts.gait]
     walked = walked_visits(facts.course, facts.condition)
@@ -50,15 +52,22 @@ def difference_table(facts: Facts) -> dict[str, object] | None:
 
 
 def _rows(facts: Facts) -> list[LegsRow]:
-    """As on the screen; of measures of which no leg has a value none but those with a reason."""
+    """As on the screen; the last is a hip's, else one not reported, where neither is among the first."""
     rows = without_family(what_differs(facts))
-    known = [row for row in rows if row.values] + [row for row in rows if not row.values]
-    if len(facts.gait) == len(Side):
-        known = rows
-    shown = known[:MOST_ROWS]
-    hips = [row for row in known[MOST_ROWS:] if row.column == HIP and row.values]
-    missing = [row for row in known[MOST_ROWS:] if Verdict.NOT_REPORTED in row.verdicts.values()]
-    return [*shown[: MOST_ROWS - 1], *(hips or missing)[:1]] if hips or missing else shown
+    if len(facts.gait) < len(Side):
+        columns = {row.column for row in rows if row.values}
+        rows = [row for row in rows if row.values and FAMILIES.get(row.column) not in columns]
+    shown, rest = rows[:MOST_ROWS], rows[MOST_ROWS:]
+    for is_wanted in (
+        lambda row: row.column == HIP and row.values,
+        lambda row: row.column == KNEE and Verdict.NOT_REPORTED in row.verdicts.values(),
+        lambda row: Verdict.NOT_REPORTED in row.verdicts.values(),
+    ):
+        if any(map(is_wanted, shown)):
+            return shown
+        if found := next(filter(is_wanted, rest), None):
+            return [*shown[:-1], found]
+    return shown
 
 
 def _row(facts: Facts, row: LegsRow, sides: Sequence[Side], *, has_last: bool) -> dict[str, object]:
@@ -67,9 +76,9 @@ def _row(facts: Facts, row: LegsRow, sides: Sequence[Side], *, has_last: bool) -
     missing = [side for side in sides if side not in row.values and row.verdicts[side] is not Verdict.NOT_MEASURED]
     why = ""
     if missing and not found.is_reported:
-        why = " ".join(f"{side.letter} {row.unknown[side]}" for side in missing)
+        why = ", ".join(f"{side.letter} {row.unknown[side]}" for side in missing)
     return {
-        "name": "; ".join([row.name, *map(goal_mark, row.goals)]),
+        "name": "; ".join([row.name if unit else with_unit(row.name, row.unit.strip()), *map(goal_mark, row.goals)]),
         "values": [_value(row, side, unit) for side in sides],
         "mark": mark_picture(found.mark).as_data() if is_marked else None,
         "difference": signed(found.difference, decimals) + unit if found.is_reported else NOTHING,

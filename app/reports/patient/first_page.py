@@ -19,7 +19,7 @@ from app.summary.tiles import Tile, TileValue, tiles_of
 from app.wording.body import side_name
 from app.wording.translation import capitalised, tr
 from core.body import Side
-from core.parameters import KNEE
+from core.parameters import KNEE, STANCE
 
 NOT_STATED = ("", "none")
 CHART_WIDTH, CHART_HEIGHTS = 85 * MM, (90 * MM, 78 * MM, 70 * MM, 60 * MM)  # the highest that has room is printed
@@ -34,7 +34,7 @@ def first_page(request: ReportRequest, facts: Facts, comparison: Comparison | No
         "summary": {"heading": tr("Summary"), "first": headline.first, "then": headline.then},
         "comment": comment(request),
         "caution": caution(facts),
-        "tiles": [_tile(tile) for tile in tiles_of(facts)],
+        "tiles": [_tile(tile) for tile in tiles_of(facts) if tile.column != STANCE or len(facts.gait) != 1],
         "charts": charts(request, facts, headline, comparison),
         "table": difference_table(facts),
         "quality": _quality(facts),

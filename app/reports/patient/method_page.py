@@ -39,7 +39,11 @@ REPORTED = {
 def words_page(request: ReportRequest, facts: Facts, comparison: Comparison | None) -> list[Block]:
     """What may be read and why, how it was measured; a comment that page one has no room for; the signature."""
     comment = plain_lines(request.comment) if is_comment_cut(request) else []
-    words: list[Block] = [heading(tr("Clinical comment")), {"kind": "comment", "lines": comment}] if comment else []
+    words: list[Block] = (
+        [{**heading(tr("Clinical comment")), "label": "comment"}, {"kind": "comment", "lines": comment}]
+        if comment
+        else []
+    )
     return [
         *quality_matrix(facts),
         heading(tr("Method and accuracy")),
