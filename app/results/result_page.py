@@ -383,12 +383,13 @@ class ResultPage(Themed):
         return self._inner_width >= sum(one.sizeHint().width() for one in tools) + self._look.theme.px(3 * GAP)
 
     def _do_choices_fit(self) -> bool:
-        """Whether the views fit into one row with what is chosen of an answer, and with what of a comparison."""
+        """Whether the views fit into one row with what is chosen in the one that is shown."""
         if self._room.is_narrow:
             return False
         of_answer = self._least_of_choices()
         of_comparison = self.compare.kinds.sizeHint().width() + self.compare.bases.sizeHint().width()
-        needed = self.view.sizeHint().width() + max(of_answer, of_comparison) + self._look.theme.px(3 * GAP)
+        of_view = of_comparison if self.view.choice == COMPARE else of_answer
+        needed = self.view.sizeHint().width() + of_view + self._look.theme.px(3 * GAP)
         return self._inner_width >= needed
 
     def _least_of_choices(self) -> int:
@@ -425,6 +426,9 @@ class ResultPage(Themed):
 
     def _show_parts(self) -> None:
         """Show what belongs to the view, or the details behind the answer."""
+        if self._is_placed_otherwise():  # each view has choices of its own
+            self._place()
+            return
         recording, view = self.recording, self.view.choice
         is_walk = recording is not None and recording.kind is RecordingKind.WALKING
         has_answer = is_walk and view == (ANSWER if self.view.segments[0].isEnabled() else WHOLE)
@@ -597,7 +601,7 @@ class ResultPage(Themed):
         self.legs.show_legs(self._drawn[2], reported, self._thin)
 
     def _on_cursor_moved(self, percent: float) -> None:
-        self.cycles.charts.show_cursor(dict.fromkeys(Side, percent) if self.legs.isVisible() else {})
+        self.cycles.charts.show_cursor(dict.fromkeys(Side, percent) if not self.legs.isHidden() else {})
 
     def _turn_band(self) -> None:
         """Show or hide the reference."""
