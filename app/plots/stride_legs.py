@@ -23,7 +23,6 @@ from app.wording.translation import later, tr
 from core.body import Side
 from core.samples import FloatArray
 
-WIDTH = 144
 LEAST_PICTURE = (112, 96)
 CHIP, ROW = 18, 26
 FRAME_MS = 33

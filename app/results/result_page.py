@@ -58,6 +58,7 @@ BOTTOM = 40  # px high: the row that closes the summary
 OTHERS = 298  # px high: all else of a summary than charts and table
 CHART = 222  # px high: what the charts have before the table gets more rows
 TOOLS = 44  # px high
+LEGS, LEGS_SHARE = 144, 0.135  # px wide, or of the page
 GAP = 12  # px between what is in one row
 
 
@@ -187,6 +188,7 @@ class ResultPage(Themed):
         if room != self._room or self._is_placed_otherwise():
             self._room = room
             self._place()
+        self.legs.setFixedWidth(self._look.theme.px(max(LEGS, LEGS_SHARE * width)))
         self._fit_parts()
         self._fit_table()
 
