@@ -91,6 +91,7 @@ class ResultPage(Themed):
         self._has_choices = False  # views and what else is chosen in one row
         self._thin: Mapping[Side, ThinBend] = {}
         self._drawn: tuple[AnalysedVisit, RecordingAnalysis, MeanLegs | None] | None = None
+        self._mended_by_motion: Side | None = None  # whose free motion would mend the gravest cause
         self._has_band, self._has_chosen_legs = True, False
         self._behind = Behind.NOTHING
         self._required = ANSWER  # of a walk; kept while recordings without it are looked at
@@ -113,6 +114,8 @@ class ResultPage(Themed):
         self.tiles = TileRow(look)
         self.differs = DiffersCard(look)
         self.door = DetailButton(look, tr("Q"))
+        self.repeat = Button(look, tr("Repeat free motion"), ButtonKind.SECONDARY, Icon.REPEAT, height=BOTTOM)
+        self.repeat.hide()
         self.all_figures = Toggle(look, tr("All values"), tr("F"), is_on=False)
         self.show_legs = Toggle(look, tr("Legs"), tr("G"), is_on=True)
         self.cycles = parts.cycles
@@ -251,7 +254,7 @@ class ResultPage(Themed):
             *self.cycles.tables,
             *self.compare.tab_order,
         ]
-        return [*choices, *shown, *self.quality.tab_order, self.door, self.all_figures]
+        return [*choices, *shown, *self.quality.tab_order, self.door, self.repeat, self.all_figures]
 
     def _build(self) -> None:
         self._controls = QGridLayout()
@@ -290,6 +293,7 @@ class ResultPage(Themed):
             self._columns.addWidget(widget, share)
         self._bottom = QHBoxLayout()
         self._bottom.addWidget(self.door, 1)
+        self._bottom.addWidget(self.repeat)
         self._bottom.addWidget(self.all_figures)
         self.all_figures.set_face(height=BOTTOM)
         self.show_legs.set_face(height=TOOLS)
@@ -314,6 +318,7 @@ class ResultPage(Themed):
         self.legs.moved.connect(self._on_cursor_moved)
         self.door.clicked.connect(self._on_door)
         self.to_answer.clicked.connect(self.leave_behind)
+        self.repeat.clicked.connect(lambda: self.quality.repeat_requested.emit(self._mended_by_motion))
         self.all_figures.toggled.connect(lambda is_on: self._show_behind(Behind.FIGURES if is_on else Behind.NOTHING))
         for key, button in (
             (tr("Q"), self.door),
@@ -468,6 +473,7 @@ class ResultPage(Themed):
         self._page.setStretchFactor(self._columns, 0 if is_table_alone else 1)
         self._page.setStretchFactor(self.differs, 1 if is_table_alone else 0)
         self.door.setVisible(has_door and not is_quality)
+        self.repeat.setVisible(is_answer and self._is_live and self._mended_by_motion is not None and not is_compact)
         self.all_figures.setVisible(view == ANSWER and not is_quality)
         self._page.activate()  # now, else the charts would be painted once too small and once right
         self.reported.emit()
@@ -565,6 +571,7 @@ class ResultPage(Themed):
         of_walk = recording if recording is not None and recording.kind is RecordingKind.WALKING else None
         line = quality_sentence(Facts(visit, of_walk), found) if of_walk is not None else None
         self.door.show_message(door_words(found, line))
+        self._mended_by_motion = line.line.side if line is not None and line.line is not None else None
         self.quality.show_quality(found, joints, sites, strides, can_repeat=self._is_live)
         names = visit.shown_names
         self.quality.show_engineering(
