@@ -23,7 +23,6 @@ from app.wording.translation import later, tr
 from core.body import Side
 from core.samples import FloatArray
 
-WIDTH = 144
 LEAST_PICTURE = (112, 96)
 CHIP, ROW = 18, 26
 FRAME_MS = 33
@@ -194,9 +193,10 @@ class _Picture(Themed):
         above = 0.0 if legs.tilt_rad is None else PELVIS_M + PELVIS_HALF_M
         low, high = float(np.nanmin(points[:, 1])), max(float(np.nanmax(points[:, 1])), above)
         behind, ahead = float(np.nanmin(points[:, 0])), float(np.nanmax(points[:, 0]))
-        margin = px(10)
-        scale = min((room.height() - 2 * margin) / (high - low), (room.width() - 2 * margin) / (ahead - behind))
-        floor = room.bottom() - px(6)
+        margin = px(4)
+        scale = min((room.height() - 4 * margin) / (high - low), (room.width() - 2 * margin) / (ahead - behind))
+        spare = room.height() - 4 * margin - scale * (high - low)
+        floor = room.bottom() - px(6) - spare / 2
         hip_x = room.center().x() - scale * (ahead + behind) / 2
 
         def at(point: FloatArray) -> QPointF:

@@ -24,7 +24,8 @@ from core.verdicts.measurement_error import Difference, Judgement, Mark
 from core.verdicts.model import Verdict
 
 ZONES = 2.3  # half a strip is so many times what healthy people differ by,
-HALVES = 1.6  # or where that is not known half of the likely interval
+HALVES = 1.6  # or where that is not known half of the likely interval;
+REACH = 1.04  # at least so many times what the interval reaches
 HEAD, ROW = 34, 28
 EDGES = 4  # px: the card's padding above and below
 LEAST, MOST = 3, 8  # rows
@@ -123,7 +124,8 @@ def _strip(found: Difference) -> TableCell:
     if not found.is_judged:
         word = tr("too few strides") if found.judgement is Judgement.TOO_FEW_STRIDES else tr("no published error")
         return TextCell(word, align=CENTRE, size=12, tone="ink2")
-    scale = ZONES * found.healthy if math.isfinite(found.healthy) else HALVES * found.error
+    usual = ZONES * found.healthy if math.isfinite(found.healthy) else HALVES * found.error
+    scale = max(usual, REACH * (abs(found.difference) + found.error))
     return IntervalStrip(found.difference, found.error, found.healthy, scale, spoken=judged_in_words(found))
 
 

@@ -11,6 +11,7 @@ from app.widgets.themed import Themed
 
 SIZES = (22, 21, 20)
 SECOND = 14
+SPARE = 24  # px: words are wrapped a little before they touch the edge
 
 
 class HeadlineText(Themed):
@@ -58,7 +59,7 @@ class HeadlineText(Themed):
         self._fit()
 
     def _fit(self) -> None:
-        theme, width = self._look.theme, self.width()
+        theme, width = self._look.theme, self.width() - self._look.theme.px(SPARE)
         for size in SIZES:
             self._first.set_size(size)
             if QFontMetrics(theme.font(size, SEMIBOLD)).horizontalAdvance(self._first.text()) <= width:

@@ -5,7 +5,7 @@ from enum import Enum, auto
 
 import numpy as np
 from PySide6.QtCore import Qt, Signal
-from PySide6.QtGui import QKeySequence, QShortcut
+from PySide6.QtGui import QKeySequence, QShortcut, QShowEvent
 from PySide6.QtWidgets import QBoxLayout, QGridLayout, QHBoxLayout, QVBoxLayout, QWidget
 
 from app.plots.stride_legs import ThinBend
@@ -36,6 +36,7 @@ from app.widgets.choice import Choice
 from app.widgets.detail_button import DetailButton
 from app.widgets.heard_order import hear_as_laid_out
 from app.widgets.segmented import Segmented
+from app.widgets.text import Text
 from app.widgets.themed import Themed
 from app.widgets.toggle import Toggle
 from app.wording.recordings import with_shown_names
@@ -53,9 +54,11 @@ CURVES, TABLE = "curves", "table"  # of the summary, where there is no room for 
 WALK, RECORDING = later("Whole walk"), later("Whole recording")
 
 RECORDINGS = (116, 240)  # px: the narrowest and the widest that their box becomes
-BOTTOM = 36  # px high: the row that closes the summary
-OTHERS = 294  # px high: all else of a summary than charts and table
-CHART = 228  # px high: what the charts have before the table gets more rows
+BOTTOM = 40  # px high: the row that closes the summary
+OTHERS = 298  # px high: all else of a summary than charts and table
+CHART = 222  # px high: what the charts have before the table gets more rows
+TOOLS = 44  # px high
+LEGS, LEGS_SHARE = 144, 0.135  # px wide, or of the page
 GAP = 12  # px between what is in one row
 
 
@@ -88,7 +91,8 @@ class ResultPage(Themed):
         self._has_choices = False  # views and what else is chosen in one row
         self._thin: Mapping[Side, ThinBend] = {}
         self._drawn: tuple[AnalysedVisit, RecordingAnalysis, MeanLegs | None] | None = None
-        self._has_band = True
+        self._mended_by_motion: Side | None = None  # whose free motion would mend the gravest cause
+        self._has_band, self._has_chosen_legs = True, False
         self._behind = Behind.NOTHING
         self._required = ANSWER  # of a walk; kept while recordings without it are looked at
         self.view = Segmented(
@@ -110,6 +114,8 @@ class ResultPage(Themed):
         self.tiles = TileRow(look)
         self.differs = DiffersCard(look)
         self.door = DetailButton(look, tr("Q"))
+        self.repeat = Button(look, tr("Repeat free motion"), ButtonKind.SECONDARY, Icon.REPEAT, height=BOTTOM)
+        self.repeat.hide()
         self.all_figures = Toggle(look, tr("All values"), tr("F"), is_on=False)
         self.show_legs = Toggle(look, tr("Legs"), tr("G"), is_on=True)
         self.cycles = parts.cycles
@@ -180,11 +186,19 @@ class ResultPage(Themed):
         """
         room = PageRoom.of(width, height)
         self._width, self._height = width, height
+        if not self._has_chosen_legs:  # where there is little room the ankle is shown first
+            self.show_legs.show_on(not room.is_compact)
         if room != self._room or self._is_placed_otherwise():
             self._room = room
             self._place()
+        self.legs.setFixedWidth(self._look.theme.px(max(LEGS, LEGS_SHARE * width)))
         self._fit_parts()
         self._fit_table()
+
+    def showEvent(self, event: QShowEvent) -> None:
+        super().showEvent(event)
+        if self._is_placed_otherwise():  # words are measured by the fonts that they are shown in
+            self._place()
 
     def _fit_table(self) -> None:
         """Show as many rows of what differs as leave the charts their room; alone it has all of the page."""
@@ -240,7 +254,7 @@ class ResultPage(Themed):
             *self.cycles.tables,
             *self.compare.tab_order,
         ]
-        return [*choices, *shown, *self.quality.tab_order, self.door, self.all_figures]
+        return [*choices, *shown, *self.quality.tab_order, self.door, self.repeat, self.all_figures]
 
     def _build(self) -> None:
         self._controls = QGridLayout()
@@ -255,7 +269,8 @@ class ResultPage(Themed):
         self._choices = QWidget()
         choices = QHBoxLayout(self._choices)
         choices.setContentsMargins(0, 0, 0, 0)
-        for widget in (self.part, self.recordings, self.thin, self.show_legs, self._against):
+        self._thin_name = Text(self._look, tr("Thin line"), size=12, tone="ink2")
+        for widget in (self.part, self.recordings, self._thin_name, self.thin, self.show_legs, self._against):
             choices.addWidget(widget)
         self._figures = QWidget()
         self._tables = QBoxLayout(QBoxLayout.Direction.LeftToRight, self._figures)
@@ -278,8 +293,10 @@ class ResultPage(Themed):
             self._columns.addWidget(widget, share)
         self._bottom = QHBoxLayout()
         self._bottom.addWidget(self.door, 1)
+        self._bottom.addWidget(self.repeat)
         self._bottom.addWidget(self.all_figures)
         self.all_figures.set_face(height=BOTTOM)
+        self.show_legs.set_face(height=TOOLS)
         self._page = QVBoxLayout(self)
         self._page.addLayout(self._controls)
         self._page.addWidget(self._compared_as, 0, Qt.AlignmentFlag.AlignLeft)
@@ -301,6 +318,7 @@ class ResultPage(Themed):
         self.legs.moved.connect(self._on_cursor_moved)
         self.door.clicked.connect(self._on_door)
         self.to_answer.clicked.connect(self.leave_behind)
+        self.repeat.clicked.connect(lambda: self.quality.repeat_requested.emit(self._mended_by_motion))
         self.all_figures.toggled.connect(lambda is_on: self._show_behind(Behind.FIGURES if is_on else Behind.NOTHING))
         for key, button in (
             (tr("Q"), self.door),
@@ -372,13 +390,25 @@ class ResultPage(Themed):
         return self._inner_width >= sum(one.sizeHint().width() for one in tools) + self._look.theme.px(3 * GAP)
 
     def _do_choices_fit(self) -> bool:
-        """Whether the views fit into one row with what is chosen of an answer, and with what of a comparison."""
+        """Whether the views fit into one row with what is chosen in the one that is shown."""
         if self._room.is_narrow:
             return False
-        of_answer = sum(map(_least_width, (self.recordings, self.thin))) + self.show_legs.sizeHint().width()
-        of_answer += self.part.sizeHint().width() if self._room.is_compact else 0
+        of_answer = self._least_of_choices()
         of_comparison = self.compare.kinds.sizeHint().width() + self.compare.bases.sizeHint().width()
-        needed = self.view.sizeHint().width() + max(of_answer, of_comparison) + self._look.theme.px(3 * GAP)
+        of_view = of_comparison if self.view.choice == COMPARE else of_answer
+        needed = self.view.sizeHint().width() + of_view + self._look.theme.px(3 * GAP)
+        return self._inner_width >= needed
+
+    def _least_of_choices(self) -> int:
+        """What the choices of a summary need at least, with the gaps between them."""
+        other = self.part if self._room.is_compact else self.thin
+        shown = (other, self.recordings, self.show_legs)
+        return sum(map(_least_width, shown)) + self._look.theme.px((len(shown) - 1) * GAP)
+
+    def _has_room_for_name(self) -> bool:
+        """Whether the thin line's name has room before its choice, with nothing cut."""
+        shown = (self.view, self.recordings, self._thin_name, self.thin, self.show_legs)
+        needed = sum(one.sizeHint().width() for one in shown) + self._look.theme.px(len(shown) * GAP)
         return self._inner_width >= needed
 
     def _offer(self) -> None:
@@ -403,6 +433,9 @@ class ResultPage(Themed):
 
     def _show_parts(self) -> None:
         """Show what belongs to the view, or the details behind the answer."""
+        if self._is_placed_otherwise():  # each view has choices of its own
+            self._place()
+            return
         recording, view = self.recording, self.view.choice
         is_walk = recording is not None and recording.kind is RecordingKind.WALKING
         has_answer = is_walk and view == (ANSWER if self.view.segments[0].isEnabled() else WHOLE)
@@ -416,7 +449,9 @@ class ResultPage(Themed):
         self.whole.methods.setVisible(view == WHOLE and not is_quality)
         self.part.setVisible(is_answer and is_compact)
         self.recordings.setVisible(view != COMPARE and self.recordings.count() > (1 if view == ANSWER else 0))
-        self.thin.setVisible(has_curves and self.thin.count() > 1 and not is_compact)
+        has_thin = has_curves and self.thin.count() > 1 and not is_compact
+        self.thin.setVisible(has_thin)
+        self._thin_name.setVisible(has_thin and self._has_room_for_name())
         self.show_legs.setVisible(has_curves)
         self._against.setVisible(view == COMPARE)
         self._compared_as.setVisible(view == COMPARE and is_compact and not self._room.is_narrow)
@@ -434,7 +469,11 @@ class ResultPage(Themed):
         self._figures.setVisible(behind is Behind.FIGURES)
         self.quality.setVisible(is_quality)
         self.differs.setVisible(is_answer and self.differs.has_rows and not (is_compact and has_curves))
+        is_table_alone = is_answer and not has_curves
+        self._page.setStretchFactor(self._columns, 0 if is_table_alone else 1)
+        self._page.setStretchFactor(self.differs, 1 if is_table_alone else 0)
         self.door.setVisible(has_door and not is_quality)
+        self.repeat.setVisible(is_answer and self._is_live and self._mended_by_motion is not None and not is_compact)
         self.all_figures.setVisible(view == ANSWER and not is_quality)
         self._page.activate()  # now, else the charts would be painted once too small and once right
         self.reported.emit()
@@ -532,6 +571,7 @@ class ResultPage(Themed):
         of_walk = recording if recording is not None and recording.kind is RecordingKind.WALKING else None
         line = quality_sentence(Facts(visit, of_walk), found) if of_walk is not None else None
         self.door.show_message(door_words(found, line))
+        self._mended_by_motion = line.line.side if line is not None and line.line is not None else None
         self.quality.show_quality(found, joints, sites, strides, can_repeat=self._is_live)
         names = visit.shown_names
         self.quality.show_engineering(
@@ -551,6 +591,7 @@ class ResultPage(Themed):
         self._show_strides()
 
     def _on_legs_toggled(self, is_on: bool) -> None:
+        self._has_chosen_legs = True
         self._show_moving_legs()
         self._fit_table()
         self._show_parts()
@@ -569,7 +610,7 @@ class ResultPage(Themed):
         self.legs.show_legs(self._drawn[2], reported, self._thin)
 
     def _on_cursor_moved(self, percent: float) -> None:
-        self.cycles.charts.show_cursor(dict.fromkeys(Side, percent) if self.legs.isVisible() else {})
+        self.cycles.charts.show_cursor(dict.fromkeys(Side, percent) if not self.legs.isHidden() else {})
 
     def _turn_band(self) -> None:
         """Show or hide the reference."""
@@ -593,6 +634,8 @@ class ResultPage(Themed):
         side = px(self._side)
         self._page.setContentsMargins(side, px(12), side, px(8))
         self._page.setSpacing(px(10))
+        for choice in (self.recordings, self.thin):
+            choice.setFixedHeight(px(TOOLS))
         self._controls.setSpacing(px(8 if is_compact else 12))
         self._columns.setSpacing(px(12))
         self._bottom.setSpacing(px(12))

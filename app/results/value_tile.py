@@ -55,7 +55,7 @@ class TileRow(Themed):
 
 
 class ValueTile(Themed):
-    """Painted; what is cut for want of room is in its tooltip. In brief it has no scale, and the change at the right."""
+    """Painted; what is cut for want of room is in its tooltip. In brief: no scale, the change at the right."""
 
     accessible_role = QAccessible.Role.StaticText
 

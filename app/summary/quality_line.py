@@ -8,8 +8,8 @@ from app.summary.facts import Facts
 from app.wording.translation import joined, tr, tr_n
 from app.wording.verdicts import verdict_word
 from core.body import Side
+from core.gait.clocks import ClockTie
 from core.verdicts.model import Verdict
-from core.verdicts.quality import MIN_LOSS_PERCENT
 
 
 @dataclass(frozen=True, slots=True)
@@ -59,11 +59,9 @@ def in_order(facts: Facts) -> str:
     counts = [str(facts.strides(side)) for side in Side if side in facts.gait]
     parts = [tr("{counts} strides").format(counts=joined(counts))]
     if facts.verdicts.between.verdict is Verdict.READ and len(counts) > 1:
-        parts.append(one_time_in_words(facts.walk))
+        is_by_hips = facts.walk.clocks is not None and facts.walk.clocks.tie is ClockTie.PELVIS
+        parts.append(one_time_in_words(facts.walk) if is_by_hips else tr("sensors synchronised"))
     if not quality.slipped_straps(facts):
         parts.append(tr("no strap moved"))
-    lost = max((one for walk in facts.part.walks for one in walk.lost_percent.values()), default=0.0)
-    if lost < MIN_LOSS_PERCENT:
-        parts.append(tr("hardly any samples lost"))
     words = ", ".join(parts)
     return f"{words}."
