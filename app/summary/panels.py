@@ -2,16 +2,14 @@
 
 import math
 from collections.abc import Sequence
-from dataclasses import replace
 
 import numpy as np
 
 from app.charts.axes import title_in_words
 from app.charts.cycles import Band, is_mean_enough, is_spread_enough
 from app.charts.drawing import COLOURS, DASHES, Picture, box, line, picture, text
-from app.charts.marks import Deviation, laid_at_height_of
 from app.charts.on_paper import PLAIN
-from app.charts.stride_chart import NO_STRIDES, Axis, StrideChart, StrideCurve, usual_range_deg
+from app.charts.stride_chart import NO_STRIDES, Axis, StrideCurve, usual_range_deg
 from app.summary import quality
 from app.summary.facts import KINDS, Facts, joint_of
 from app.summary.numbers_in_words import fixed
@@ -123,30 +121,6 @@ def curve_of(facts: Facts, side: Side, kind: str) -> StrideCurve:
     )
 
 
-def leg_chart(facts: Facts, joint: Joint, bracket: Deviation | None) -> StrideChart:
-    """One leg's joint with the band laid at its curve's height, so that the picture judges its shape alone."""
-    side, kind = joint.side, joint.kind
-    own = curve_of(facts, side, kind)
-    band, stated = None, [curve_alt(facts, kind, [side])]
-    group = facts.curves_group
-    if group is not None and own.is_known and side in facts.sides_with_band:
-        band = laid_at_height_of(own.angle_deg, Band(*group.mean_and_sd_deg(kind)))
-    return StrideChart(
-        title=joint_title(facts, side, kind),
-        axis=axis_of(facts, kind),
-        curves=(replace(own, toe_off_label=toe_off_in_words(own.toe_off_percent)),),
-        band=band,
-        is_simulated=facts.is_simulated,
-        alt=" ".join(stated),
-        not_reported=why_not_reported(facts, joint),
-        deviations=(bracket,) if bracket is not None and own.is_known else (),
-    )
-
-
-def toe_off_in_words(percent: float) -> str:
-    return tr("toe\u2011off {percent} %").format(percent=fixed(percent, 0)) if math.isfinite(percent) else ""
-
-
 def joint_title(facts: Facts, side: Side, kind: str) -> str:
     """Of a narrow panel."""
     name = capitalised(name_of(joint_of(kind, side)))
@@ -168,18 +142,6 @@ def why_not_reported(facts: Facts, joint: Joint) -> str:
         if joint in cause.places and cause.gate not in quality.HEIGHT_GATES:
             return cause.words.why
     return tr("No usable stride for this joint.")
-
-
-def why_missing(facts: Facts, joint: Joint) -> str:
-    """What is shown in a joint's place beside those that were measured."""
-    if joint.side not in facts.gait:
-        return tr("{joint}: not measured.").format(joint=capitalised(name_of(joint)))
-    worn = facts.visit.recording(facts.walk.name).imu
-    missing = [name_of(site) for site in (joint.proximal, joint.distal) if site not in worn]
-    if missing:
-        stated = tr("{joint}: not measured, no sensor on {sites}.")
-        return stated.format(joint=capitalised(name_of(joint)), sites=joined(missing))
-    return tr("{joint}: not measured.").format(joint=capitalised(name_of(joint)))
 
 
 def why_no_joint(facts: Facts, kind: str) -> str:
