@@ -41,7 +41,7 @@ def test_where_nothing_exceeds_its_error_the_answer_is_that(
     assert found.outcome is Outcome.NOTHING
     assert found.first.startswith("Left and right are similar: ")
     assert re.match(
-        r"Difference \d\.\d°, which may be measurement error: anything from −\d° to \+\d° fits\.", found.then
+        r"Difference \d\.\d°, which may be measurement error: anything from −\d\d° to \+\d° fits\.", found.then
     )
     assert "within 2\u00a0SD of the reference" in found.then
 
