@@ -19,10 +19,11 @@ from core.samples import RecordingKind, Session
 
 MOST_DIFFERENCES = 5
 KEY = later(
-    "Thick line in the leg's colour: result. Thin lines around it: uncertainty, 2 SD. Thin light "
+    "Thick line in the leg's colour: result. Band around it: uncertainty, 2 SD. Thin light "
     "line: published method. Thin grey line: orientation. Bars below show phases. Full colour: "
     "loading response. Pale: foot flat. Narrow: pre-swing. Thin grey: swing."
 )
+NOTHING = later("This recording has no joint angles. Choose a walk below.")
 
 
 def panel(session: Session, analysis: Analysis, recording: RecordingAnalysis, drawn: Collection[Side]) -> str:
@@ -36,7 +37,7 @@ def panel(session: Session, analysis: Analysis, recording: RecordingAnalysis, dr
     lines += [_line(recording, joint, is_drawn=joint.side in drawn) for joint in joints]
     for side in Side:
         lines += [f"- {stated}" for stated in _slipped(recording, side)]
-    return "\n".join([*lines, "", *([tr(KEY)] if joints else [])])
+    return "\n".join([*lines, "", tr(KEY)] if joints else lines or [tr(NOTHING)])
 
 
 def _largest(facts: Facts) -> Iterator[str]:
