@@ -162,26 +162,19 @@ def why_no_band(facts: Facts, why: NoBand | None) -> str:
     return tr(WHY_NO_BAND[why]) if why is not None else ""
 
 
-def band_in_words(facts: Facts, *, is_at_height: bool) -> str:
-    """Whose band is drawn and how it is laid, or why there is none."""
+def band_in_words(facts: Facts, *, has_hips: bool = False) -> str:
+    """Whose band is drawn, or why there is none; `has_hips`: hips are drawn as well, which have none."""
     group = facts.curves_group
     if group is None:
         return why_no_band(facts, facts.bands.why_no_curves)
-    if not is_at_height and all(facts.has_no_zero(kind) for kind in KINDS if facts.has_joint(kind)):
+    if all(facts.has_no_zero(kind) for kind in KINDS if facts.has_joint(kind)):
         return tr("No reference band: without a standing reference there are no absolute angles to compare.")
     stated = [
         tr("Grey: reference (mean, ±1 and ±2 SD of {n} young adults, barefoot, treadmill, {speed} m/s) [1].").format(
             n=group.n, speed=fixed(group.speed_m_s, 2)
         )
     ]
-    if is_at_height:
-        stated.append(
-            tr(
-                "The reference is shifted to the level of each curve to compare shape. The absolute angle is "
-                "shown beside it."
-            )
-        )
-    elif JointKind.HIP in facts.kinds:
+    if has_hips:
         stated.append(tr("At the hip, the reference has another zero and is not shown."))
     if facts.bands.are_curves_of_other_ages:
         stated.append(tr(OTHER_AGES))

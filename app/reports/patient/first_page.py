@@ -116,7 +116,7 @@ def charts(
 
 def source(facts: Facts) -> list[str]:
     """Whose the grey curve is, or why there is none; and where the data quality is judged in detail."""
-    return [panels.band_in_words(facts, is_at_height=False), tr("Data quality in detail: page {page}.")]
+    return [panels.band_in_words(facts), tr("Data quality in detail: page {page}.")]
 
 
 def _quality(facts: Facts) -> list[str]:
