@@ -6,13 +6,13 @@ from functools import cache
 
 import numpy as np
 import pytest
+from app.results.beside_choice import Beside
 from PySide6.QtCore import Qt
 from PySide6.QtGui import QAccessible
 from PySide6.QtTest import QTest
 from PySide6.QtWidgets import QApplication, QLineEdit
 from pytestqt.qtbot import QtBot
 
-from app.results.beside_choice import Beside
 from app.results.cycle_page import NO_SIDE, NO_SPEED
 from app.results.result_page import ANSWER, COMPARE, STRIDES, WHOLE, ResultPage
 from app.summary.reference_bands import NOBODY, OTHER_AGES, WHY_NO_BAND
