@@ -82,10 +82,12 @@ class Tile:
     goal: str = ""
     why: str = ""
     goal_words: str = ""
+    brief: str = ""
+    """The name where room is short; empty: the same."""
 
     @property
     def in_words(self) -> str:
-        """The tile read out."""
+        """The tile read out, by its whole name."""
         values = ", ".join(
             " ".join(filter(None, [one.side.letter if one.side is not None else "", one.text])) for one in self.values
         )
@@ -141,7 +143,16 @@ def _knee(facts: Facts, walked: list[CourseVisit]) -> Tile:
     stated = changes[0] if len(changes) == 1 else _of_both(values, changes)
     if len(values) == 1 and len(walked) < 2 and not missing:
         stated = _beside_other(facts, sides[0]) or stated
-    tile = Tile(KNEE, name, "", tuple(values), stated, SCALES[KNEE], why=why if missing else "")
+    tile = Tile(
+        KNEE,
+        name,
+        "",
+        tuple(values),
+        stated,
+        SCALES[KNEE],
+        why=why if missing else "",
+        brief=tr("Knee, stance to swing"),
+    )
     return _with_goals(facts, tile, GoalOf.LEFT, GoalOf.RIGHT)
 
 
@@ -199,7 +210,7 @@ def _stance(facts: Facts, walked: list[CourseVisit]) -> Tile:
     zone = (-found.healthy, found.healthy) if math.isfinite(found.healthy) else None
     if not found.is_reported:
         return Tile(STANCE, name, "", (value,), TileChange(""), SCALES[STANCE], why=tr(NOT_REPORTED))
-    tile = Tile(STANCE, name, tr("points"), (value,), stated, SCALES[STANCE], zone)
+    tile = Tile(STANCE, name, tr("points"), (value,), stated, SCALES[STANCE], zone, brief=tr("Stance, L − R"))
     return _with_goals(facts, tile, GoalOf.BETWEEN)
 
 
@@ -242,7 +253,8 @@ def _change(column: str, found: Difference, day: str) -> TileChange:
     if not found.is_judged:
         return TileChange(brief, brief=brief, size=size)
     words = brief if found.exceeds else tr("{change} since {day}, within error").format(change=size, day=day)
-    return TileChange(words, found.difference > 0, found.exceeds, brief, size)
+    is_none = not round(found.difference, DECIMALS[column])  # what is shown as no change has no arrow
+    return TileChange(words, None if is_none else found.difference > 0, found.exceeds, brief, size)
 
 
 def _with_goals(facts: Facts, tile: Tile, *kinds: GoalOf) -> Tile:
