@@ -21,6 +21,7 @@ from app.results.result_page import ResultPage
 from app.summary.course import course_of
 from app.summary.course_lanes import CourseVisit
 from app.summary.facts import Facts
+from app.summary.headline import headline_of
 from app.summary.request import AnalysedVisit, ReportRequest, default_walks
 from app.summary.trend_lines import trend_lines
 from app.theme.notifier import ThemeNotifier
@@ -124,14 +125,12 @@ def test_page_one_and_the_patients_page_judge_the_knee_alike(
 
 
 @pytest.mark.parametrize("first_deg", [34.0, 50.0])
-def test_the_screen_states_first_what_page_one_states_first(qtbot: QtBot, now: AnalysedVisit, first_deg: float) -> None:
+def test_the_screen_states_first_what_a_report_states_first(qtbot: QtBot, now: AnalysedVisit, first_deg: float) -> None:
     request = request_of(visit_on(FIRST, (first_deg, 12)), now)
-    facts = facts_of(request)
-    sentences = answer(facts, comparison_of(request))["sentences"]
-    assert isinstance(sentences, list)
+    stated = headline_of(facts_of(request))
     page = ResultPage(ThemeNotifier())
     qtbot.addWidget(page)
     page.show_visit(now, course=request.course)
-    assert page.answer.text.startswith(sentences[0][1])
+    assert page.headline.text == f"{stated.first} {stated.then}"
     assert page.recordings.currentData() == request.shown
     assert [cycle.mean.n for cycle in page.cycles.charts.knee.chart.cycles.values()] == [25, 25]
