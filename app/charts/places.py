@@ -29,9 +29,10 @@ MOST_COVERED = 100.0  # before the second line is left away
 WORDS_AT_RIGHT, TOO_NEAR, PER_LENGTH_AWAY = 25.0, 60.0, 0.15
 # Of a label: rows and columns tried about its point, how far from it, and what a length away from it costs.
 LABEL_STEPS = np.linspace(0.0, 1.0, 9)
-FARTHEST_LABEL, PER_LABEL_AWAY = 60.0, 1.0
+FARTHEST_LABEL, PER_LABEL_AWAY, PER_WRONG_WAY = 60.0, 1.0, 3.0
+PEAK_WIDTH = 8  # percent of the stride
 HIDDEN_STEPS = np.linspace(0.03, 0.97, 9)
-PER_HIDDEN_AWAY = 0.05
+PER_HIDDEN_AWAY = 0.15
 Size = tuple[float, float]
 """Width and height."""
 
@@ -129,10 +130,21 @@ def layout_of(ground: Ground, chart: StrideChart, sizes: Sizes) -> Layout:
         ends = [_at(frame, point.percent, point.angle_deg) for point in deviation.points]
         kind = USUAL_EMPTY_PERCENT[deviation.kind]
         brackets.append((deviation, place_mark(ground, ends, sizes.bracket(deviation), kind)))
-    labels = chart.shown_labels
+    labels = sorted(chart.shown_labels, key=lambda label: label.side, reverse=True)  # filled dots over outlined ones
     points = [_at(frame, one.point.percent, one.point.angle_deg) for one in labels]
-    boxes = place_labels(ground, points, [sizes.label(one) for one in labels], sizes.dot)
+    are_above = [_is_higher(chart, one) for one in labels]
+    boxes = place_labels(ground, points, [sizes.label(one) for one in labels], are_above, sizes.dot)
     return Layout(hidden, tuple(brackets), tuple(zip(labels, boxes, strict=True)))
+
+
+def _is_higher(chart: StrideChart, label: CurveLabel) -> bool:
+    """Whether a label's curve is the higher one at its point; of a curve alone, whether the point is a highest one."""
+    at, angle_deg = int(label.point.percent), label.point.angle_deg
+    others = [c.angle_deg for c in chart.curves if c.is_known and c.side is not label.side]
+    if others:
+        return angle_deg >= others[0][at]
+    own = next(curve.angle_deg for curve in chart.curves if curve.side is label.side)
+    return bool(angle_deg >= np.mean(own[[max(at - PEAK_WIDTH, 0), min(at + PEAK_WIDTH, 100)]]))
 
 
 def ground_of(frame: Frame, chart: StrideChart, taken: Sequence[Box] = ()) -> Ground:
@@ -188,17 +200,18 @@ def place_mark(
 
 
 def place_labels(
-    ground: Ground, points: Sequence[tuple[float, float]], sizes: Sequence[Size], dot: float
+    ground: Ground, points: Sequence[tuple[float, float]], sizes: Sequence[Size], are_above: Sequence[bool], dot: float
 ) -> list[Box | None]:
     """The room of each label beside its point that covers least: inside the frame, over nothing that is there.
 
-    None where no such room is near the point.
+    The higher of two curves has its label above its point or level with it, the other beneath. None where there is no
+    room near the point.
     """
     frame = ground.frame
     inside = Box(frame.left, frame.top, frame.right, frame.bottom)
     dots = [Box(x, y, x, y).grown(dot) for x, y in points]
     found: list[Box | None] = []
-    for (x, y), (width, height) in zip(points, sizes, strict=True):
+    for (x, y), (width, height), is_above in zip(points, sizes, are_above, strict=True):
         best, least = None, UNREADABLE
         for dx in (-1 + 2 * LABEL_STEPS) * (width / 2 + FARTHEST_LABEL):
             for dy in (-1 + 2 * LABEL_STEPS) * (height / 2 + FARTHEST_LABEL / 2):
@@ -206,7 +219,8 @@ def place_labels(
                 if not inside.contains(room):
                     continue
                 apart = np.hypot(max(abs(dx) - width / 2, 0.0), max(abs(dy) - height / 2, 0.0))
-                cost = PER_LABEL_AWAY * float(apart) + ground.covered(room.grown(1.0))
+                cost = PER_LABEL_AWAY * float(apart) + PER_WRONG_WAY * max(dy if is_above else -dy, 0.0)
+                cost += ground.covered(room.grown(1.0))
                 cost += PER_UPRIGHT * sum(room.left < upright < room.right for upright in ground.uprights)
                 cost += UNREADABLE * any(map(room.overlaps, (*ground.taken, *ground.leaders, *dots)))
                 if cost < least:

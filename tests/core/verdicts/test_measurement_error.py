@@ -187,9 +187,9 @@ def test_swing_changes_with_speed_the_other_way_than_stance() -> None:
 def test_every_absolute_angle_is_judged_as_a_height_and_every_movement_as_a_shape() -> None:
     """By what the columns are called, not by the table: at 60 deg 4.3 % of the mean are 2.58, 4 % 2.4.
 
-    A knee's height needs 2.77186 x hypot(2.2, 2.4) = 9.02452, its shape 2.77186 x hypot(1.2, 2.58) = 7.88709; an ankle's
-    2.77186 x 4.5 = 12.47336 and 2.77186 x 3.3 = 9.14713. The knee's straightening, which people repeat less well, has
-    2.77186 x 2.4 = 6.65246.
+    A knee's height needs 2.77186 x hypot(2.2, 2.4) = 9.02452, its shape 2.77186 x hypot(1.2, 2.58) = 7.88709; an
+    ankle's 2.77186 x 4.5 = 12.47336 and 2.77186 x 3.3 = 9.14713. The knee's straightening, which people repeat less
+    well, has 2.77186 x 2.4 = 6.65246.
     """
     heights = ["at_initial_contact", "peak_deg", "minimum", "terminal_extension", "plantarflexion", "dorsiflexion"]
     heights += ["at_mid_stance", "at_toe_off"]

@@ -8,13 +8,14 @@ from uuid import UUID
 
 import numpy as np
 import pytest
+from app.results.beside_choice import Beside
 from PySide6.QtCore import Qt
 from PySide6.QtTest import QTest
 from PySide6.QtWidgets import QApplication, QFileDialog
 from pytestqt.qtbot import QtBot
 
-from app.results.beside_choice import Beside
 from app.results.result_page import STRIDES
+from app.results.thin_line import ThinLine
 from app.storage.exchange import import_session
 from app.storage.opened import OpenedLibrary
 from app.summary.comparison import Contrast
