@@ -181,7 +181,7 @@ def contradictions(first: dict[str, Any]) -> Iterator[str]:
                     f"{round(number)}" for number in [_number(value.rstrip("\u00b0 *"))] if number is not None
                 }
     for value in next(tile["values"] for tile in first["tiles"] if tile["name"].startswith("Knee")):
-        side = {"left": "L", "right": "R"}.get((value["chip"] or {}).get("alt", ""))
+        side = {"left": "L", "right": "R"}.get((value["chip"] or {}).get("alt", ""), "")
         if side and value["text"].endswith("\u00b0"):
             shown[side].add(value["text"].rstrip("\u00b0"))
     if found := re.match(r"(Left|Right) knee flexes (\d+)\u00b0 from stance to swing", first["summary"]["first"]):
