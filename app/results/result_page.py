@@ -55,7 +55,8 @@ WALK, RECORDING = later("Whole walk"), later("Whole recording")
 
 RECORDINGS = (116, 240)  # px: the narrowest and the widest that their box becomes
 BOTTOM = 40  # px high: the row that closes the summary
-OTHERS = 298  # px high: all else of a summary than charts and table
+OTHERS, COMPACT_OTHERS = 298, 270  # px high: all else of a summary than charts and table
+SECOND_TOOLS = 56  # px high: where the tools take two rows
 CHART = 222  # px high: what the charts have before the table gets more rows
 TOOLS = 44  # px high
 LEGS, LEGS_SHARE = 144, 0.135  # px wide, or of the page
@@ -191,7 +192,8 @@ class ResultPage(Themed):
         if room != self._room or self._is_placed_otherwise():
             self._room = room
             self._place()
-        self.legs.setFixedWidth(self._look.theme.px(max(LEGS, LEGS_SHARE * width)))
+        legs = self._look.theme.px(max(LEGS, LEGS_SHARE * width))
+        self.legs.setFixedWidth(max(legs, _least_width(self.legs)))  # words may need more in another language
         self._fit_parts()
         self._fit_table()
 
@@ -202,7 +204,9 @@ class ResultPage(Themed):
 
     def _fit_table(self) -> None:
         """Show as many rows of what differs as leave the charts their room; alone it has all of the page."""
-        self.differs.set_room(self._height - (OTHERS if self._room.is_compact else OTHERS + CHART))
+        others = COMPACT_OTHERS if self._room.is_compact else OTHERS + CHART
+        others += 0 if self._has_choices else SECOND_TOOLS
+        self.differs.set_room(self._height - others, is_compact=self._room.is_compact)
 
     def focus(self) -> None:
         """Give the focus to the first choice of the page."""
@@ -550,8 +554,9 @@ class ResultPage(Themed):
         charts.show_beside(found, words, sides)
         charts.show_marks([bracket] if bracket is not None else [], gaps_of(facts))
         charts.show_labels([label for kind in facts.kinds for label in labels_of(facts, kind)])
-        if bracket is not None:
-            self.legs.percent = max(bracket.points, key=lambda one: one.angle_deg).percent
+        points = bracket.points if bracket is not None else [label.point for label in labels_of(facts, JointKind.KNEE)]
+        if points:  # of the headline, else where the knee is bent most
+            self.legs.percent = max(points, key=lambda one: one.angle_deg).percent
         self._thin = _bent(found) if found is not None else {}
         self._show_moving_legs()
 
@@ -605,9 +610,13 @@ class ResultPage(Themed):
             return
         if self._drawn is None or self._drawn[0] is not visit or self._drawn[1] is not recording:
             self._drawn = visit, recording, mean_legs(visit.session, visit.analysis, recording)
-        knees = {side: facts.measured_curve_deg(side, JointKind.KNEE) for side in facts.gait}
-        reported = {side: knee for side, knee in knees.items() if facts.verdicts.joint(knee_of(side)).shape.is_reported}
-        self.legs.show_legs(self._drawn[2], reported, self._thin)
+        knees = {
+            side: facts.measured_curve_deg(side, JointKind.KNEE)
+            if facts.verdicts.joint(knee_of(side)).shape.is_reported
+            else None
+            for side in facts.gait
+        }
+        self.legs.show_legs(self._drawn[2], knees, self._thin)
 
     def _on_cursor_moved(self, percent: float) -> None:
         self.cycles.charts.show_cursor(dict.fromkeys(Side, percent) if not self.legs.isHidden() else {})

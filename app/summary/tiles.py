@@ -83,6 +83,8 @@ class Tile:
     goal: str = ""
     why: str = ""
     goal_words: str = ""
+    brief: str = ""
+    """The name where room is short; empty: the same."""
 
     @property
     def last(self) -> str:
@@ -97,7 +99,7 @@ class Tile:
 
     @property
     def in_words(self) -> str:
-        """The tile read out."""
+        """The tile read out, by its whole name."""
         values = ", ".join(
             " ".join(filter(None, [one.side.letter if one.side is not None else "", one.text])) for one in self.values
         )
@@ -155,7 +157,16 @@ def _knee(facts: Facts, walked: list[CourseVisit]) -> Tile:
     stated = changes[0] if len(changes) == 1 else _of_both(values, changes)
     if len(values) == 1 and len(walked) < 2 and not missing:
         stated = _beside_other(facts, sides[0]) or stated
-    tile = Tile(KNEE, name, "", tuple(values), stated, SCALES[KNEE], why=why if missing else "")
+    tile = Tile(
+        KNEE,
+        name,
+        "",
+        tuple(values),
+        stated,
+        SCALES[KNEE],
+        why=why if missing else "",
+        brief=tr("Knee, stance to swing"),
+    )
     return _with_goals(facts, tile, GoalOf.LEFT, GoalOf.RIGHT)
 
 
@@ -213,7 +224,7 @@ def _stance(facts: Facts, walked: list[CourseVisit]) -> Tile:
     zone = (-found.healthy, found.healthy) if math.isfinite(found.healthy) else None
     if not found.is_reported:
         return Tile(STANCE, name, "", (value,), TileChange(""), SCALES[STANCE], why=tr(NOT_REPORTED))
-    tile = Tile(STANCE, name, tr("points"), (value,), stated, SCALES[STANCE], zone)
+    tile = Tile(STANCE, name, tr("points"), (value,), stated, SCALES[STANCE], zone, brief=tr("Stance, L − R"))
     return _with_goals(facts, tile, GoalOf.BETWEEN)
 
 
@@ -256,7 +267,8 @@ def _change(column: str, found: Difference, day: str) -> TileChange:
     if not found.is_judged:
         return TileChange(brief, brief=brief, size=size, day=day)
     words = brief if found.exceeds else tr("{change} since {day}, within error").format(change=size, day=day)
-    return TileChange(words, found.difference > 0, found.exceeds, brief, size, day)
+    is_none = not round(found.difference, DECIMALS[column])  # what is shown as no change has no arrow
+    return TileChange(words, None if is_none else found.difference > 0, found.exceeds, brief, size, day)
 
 
 def _with_goals(facts: Facts, tile: Tile, *kinds: GoalOf) -> Tile:

@@ -18,6 +18,7 @@ from app.summary.numbers_in_words import fixed
 from app.summary.panels import why_no_band
 from app.summary.plain_text import plain, plain_lines
 from app.summary.request import ReportRequest
+from app.summary.what_stands_out import caveat, printed_findings
 from app.wording.findings import sentence
 from app.wording.recordings import with_shown_names
 from app.wording.translation import tr
@@ -45,6 +46,7 @@ def words_page(request: ReportRequest, facts: Facts, comparison: Comparison | No
         else []
     )
     return [
+        *_findings(facts, comparison),
         *quality_matrix(facts),
         heading(tr("Method and accuracy")),
         note(what(request, facts, comparison)),
@@ -55,6 +57,13 @@ def words_page(request: ReportRequest, facts: Facts, comparison: Comparison | No
         *words,
         {"kind": "signature", "said": [tr("Name"), tr("Signature"), tr("Date")]},
     ]
+
+
+def _findings(facts: Facts, comparison: Comparison | None) -> list[Block]:
+    """What exceeds its error or a band by enough for a sentence, at most three, and one caution."""
+    found = [" ".join(filter(None, [one.stated, one.evidence])) for one in printed_findings(facts, comparison)]
+    stated = [*found, *caveat(facts, comparison)]
+    return [heading(tr("Findings")), bullets(stated)] if stated else []
 
 
 def _remarks(request: ReportRequest, facts: Facts) -> list[Block]:

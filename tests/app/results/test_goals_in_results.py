@@ -7,11 +7,11 @@ from dataclasses import replace
 import pytest
 
 from app.results.compared_table import comparison_table
-from app.results.summary_text import key_figures
 from app.summary.agreed import agreed_with
 from app.summary.comparison import Comparison, Contrast
 from app.summary.facts import Facts
 from app.summary.request import AnalysedVisit
+from app.summary.tiles import tiles_of
 from app.summary.visits import WalkedVisit, visits_by_condition
 from app.summary.what_differs import what_differs
 from app.widgets.table_cells import TextCell
@@ -48,12 +48,15 @@ def facts(day: str, visit: tuple[Session, Analysis]) -> Facts:
     return Facts(AnalysedVisit(on(day, visit), visit[1]), walk_of(visit[1]))
 
 
-def test_a_key_figure_has_its_goal_beneath_it(visit: tuple[Session, Analysis]) -> None:
-    notes = {one.key: one.note for one in key_figures(facts("2026-11-21", visit))}
-    assert notes["speed_m_s"] == f"goal 1.20{SPACE}m/s"
-    assert "goal" not in notes["cadence_steps_min"]
-    before = {one.key: one.note for one in key_figures(facts("2026-09-29", visit))}
-    assert not any("goal" in note for note in before.values())
+def test_a_tile_has_its_goal_at_its_scale_and_read_out(visit: tuple[Session, Analysis]) -> None:
+    tiles = {one.column: one for one in tiles_of(facts("2026-11-21", visit))}
+    speed, stance = tiles["speed_m_s"], tiles["stance_percent"]
+    assert (speed.goal, speed.goals) == (f"goal 1.20{SPACE}m/s", (1.2,))
+    assert "goal" in speed.in_words
+    assert stance.goals == (2.0, -2.0)  # either leg may be the longer
+    assert stance.goal.startswith("goal")
+    assert not any(tiles[column].goal for column in ("cadence_steps_min", "knee_stance_to_swing_deg"))
+    assert not any(one.goal or one.goals for one in tiles_of(facts("2026-09-29", visit)))
 
 
 def test_a_figure_that_is_not_reported_has_its_reason_and_no_goal(visit: tuple[Session, Analysis]) -> None:

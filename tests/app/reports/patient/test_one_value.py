@@ -125,7 +125,7 @@ def test_page_one_and_the_patients_page_judge_the_knee_alike(
 
 
 @pytest.mark.parametrize("first_deg", [34.0, 50.0])
-def test_the_screen_states_first_what_page_one_states_first(qtbot: QtBot, now: AnalysedVisit, first_deg: float) -> None:
+def test_the_screen_states_first_what_a_report_states_first(qtbot: QtBot, now: AnalysedVisit, first_deg: float) -> None:
     request = request_of(visit_on(FIRST, (first_deg, 12)), now)
     facts = facts_of(request)
     summary = first_page(request, facts, comparison_of(request))["summary"]
