@@ -12,9 +12,9 @@ from PySide6.QtGui import QAccessible, QColor, QFont, QFontMetrics, QPainter, QP
 from PySide6.QtWidgets import QSizePolicy, QWidget
 
 from app.theme.icons import Icon, paint_icon
+from app.theme.leg_chip import paint_chip
 from app.theme.notifier import ThemeNotifier
 from app.theme.theme import CARD_RADIUS
-from app.widgets.chip import paint_chip
 from app.widgets.text import MEDIUM, REGULAR, SEMIBOLD
 from app.wording.body import joint_name, name_of
 from app.wording.translation import capitalised, figure_text, tr

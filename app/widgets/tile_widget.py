@@ -5,11 +5,11 @@ from PySide6.QtGui import QAccessible, QColor, QFont, QFontMetrics, QKeyEvent, Q
 from PySide6.QtWidgets import QWidget
 
 from app.theme.icons import Icon, paint_icon
+from app.theme.leg_chip import CHIP, paint_chip
 from app.theme.notifier import ThemeNotifier
 from app.theme.theme import CONTROL_RADIUS
 from app.widgets.battery import WIDTH as BATTERY_WIDTH
 from app.widgets.battery import paint_battery
-from app.widgets.chip import CHIP, paint_chip
 from app.widgets.painted_text import PaintedText, height_for
 from app.widgets.sensor_tile import SensorTile, TileState, rate_and_loss
 from app.widgets.text import MEDIUM, SEMIBOLD
