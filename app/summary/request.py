@@ -67,8 +67,6 @@ class ReportRequest:
         A visit before this one to compare with, in place of the conditions.
     course
         The patient's visits in order of time, this one the last; from two on, a page shows the course.
-    patient_language
-        In which language a page for the patient is added, as "de"; empty: none is.
     """
 
     visit: AnalysedVisit
@@ -81,7 +79,6 @@ class ReportRequest:
     paper: str = "a4"
     earlier: AnalysedVisit | None = None
     course: tuple[CourseVisit, ...] = ()
-    patient_language: str = ""
     comment_by: str = ""
 
     def __post_init__(self) -> None:

@@ -18,9 +18,9 @@ class ReportPrinter(QObject):
 
     confirmed = Signal()
 
-    def __init__(self, window: QWidget) -> None:
+    def __init__(self, window: QWidget, title: str) -> None:
         super().__init__(window)
-        self._window = window
+        self._window, self._title = window, title
         self._printer: QPrinter | None = None
         self.dialog: QPrintDialog | None = None
 
@@ -28,7 +28,7 @@ class ReportPrinter(QObject):
         """Ask for a printer; `name` is the document's."""
         self._printer = make_printer(name, paper)
         self.dialog = QPrintDialog(self._printer, self._window)
-        self.dialog.setWindowTitle(tr("Print the report"))
+        self.dialog.setWindowTitle(self._title)
         self.dialog.setAttribute(Qt.WidgetAttribute.WA_DeleteOnClose)
         self.dialog.setWindowModality(Qt.WindowModality.WindowModal)
         self.dialog.accepted.connect(self.confirmed)
