@@ -232,7 +232,9 @@ class _Words:
 
     def texts(self, speed: _Number | None, facts: Facts) -> list[list[str]]:
         found = self._found
-        stated = [[self.say(later("What this means")), " ".join([self.say(MEANING[found.column]), *self._to_goal(facts)])]]
+        stated = [
+            [self.say(later("What this means")), " ".join([self.say(MEANING[found.column]), *self._to_goal(facts)])]
+        ]
         if found.column != SPEED and speed is not None and (words := self._of_speed(speed, facts)):
             stated.append([self.say(later("Your walking speed")), words])
         return stated
@@ -258,7 +260,9 @@ class _Words:
     def since(self, of_month: str, of_day: str, day: datetime.date) -> str:
         is_same_month = self.today is not None and (day.year, day.month) == (self.today.year, self.today.month)
         words = self.when(day)
-        return self.say(of_day).replace("{day}", words) if is_same_month else self.say(of_month).replace("{month}", words)
+        return (
+            self.say(of_day).replace("{day}", words) if is_same_month else self.say(of_month).replace("{month}", words)
+        )
 
     def rounded(self, value: float) -> str:
         return figure_text(value, ".0f" if self._found.column == KNEE else ".1f", "en")

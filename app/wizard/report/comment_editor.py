@@ -13,7 +13,7 @@ from app.widgets.text import SEMIBOLD, Text
 from app.widgets.themed import Themed
 from app.wording.translation import tr
 
-HEIGHT = 132
+HEIGHT, NOTE_HEIGHT = 112, 36
 REBUILT_AFTER_MS = 300  # without a key pressed
 
 
@@ -51,6 +51,7 @@ class CommentEditor(Themed):
         self.field.setTabChangesFocus(True)
         self.field.installEventFilter(self)
         self.note = Text(look, size=13, tone="ink2", wraps=True)
+        self.note.setAlignment(Qt.AlignmentFlag.AlignTop)
         self.button = Button(look, tr("Confirm comment"), ButtonKind.SECONDARY, Icon.CHECK, tr("Ctrl Enter"))
         column = QVBoxLayout(self)
         column.setContentsMargins(0, 0, 0, 0)
@@ -105,10 +106,14 @@ class CommentEditor(Themed):
 
     def _show_state(self, state: CommentState, by: str = "") -> None:
         self.state = state
-        confirmed = tr("Confirmed by {name}. Printed on page one.").format(name=by) if by else tr("Confirmed. Printed on page one.")
+        confirmed = (
+            tr("Confirmed by {name}. Printed on page one.").format(name=by)
+            if by
+            else tr("Confirmed. Printed on page one.")
+        )
         note = {
-            CommentState.EMPTY: tr("Optional. Printed on page one once confirmed."),
-            CommentState.DRAFT: tr("Draft from the findings. Not printed until you confirm it."),
+            CommentState.EMPTY: tr("Optional. Printed once confirmed."),
+            CommentState.DRAFT: tr("Draft from the findings, printed once you confirm it."),
             CommentState.TYPED: tr("Not confirmed, so not printed."),
             CommentState.CONFIRMED: confirmed,
         }[state]
@@ -134,4 +139,5 @@ class CommentEditor(Themed):
         px = self._look.theme.px
         self._column.setSpacing(px(8))
         self.field.setFixedHeight(px(HEIGHT))
+        self.note.setMinimumHeight(px(NOTE_HEIGHT))  # of two lines, so that nothing moves with the words
         self.field.setFont(self._look.theme.font(14))

@@ -78,12 +78,19 @@ class ReportPage(Themed):
         if spoken_language() in LANGUAGES:
             self.language.choose(spoken_language())
         self._card = Card(look, padding=20, spacing=12)
-        for parts in (
-            (self.editor, self._added_title, self.added, self._earlier_title, self.earlier),
-            (self._language_title, self.language, self._also, self.formats, self._sheet, self.paper),
+        for part in (self.editor, self._earlier_title, self.earlier):
+            self._card.column.addWidget(part)
+        for title, control in (
+            (self._added_title, self.added),
+            (self._language_title, self.language),
+            (self._sheet, self.paper),
         ):
-            for part in parts:
-                self._card.column.addWidget(part)
+            row = QHBoxLayout()
+            row.addWidget(title, 1)
+            row.addWidget(control)
+            self._card.column.addLayout(row)
+        for part in (self._also, self.formats):
+            self._card.column.addWidget(part)
         self._card.column.addStretch(1)
         self._row = QBoxLayout(QBoxLayout.Direction.LeftToRight, self)
         self._pages = QHBoxLayout()
@@ -105,8 +112,8 @@ class ReportPage(Themed):
     @property
     def tab_order(self) -> list[QWidget]:
         words: list[QWidget] = [self.small, self.reading, self.comment, self.editor.button]
-        choices = [*self.added.buttons, self.earlier, *self.language.segments]
-        return [*words, *choices, *self.formats.buttons, *self.paper.segments]
+        choices = [self.earlier, *self.added.buttons, *self.language.segments, *self.paper.segments]
+        return [*words, *choices, *self.formats.buttons]
 
     def focus(self) -> None:
         """Give the focus to the pages: the words are optional, and Enter belongs to the report."""

@@ -3,6 +3,7 @@
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from dataclasses import dataclass
+from itertools import combinations
 from pathlib import Path
 from typing import TYPE_CHECKING
 from uuid import UUID
@@ -23,6 +24,7 @@ from devices.files.refusal import FileRefusedError
 if TYPE_CHECKING:
     from app.storage.opened import OpenedLibrary
     from app.storage.stored import StoredSession
+    from app.wizard.report.leaving_dialog import Rows
 
 OTHERS = ("xlsx", "c3d", "mot", "fhir")  # without the patient's name
 
@@ -113,6 +115,19 @@ def exporting(
         return out, lines
 
     return save
+
+
+def previews(opened: "OpenedLibrary", session_id: UUID) -> "dict[frozenset[str], Rows]":
+    """For each choice of what was typed freely all that then leaves without the name, beside the figures."""
+    from app.exports.exports import preview_from_library
+
+    choices = [chosen for count in range(len(Typed) + 1) for chosen in combinations(Typed, count)]
+    return {
+        frozenset(map(str, chosen)): [
+            (name, str(value)) for name, value in preview_from_library(opened, session_id, chosen)
+        ]
+        for chosen in choices
+    }
 
 
 @contextmanager

@@ -1,23 +1,20 @@
 """What goes into the patient's file: the report as it will print, and the results as other programs read them."""
 
 import logging
-from collections.abc import Callable, Mapping
+from collections.abc import Mapping
 from dataclasses import replace
 from datetime import datetime
-from functools import partial
-from itertools import combinations
 from pathlib import Path
 from typing import TYPE_CHECKING
 from uuid import UUID
 
 from PySide6.QtCore import QObject, QUrl
 from PySide6.QtGui import QDesktopServices
-from PySide6.QtWidgets import QFileDialog, QStackedWidget
+from PySide6.QtWidgets import QFileDialog
 
 from app.exports.proposed_names import free_name, session_name
 from app.storage.audit import LETTER_FORMAT, REPORT_FORMAT, about
 from app.storage.operators import CLINIC
-from app.storage.pseudonyms import Typed
 from app.storage.stored import Action
 from app.summary.course_lanes import CourseVisit
 from app.summary.report_dates import day
@@ -29,13 +26,13 @@ from app.theme.notifier import ThemeNotifier
 from app.widgets.action_bar import BarAction, BarState
 from app.widgets.folder_dialog import ask_for_new_file, ask_for_new_folder
 from app.widgets.rail_row import StepState
-from app.widgets.sentence_page import SentencePage
 from app.wizard.keys import Intent, KeyAction
-from app.wizard.report.comment_editor import CommentState
+from app.wizard.report.comment_control import CommentControl
+from app.wizard.report.frame import ReportFrame
 from app.wizard.report.leaving_dialog import LeavingDialog
-from app.wizard.report.page import LETTER, ReportPage
-from app.wizard.report.printing import PRINTED_PPI, ReportPrinter
-from app.wizard.report.saving import OTHERS, Export, exporting, file_name, saving_report
+from app.wizard.report.page import LETTER
+from app.wizard.report.printing import ReportPrinter, printed_pages
+from app.wizard.report.saving import OTHERS, Export, exporting, file_name, previews, saving_report
 from app.wizard.resuming import course_to, courses_before, read_analysed
 from app.wizard.step import Step, StepId
 from app.wording.translation import tr
@@ -63,37 +60,34 @@ class ReportStep(Step):
     ) -> None:
         super().__init__(look, visit, parent)
         self._controller = controller
-        self._frame: _ReportFrame | None = None
+        self._frame: ReportFrame | None = None
         self.dialog: QFileDialog | None = None
         self.saved: Path | None = None  # the report
         self.exported: Path | None = None  # the folder of the data
         self.is_saving = False
         self._kept: frozenset[str] = frozenset()  # of what was typed freely: leaves with the files without a name
-        self._shown_comment = ("", "", False)  # as the page has it: words, who confirmed them, whether they are
-        self._draft = ""  # from the findings
-        self._has_cleared = False  # somebody wants no draft
         self._clinic = ""
         self._earlier: tuple[UUID, AnalysedVisit] | None = None  # as was read last
         self._before: tuple[CourseVisit, ...] = ()  # earlier visits of the course, in order of time
         self._has_failed = False  # the preview, so that no page is in sight
         self._preview: ReportPreview | None = None  # of its threads
+        self.comments = CommentControl(visit, self)
+        self.comments.changed.connect(self._on_comment_changed)
         visit.preview.done.connect(self._on_previewed)
         visit.preview.failed.connect(self._on_preview_failed)
         visit.evaluation.done.connect(self._show)
-        visit.changed.connect(self._on_visit_changed)
 
     @property
-    def page(self) -> "_ReportFrame":
+    def page(self) -> "ReportFrame":
         if self._frame is None:
-            self._frame = _ReportFrame(self._look)
-            self._frame.report.editor.edited.connect(self._on_comment_edited)
-            self._frame.report.editor.confirmed.connect(self._on_comment_confirmed)
+            self._frame = ReportFrame(self._look)
+            self.comments.show_on(self._frame.report.editor)
             self._frame.report.options_changed.connect(self._on_options_changed)
             self._frame.report.sharper_required.connect(self._draw)
-            self.printer = ReportPrinter(self._frame, tr("Print the report"))
-            self.printer.confirmed.connect(self._on_print_confirmed)
-            self.letter_printer = ReportPrinter(self._frame, tr("Print the patient letter"))
-            self.letter_printer.confirmed.connect(self._on_letter_confirmed)
+            self.printer = ReportPrinter(self._frame, tr("Print the report"), REPORT_FORMAT)
+            self.letter_printer = ReportPrinter(self._frame, tr("Print the patient letter"), LETTER_FORMAT)
+            for printer in (self.printer, self.letter_printer):
+                printer.confirmed.connect(self._on_print_confirmed)
         return self._frame
 
     @property
@@ -114,16 +108,15 @@ class ReportStep(Step):
 
     @property
     def comment(self) -> str:
-        return self._visit.record.comment
+        return self.comments.words
 
     def enter(self) -> None:
-        self._has_cleared = False
-        self._show_comment()
+        self.comments.begin()
         self._read_choices()
         self._show()
 
     def leave(self) -> None:
-        self.page.report.editor.flush()
+        self.comments.flush()
         self._visit.preview.stop()
 
     def bar(self) -> BarState:
@@ -138,12 +131,10 @@ class ReportStep(Step):
         show = BarAction(tr("Open the folder"), self._open_folder)
         note = tr("Saved as {folder}.").format(folder=written.name)
         is_first = self.saved is None
-        return BarState(
-            primary=replace(save, is_requested=is_first), others=(export,), quiet=(*quiet, show), note=note
-        )
+        return BarState(primary=replace(save, is_requested=is_first), others=(export,), quiet=(*quiet, show), note=note)
 
     def _note(self) -> str:
-        if self._frame is not None and self._frame.report.editor.state is CommentState.TYPED:
+        if self.comments.is_unconfirmed:
             return tr("The clinical comment is not confirmed, so it is not printed.")
         return tr("The report shows the patient code only, no name.")
 
@@ -151,7 +142,7 @@ class ReportStep(Step):
         """Ask where the report's PDF is to be."""
         if not self.can_save() or self.is_saving or self._visit.session is None:
             return
-        self.page.report.editor.flush()
+        self.comments.flush()
         self.dialog = ask_for_new_file(self.page, tr("Save report"), self._file_proposed_in, self.save_report)
 
     def _file_proposed_in(self, place: Path) -> str:
@@ -168,13 +159,13 @@ class ReportStep(Step):
     def _export(self) -> None:
         if not self.can_save() or self.is_saving:
             return
-        self.page.report.editor.flush()
+        self.comments.flush()
         session = self._visit.session
         if session is None or not set(OTHERS) & set(self.page.report.formats.chosen):
             self._ask_where()
             return
         session_id = session.id
-        self._controller.run(lambda opened: _previews(opened, session_id), self._on_previews, self._on_refused, self)
+        self._controller.run(lambda opened: previews(opened, session_id), self._on_previews, self._on_refused, self)
 
     def _on_previews(self, previews: "Mapping[frozenset[str], Rows]") -> None:
         """Show what leaves without the name before anybody states where to."""
@@ -223,40 +214,28 @@ class ReportStep(Step):
 
     def _ask_printer(self, printer: ReportPrinter, what: str = "") -> None:
         if self.can_save() and self._visit.session is not None:
-            self.page.report.editor.flush()
+            self.comments.flush()
             name = file_name(self._visit.session, what).removesuffix(".pdf")
             printer.ask(name, self.page.report.paper.choice)
 
     def _on_print_confirmed(self) -> None:
-        self._print(self.printer, REPORT_FORMAT, _report_pages)
-
-    def _on_letter_confirmed(self) -> None:
-        language = self.page.report.language.choice
-        self._print(self.letter_printer, LETTER_FORMAT, partial(_letter_pages, language))
-
-    def _print(self, printer: ReportPrinter, document: str, draw: Callable[[ReportRequest], list[bytes]]) -> None:
-        request, stored = self._request(), self._visit.session
-        if request is None or stored is None:
+        printer, request, stored = self.sender(), self._request(), self._visit.session
+        if request is None or stored is None or not isinstance(printer, ReportPrinter):
             return
-        session_id = stored.id
+        session_id, document, language = stored.id, printer.document, self.page.report.language.choice
 
-        def work(opened: "OpenedLibrary", _report: Report) -> list[bytes]:
+        def work(opened: "OpenedLibrary", _report: Report) -> tuple[str, list[bytes]]:
             opened.library.audit.note(Action.PRINT, about("session", session_id), format=document)
-            return draw(request)
+            return document, printed_pages(document, request, language)
 
-        done = self._on_printable if printer is self.printer else self._on_letter_printable
-        self._controller.run_long(work, done, self._on_refused, None, self)
+        self._controller.run_long(work, self._on_printable, self._on_refused, None, self)
 
-    def _on_printable(self, pages: list[bytes]) -> None:
-        self._put(self.printer, pages)
-
-    def _on_letter_printable(self, pages: list[bytes]) -> None:
-        self._put(self.letter_printer, pages)
-
-    def _put(self, printer: ReportPrinter, pages: list[bytes]) -> None:
+    def _on_printable(self, found: tuple[str, list[bytes]]) -> None:
+        document, pages = found
+        printer = self.printer if document == REPORT_FORMAT else self.letter_printer
         if not printer.put(pages):
             self.reported.emit(
-                tr("The printer did not accept the report."), tr("Save the report, then print the file.")
+                tr("The printer did not accept the pages."), tr("Save or export them, then print the file.")
             )
 
     def can_save(self) -> bool:
@@ -288,14 +267,14 @@ class ReportStep(Step):
         walks = default_walks(visit)
         if not walks:
             return None
-        chosen = self.page.report.added.chosen
+        chosen, (comment, comment_by) = self.page.report.added.chosen, self.comments.printed
         return ReportRequest(
             visit=visit,
             walks=walks,
             made_at=datetime.now().astimezone(),
             software_version=version_of("gaitwright"),
-            comment=self.comment if self._visit.record.is_comment_confirmed else "",
-            comment_by=self._visit.record.comment_by,
+            comment=comment,
+            comment_by=comment_by,
             operator=evaluation.session.operator,
             clinic=self._clinic,
             earlier=self._earlier_chosen(),
@@ -325,10 +304,9 @@ class ReportStep(Step):
         return work
 
     def _on_previewed(self, found: tuple[list[bytes], str]) -> None:
-        pages, self._draft = found
+        pages, draft = found
         self.page.report.show_pages(pages)
-        if self._draft and not self.comment and not self.page.report.editor.is_typing:
-            self._show_comment()
+        self.comments.take_draft(draft)
         if self._has_failed:
             self._has_failed = False
             self.reported.emit("", "")
@@ -340,41 +318,10 @@ class ReportStep(Step):
         self.page.report.show_pages([])
         self.reported.emit(tr("The report cannot be shown."), tr("See the log for details."))
 
-    def _on_comment_edited(self, comment: str) -> None:
-        self._has_cleared = not comment
-        self._visit.record.set_comment(comment, self._shown_comment[0])
-        self._after_comment()
-
-    def _on_comment_confirmed(self, comment: str) -> None:
-        self._visit.record.confirm_comment(comment, self._shown_comment[0])
-        self._after_comment()
-
-    def _after_comment(self) -> None:
-        self._show_comment()
-        self._draw()
+    def _on_comment_changed(self) -> None:
+        if self._frame is not None and self._frame.isVisible():
+            self._draw()
         self.changed.emit()
-
-    @property
-    def _held_comment(self) -> tuple[str, str, bool]:
-        record = self._visit.record
-        return record.comment, record.comment_by, record.is_comment_confirmed
-
-    def _show_comment(self) -> None:
-        """Show the session's words, else the draft unless somebody has cleared it."""
-        self._shown_comment = comment, by, is_confirmed = self._held_comment
-        state = CommentState.CONFIRMED if is_confirmed else CommentState.TYPED
-        if not comment:
-            comment = "" if self._has_cleared else self._draft
-            state = CommentState.DRAFT if comment else CommentState.EMPTY
-        self.page.report.editor.show_comment(comment, state, by)
-
-    def _on_visit_changed(self) -> None:
-        """Show the words of another station, unless somebody types."""
-        frame = self._frame
-        if frame is not None and self._held_comment != self._shown_comment and not frame.report.editor.is_typing:
-            self._show_comment()
-            if frame.isVisible():
-                self._draw()
 
     def _on_options_changed(self) -> None:
         chosen = self.page.report.chosen_visit
@@ -460,49 +407,6 @@ class ReportStep(Step):
         self.reported.emit(what, remedy)
 
 
-def _report_pages(request: ReportRequest) -> list[bytes]:
-    from app.reports.patient.document import ReportPreview
-
-    return ReportPreview().pages(request, PRINTED_PPI)
-
-
-def _letter_pages(language: str, request: ReportRequest) -> list[bytes]:
-    from app.reports.patient.letter import letter_pages
-
-    return letter_pages(request, language, PRINTED_PPI)
-
-
-def _previews(opened: "OpenedLibrary", session_id: UUID) -> "dict[frozenset[str], Rows]":
-    """For each choice of what was typed freely all that then leaves without the name, beside the figures."""
-    from app.exports.exports import preview_from_library
-
-    choices = [chosen for count in range(len(Typed) + 1) for chosen in combinations(Typed, count)]
-    return {
-        frozenset(map(str, chosen)): [
-            (name, str(value)) for name, value in preview_from_library(opened, session_id, chosen)
-        ]
-        for chosen in choices
-    }
-
-
 def _words_of(line: "SessionSummary") -> str:
     """A visit in a list: its day, and under which conditions the patient walked."""
     return ", ".join([day(line.started), *filter(None, dict.fromkeys(line.conditions))])
-
-
-class _ReportFrame(QStackedWidget):
-    """The report, or what is in its place."""
-
-    def __init__(self, look: ThemeNotifier) -> None:
-        super().__init__()
-        self.sentence = SentencePage(look)
-        self.report = ReportPage(look)
-        for page in (self.sentence, self.report):
-            self.addWidget(page)
-
-    def set_room(self, width: float, height: float) -> None:
-        self.report.set_room(width, height)
-
-    def focus(self) -> None:
-        if self.currentWidget() is self.report:
-            self.report.focus()

@@ -218,7 +218,10 @@ class SensorsStep(Step):
         sensors, before = self._visit.sensors, self._visit.placement_before
         if not before or sensors.site_of != before or sensors.are_loose or sensors.detected:
             return False
-        bar, status = self._of_open(), [sensors.status[name] for name in before]
+        received = sensors.status
+        if not before.keys() <= received.keys():
+            return False
+        bar, status = self._of_open(), [received[name] for name in before]
         is_whole = bar.primary is not None and bar.primary.is_enabled and bar.primary.is_requested and not bar.note
         is_charged = all(one.details.battery is None or one.details.battery >= LOW for one in status)
         return is_whole and is_charged and all(one.silent_s < SILENT_FROM_S and one.received_hz > 0 for one in status)

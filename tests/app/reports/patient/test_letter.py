@@ -139,7 +139,9 @@ def test_a_first_visit_whose_knee_was_not_reported_is_not_compared_with(
     request = of(request_of_demonstration, first_deg=31.0)
     reported = unsure(Joint.LEFT_KNEE)
     before = course((walked(knee_deg=31.0, speed_m_s=0.8, reported=reported), ""), reported=reported)
-    stated = words(letter_data(replace(request, course=(replace(request.course[0], course=before), request.course[1])), "en"))
+    stated = words(
+        letter_data(replace(request, course=(replace(request.course[0], course=before), request.course[1])), "en")
+    )
     assert f"Your left knee bends {KNEE_DEG} degrees." in stated
     assert "it was" not in stated
     assert "first measurement" not in stated
@@ -164,7 +166,11 @@ def test_the_speed_beside_the_knee_has_no_number_of_its_own(request_of_demonstra
 
 
 def _every(request: ReportRequest) -> Iterator[ReportRequest]:
-    goals = (), (knee_goal(45.0), Goal(SPEED, GoalOf.WALK, 0.9, AGREED)), (knee_goal(80.0), Goal(SPEED, GoalOf.WALK, 1.9, AGREED))
+    goals = (
+        (),
+        (knee_goal(45.0), Goal(SPEED, GoalOf.WALK, 0.9, AGREED)),
+        (knee_goal(80.0), Goal(SPEED, GoalOf.WALK, 1.9, AGREED)),
+    )
     for agreed, first, day, sd in product(goals, (None, 31.0, 57.0), (FIRST, TODAY), (None, 11.0)):
         yield of(request, *agreed, first_deg=first, first_speed=1.2, day=day, knee_sd_deg=sd)
 
@@ -190,7 +196,9 @@ def test_every_message_is_short_in_every_language() -> None:
 
 def test_german_is_stated_in_german_and_with_its_comma(request_of_demonstration: ReportRequest) -> None:
     data = letter_data(of(request_of_demonstration, first_deg=31.0, knee_sd_deg=11.0), "de")
-    assert "Sie gehen jetzt 1,2 Meter in einer Sekunde. Im September waren es 0,8 Meter in einer Sekunde." in words(data)
+    assert "Sie gehen jetzt 1,2 Meter in einer Sekunde. Im September waren es 0,8 Meter in einer Sekunde." in words(
+        data
+    )
     knee = words(letter_data(of(request_of_demonstration, knee_goal(80.0), first_deg=31.0), "de"))
     assert f"Ihr linkes Knie beugt sich jetzt um {KNEE_DEG} Grad. Im September waren es 31 Grad." in knee
     assert "19 Grad fehlen bis zum vereinbarten Ziel." in knee

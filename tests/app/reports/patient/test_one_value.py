@@ -113,9 +113,7 @@ def test_two_walks_of_one_condition_that_are_laid_side_by_side_stand_alone(now: 
 
 
 @pytest.mark.parametrize(("first_deg", "is_real"), [(34.0, True), (50.0, False)])
-def test_page_one_and_the_letter_judge_the_knee_alike(
-    now: AnalysedVisit, first_deg: float, is_real: bool
-) -> None:
+def test_page_one_and_the_letter_judge_the_knee_alike(now: AnalysedVisit, first_deg: float, is_real: bool) -> None:
     request = request_of(visit_on(FIRST, (first_deg, 12)), now)
     facts = facts_of(request)
     page_one, patient = str(answer(facts, comparison_of(request))), str(letter_data(request, "en"))

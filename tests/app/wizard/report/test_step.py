@@ -97,7 +97,7 @@ def test_the_draft_from_the_findings_is_not_printed_and_once_confirmed_it_is_wit
     draft = editor.words
     assert "knee" in draft.lower()
     assert (request_of(step).comment, request_of(step).comment_by) == ("", "")
-    assert "Not printed until you confirm it." in editor.note.text()
+    assert "printed once you confirm it." in editor.note.text()
     editor.button.click()
     assert editor.state is CommentState.CONFIRMED
     state, session = visit.controller.state, visit.session
@@ -135,7 +135,7 @@ def test_a_draft_that_somebody_cleared_does_not_come_back_while_they_look(qtbot:
     qtbot.waitUntil(lambda: editor.state is CommentState.DRAFT, timeout=WAIT_MS)
     editor.field.setPlainText("")
     editor.flush()
-    step._on_previewed(([], "Another draft."))
+    step.comments.take_draft("Another draft.")
     assert (editor.words, editor.state) == ("", CommentState.EMPTY)
 
 
