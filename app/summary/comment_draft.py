@@ -10,7 +10,7 @@ MOST_SENTENCES = 3
 
 
 def comment_draft(facts: Facts, comparison: Comparison | None) -> str:
-    """The headline, then what else stands out, of other measures than the headline's."""
+    """The headline, then findings of other measures."""
     headline = headline_of(facts)
     bands = tr(BANDS_ON_SCREEN[0]), tr(BANDS_ON_SCREEN[1])
     others = [one for one in ranked_findings(facts, comparison, bands) if one.column != headline.column]

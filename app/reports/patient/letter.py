@@ -12,7 +12,7 @@ from importlib.resources import files
 from app.charts.cycles import is_spread_enough
 from app.charts.drawing import Picture
 from app.reports.patient.document import PAGES, draw_pages, facts_of, set_pages
-from app.reports.patient.letter_pictures import Shown, goal_bar, leg_picture, speed_picture
+from app.reports.patient.letter_pictures import LetterValue, goal_bar, leg_picture, speed_picture
 from app.summary.course import CourseCondition, change
 from app.summary.facts import Facts
 from app.summary.goals import GoalFigure
@@ -106,7 +106,7 @@ def letter_data(request: ReportRequest, language: str) -> dict[str, object]:
     say, facts = spoken_in(language), facts_of(request)
     today = date_of(request.visit.recording(request.shown).started or request.visit.session.started)
     number = _knee(request, facts) or _speed(request, facts)
-    words = _Words(say, language, today, number)
+    words = _LetterWords(say, language, today, number)
     session = request.visit.session
     title = say(later("Your walking"))
     return {
@@ -181,7 +181,7 @@ def _read(walked: CourseCondition, number: _Number) -> float:
 
 
 @dataclass(frozen=True, slots=True)
-class _Words:
+class _LetterWords:
     """What is stated of a number, in the letter's language; values are rounded once and subtracted as printed."""
 
     say: Say
@@ -239,15 +239,15 @@ class _Words:
             stated.append([self.say(later("Your walking speed")), words])
         return stated
 
-    def shown(self) -> tuple[Shown, Shown | None, Shown | None]:
+    def shown(self) -> tuple[LetterValue, LetterValue | None, LetterValue | None]:
         """Today's value, that of the first visit, and the goal, as pictures have them."""
         found, unit = self._found, "°" if self._found.column == KNEE else ""
-        now = Shown(found.now, self.value(found.now) + unit, self.say(later("Today")))
+        now = LetterValue(found.now, self.value(found.now) + unit, self.say(later("Today")))
         before, goal = None, None
         if found.day is not None:
-            before = Shown(found.before, self.value(found.before) + unit, self.when(found.day))
+            before = LetterValue(found.before, self.value(found.before) + unit, self.when(found.day))
         if not math.isnan(self._goal_value):
-            goal = Shown(self._goal_value, self.value(self._goal_value) + unit, self.say(later("Goal")))
+            goal = LetterValue(self._goal_value, self.value(self._goal_value) + unit, self.say(later("Goal")))
         return now, before, goal
 
     def when(self, day: datetime.date) -> str:

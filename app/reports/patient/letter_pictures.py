@@ -1,4 +1,4 @@
-"""Pictures of the patient letter: a leg that swings through with its knee bent, a way walked in a second, a goal bar."""
+"""Pictures of the patient letter: a leg that swings through, a way walked in a second, a goal bar."""
 
 import math
 from dataclasses import dataclass
@@ -13,14 +13,13 @@ HIP, FLOOR = (59 * MM, 7 * MM), 80 * MM
 THIGH, SHANK, FOOT, HEEL = 32.0 * MM, 30.0 * MM, 15.0 * MM, 3.0 * MM
 HALF = {"thigh": (6.2 * MM, 4.0 * MM), "shank": (3.9 * MM, 2.7 * MM), "foot": (2.9 * MM, 1.8 * MM)}
 LEAN_DEG = 21.0  # of the thigh, forward, when the leg swings through
-FILLED = {Side.LEFT: "#F3BE9B", Side.RIGHT: PAPER.paper}
-BEFORE = "#EEF2F5"
+FILLED = {Side.LEFT: PAPER.left_soft, Side.RIGHT: PAPER.paper}
 LARGE, SMALL, WORD = 36.0, 24.0, 13.5
 APART = 18 * MM  # labels of the bar nearer than this share no line
 
 
 @dataclass(frozen=True, slots=True)
-class Shown:
+class LetterValue:
     """A value as it is printed, and when it was measured: "53°", "Today"."""
 
     value: float
@@ -28,12 +27,12 @@ class Shown:
     when: str
 
 
-def leg_picture(side: Side, now: Shown, before: Shown | None, alt: str) -> Picture:
+def leg_picture(side: Side, now: LetterValue, before: LetterValue | None, alt: str) -> Picture:
     """The knee bent by `now` degrees, over the one of an earlier visit, which is dotted."""
     parts = [line(13 * MM, FLOOR, 149 * MM, FLOOR, PAPER.note, 1.2)]
     knee = _from(HIP, THIGH, LEAN_DEG)
     if before is not None:
-        parts += _shank(knee, before.value, BEFORE, PAPER.note, "2.5 2")
+        parts += _shank(knee, before.value, PAPER.earlier, PAPER.note, "2.5 2")
     dash = "4.6 2.2" if side is Side.RIGHT else ""
     parts += [_segment(HIP, knee, HALF["thigh"], FILLED[side], COLOURS[side], dash)]
     parts += _shank(knee, now.value, FILLED[side], COLOURS[side], dash)
@@ -53,7 +52,7 @@ def leg_picture(side: Side, now: Shown, before: Shown | None, alt: str) -> Pictu
     return picture(parts, WIDTH, HEIGHT, alt)
 
 
-def speed_picture(now: Shown, before: Shown | None, alt: str) -> Picture:
+def speed_picture(now: LetterValue, before: LetterValue | None, alt: str) -> Picture:
     """How far the patient comes in a second, over how far it was at an earlier visit."""
     longest = max(now.value, before.value if before is not None else 0.0)
     left, most = 13 * MM, 108 * MM
@@ -71,7 +70,9 @@ def speed_picture(now: Shown, before: Shown | None, alt: str) -> Picture:
     return picture(parts, WIDTH, HEIGHT, alt)
 
 
-def goal_bar(now: Shown, before: Shown | None, goal: Shown | None, step: float, side: Side | None, alt: str) -> Picture:
+def goal_bar(
+    now: LetterValue, before: LetterValue | None, goal: LetterValue | None, step: float, side: Side | None, alt: str
+) -> Picture:
     """Values on a track, with a tick at the goal where there is one; `step` is what its ends are rounded to."""
     values = [one.value for one in (now, before, goal) if one is not None]
     low = max(0.0, step * math.floor((min(values) - step) / step))
@@ -81,10 +82,10 @@ def goal_bar(now: Shown, before: Shown | None, goal: Shown | None, step: float, 
         return WIDTH * (value - low) / (high - low)
 
     middle, colour = BAR_AT + BAR / 2, PAPER.ink if side is None else COLOURS[side]
-    parts = [_bar(0.0, WIDTH, "#E6EAED")]
+    parts = [_bar(0.0, WIDTH, PAPER.track)]
     if before is not None:
         ends = sorted((at(before.value), at(now.value)))
-        parts.append(_bar(*ends, "#C9D1D8" if side is not Side.LEFT else FILLED[Side.LEFT]))
+        parts.append(_bar(ends[0], ends[1], PAPER.way if side is not Side.LEFT else FILLED[Side.LEFT]))
         parts.append(_dot(at(before.value), middle, 6.0, PAPER.paper, PAPER.note))
     parts.append(_dot(at(now.value), middle, 7.5, colour if side is not Side.RIGHT else PAPER.paper, colour))
     if goal is not None:

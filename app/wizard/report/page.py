@@ -78,7 +78,8 @@ class ReportPage(Themed):
         if spoken_language() in LANGUAGES:
             self.language.choose(spoken_language())
         self._card = Card(look, padding=20, spacing=12)
-        for part in (self.editor, self._earlier_title, self.earlier):
+        above: list[QWidget] = [self.editor, self._earlier_title, self.earlier]
+        for part in above:
             self._card.column.addWidget(part)
         for title, control in (
             (self._added_title, self.added),
@@ -89,8 +90,8 @@ class ReportPage(Themed):
             row.addWidget(title, 1)
             row.addWidget(control)
             self._card.column.addLayout(row)
-        for part in (self._also, self.formats):
-            self._card.column.addWidget(part)
+        self._card.column.addWidget(self._also)
+        self._card.column.addWidget(self.formats)
         self._card.column.addStretch(1)
         self._row = QBoxLayout(QBoxLayout.Direction.LeftToRight, self)
         self._pages = QHBoxLayout()

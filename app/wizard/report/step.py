@@ -150,7 +150,7 @@ class ReportStep(Step):
 
     def save_report(self, file: str) -> None:
         """Write the report as one PDF; `saved` names it once it is there."""
-        request, stored = self._request(), self._visit.session
+        request, stored = self.request(), self._visit.session
         if request is not None and stored is not None:
             self.is_saving = True
             work = saving_report(request, stored.id, Path(file))
@@ -219,7 +219,7 @@ class ReportStep(Step):
             printer.ask(name, self.page.report.paper.choice)
 
     def _on_print_confirmed(self) -> None:
-        printer, request, stored = self.sender(), self._request(), self._visit.session
+        printer, request, stored = self.sender(), self.request(), self._visit.session
         if request is None or stored is None or not isinstance(printer, ReportPrinter):
             return
         session_id, document, language = stored.id, printer.document, self.page.report.language.choice
@@ -259,7 +259,8 @@ class ReportStep(Step):
             self._frame.setCurrentWidget(self._frame.sentence)
         self.changed.emit()
 
-    def _request(self) -> ReportRequest | None:
+    def request(self) -> ReportRequest | None:
+        """What the report shows now; None where there is no walk, or the visit to compare with is not read."""
         evaluation = self._visit.evaluation
         if evaluation.session is None or evaluation.analysis is None or self._lacks_earlier:
             return None
@@ -289,7 +290,7 @@ class ReportStep(Step):
 
     def _draw(self) -> None:
         """Set the pages again, beside the screen."""
-        request = self._request()
+        request = self.request()
         if request is not None:
             self._visit.preview.start(self._previewing(request, self.page.report.pages_ppi, not self.comment))
 
@@ -387,7 +388,7 @@ class ReportStep(Step):
             return
         page = self.page.report
         chosen, language = tuple(page.formats.chosen), page.language.choice
-        export = Export(session, analysis, self._request(), chosen, self._kept, language)
+        export = Export(session, analysis, self.request(), chosen, self._kept, language)
         self.is_saving = True
         work = exporting(export, stored, Path(folder))
         self._controller.run_long(work, self._on_exported, self._on_refused, None, self)

@@ -122,7 +122,7 @@ class StandStillStep(Step):
             self._moved = standing.moved or self._moved
             self._sound(standing.required_s - standing.still_s)
             is_counting = self._phase is StandPhase.COUNTING
-            if self._begins_by_itself and standing.still_s >= STILL_BEFORE_S:
+            if self.begins_by_itself and standing.still_s >= STILL_BEFORE_S:
                 self._start()
             if is_counting and standing.is_done and self._is_recording and self._visit.recordings.has_begun:
                 self._finish()
@@ -138,7 +138,7 @@ class StandStillStep(Step):
             return BarState(primary=go_on, others=(again,))
         if self._phase is StandPhase.SKIPPED:
             return BarState(primary=go_on)
-        note = tr("Starts by itself when the patient stands still.") if self._begins_by_itself else ""
+        note = tr("Starts by itself when the patient stands still.") if self.begins_by_itself else ""
         return BarState(primary=BarAction(tr("Start countdown"), self._start, space, Icon.PLAY), note=note)
 
     def on_intent(self, intent: Intent) -> bool:
@@ -150,7 +150,7 @@ class StandStillStep(Step):
     # what happens
 
     @property
-    def _begins_by_itself(self) -> bool:
+    def begins_by_itself(self) -> bool:
         """Whether stillness begins the count: as at the last visit, and none has been begun in this one."""
         is_ready = self._phase is StandPhase.READY and not self._visit.recordings.is_recording
         return is_ready and bool(self._visit.placement_before) and not self._visit.recordings.every

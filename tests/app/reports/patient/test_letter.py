@@ -54,7 +54,7 @@ def _visits(
     recordings: object, analysis: Analysis, knee_deg: float, speed_m_s: float, day: datetime.date
 ) -> tuple[CourseVisit, ...]:
     before = course((walked(knee_deg=knee_deg, speed_m_s=speed_m_s), ""))
-    now = course_of(analysis, recordings)  # type: ignore[arg-type]  # a session's
+    now = course_of(analysis, recordings)  # type: ignore[arg-type]  # the recordings of a session
     days = (day, before), (TODAY, now)
     return tuple(CourseVisit(UUID(int=k), at, one) for k, (at, one) in enumerate(days))
 
@@ -159,7 +159,7 @@ def test_where_nothing_is_read_without_care_the_letter_has_no_number(request_of_
 def test_the_speed_beside_the_knee_has_no_number_of_its_own(request_of_demonstration: ReportRequest) -> None:
     goal = Goal(SPEED, GoalOf.WALK, 0.9, AGREED)
     texts = letter_data(of(request_of_demonstration, goal, first_deg=31.0), "en")["texts"]
-    assert texts[1] == [  # type: ignore[index]  # a list
+    assert texts[1] == [  # type: ignore[index]  # it is a list of pairs
         "Your walking speed",
         "You also walk faster than in September. You have reached your goal for walking speed.",
     ]

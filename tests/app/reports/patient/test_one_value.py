@@ -103,7 +103,7 @@ def test_a_knee_has_one_value_on_screen_report_course_and_in_files(now: Analysed
     assert "52.4" in str(answer(shown, comparison))
     letter = letter_data(request, "en")
     assert letter["number"] == "Your left knee now bends 52\N{NO-BREAK SPACE}degrees."
-    assert letter["beside"][0] == "In July it was 34 degrees."  # type: ignore[index]  # a list
+    assert letter["beside"][0] == "In July it was 34 degrees."  # type: ignore[index]  # it is a list of sentences
 
 
 def test_two_walks_of_one_condition_that_are_laid_side_by_side_stand_alone(now: AnalysedVisit) -> None:

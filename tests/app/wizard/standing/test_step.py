@@ -59,11 +59,11 @@ def test_movement_is_seen_before_the_count_begins(qtbot: QtBot, step: StandStill
 def test_with_the_last_visits_set_up_stillness_begins_the_count_and_without_it_only_a_key(
     qtbot: QtBot, step: StandStillStep, visit: Visit, worn: dict[str, Site]
 ) -> None:
-    assert not step._begins_by_itself
+    assert not step.begins_by_itself
     visit.placement_before = worn
     assert step.bar().note == "Starts by itself when the patient stands still."
     ticks(qtbot, step, lambda: phase(step) is StandPhase.COUNTING)
-    assert not step._begins_by_itself  # another one begins by a key
+    assert not step.begins_by_itself  # another one begins by a key
 
 
 def test_nobody_who_moves_begins_a_count(
