@@ -192,6 +192,8 @@ class Wizard(QWidget):
         self.close_visit()
         visit = Visit(self._controller, choices(), self)
         self._visit = visit
+        visit.source_before = self._settings.latest_source
+        visit.sensors.opened.connect(self._on_source_opened)
         look = self._look
         steps = (
             PatientStep(look, visit, self),
@@ -231,6 +233,7 @@ class Wizard(QWidget):
         for signal in (visit.changed, visit.sensors.changed, visit.patient.changed, visit.evaluation.done):
             signal.disconnect(self._on_visit_changed)
         visit.resumed.disconnect(self._on_resumed)
+        visit.sensors.opened.disconnect(self._on_source_opened)
         visit.changed_elsewhere.disconnect(self._on_changed_elsewhere)
         visit.deleted_elsewhere.disconnect(self._show_message)
         visit.refused.disconnect(self._on_refused)
@@ -464,13 +467,20 @@ class Wizard(QWidget):
 
     def _on_step_done(self) -> None:
         if self.sender() is self.current and self._current is not StepId.REPORT:
-            if self._current in (StepId.STAND_STILL, StepId.FREE_MOTION):  # which end by themselves
+            ended = {StepId.STAND_STILL, StepId.FREE_MOTION}  # by themselves
+            ended |= {StepId.SENSORS} if self._visit is not None and self._visit.placement_before else set()
+            if self._current in ended:
                 self._deaf_until_s = time.monotonic() + DEAF_S
             self.go_to(StepId(self._current.value + 1))
 
     def _on_visit_changed(self) -> None:
         self._show()
         self.asked.go_on()
+
+    def _on_source_opened(self) -> None:
+        choice = self._visit.sensors.choice if self._visit is not None else None
+        if choice is not None:
+            self._settings.latest_source = choice.key
 
     def _on_asked(self, question: EditQuestion) -> None:
         visit = self.sender()
