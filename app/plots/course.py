@@ -250,7 +250,7 @@ class LaneRow:
             words = tr("on {day}").format(day=day_of(last.visit, visits))
         if not words:
             return
-        arrow, who = arrow_of(one.since_first), ""
+        arrow, who = arrow_of(lane, one.since_first), ""
         if has_sides and one.line.side is not None:
             who = f"{one.line.side.letter} "
         text = Text(self._look, who + words, 13, MEDIUM if arrow is not None and arrow.is_filled else REGULAR)
@@ -293,6 +293,7 @@ class _Words(Themed):
     def add(self, part: QWidget) -> None:
         self._column.insertWidget(self._column.count() - 1, part)
         self._parts.append(part)
+        part.show()
 
     def set_wide(self, is_wide: bool) -> None:
         """Take all the width there is, in place of a column's."""

@@ -23,7 +23,7 @@ from core.body import Side
 from core.goals import Goal
 from core.parameters import KNEE, SPEED, STANCE, Unit, unit_of
 from core.verdicts.goals import GoalStanding, beyond
-from core.verdicts.measurement_error import Difference, Mark
+from core.verdicts.measurement_error import Difference
 
 MOST_NAMED = 2  # changes in the sentence
 TIMING = ("stance_percent", "stride_time_s", "cadence_per_min")
@@ -64,9 +64,9 @@ class _Change:
         return figures if self.lane.kind.column.endswith("_deg") else figures + _unit(self.lane.kind.column)
 
 
-def arrow_of(found: Difference | None) -> Arrow | None:
-    """The arrow before a change; None where its error is not known."""
-    if found is None or not found.is_judged:
+def arrow_of(lane: CourseLane, found: Difference | None) -> Arrow | None:
+    """The arrow before a change; None where its error is not known, or it is shown as none."""
+    if found is None or not found.is_judged or round(found.difference, lane.decimals) == 0:
         return None
     return Arrow(found.difference > 0, found.exceeds)
 
@@ -137,7 +137,7 @@ def _within(
         low, high = (signed(end, decimals(column)) + _unit(column) for end in change.found.interval)
         fits = tr("Anything from {low} to {high} fits.").format(low=low, high=high)
     dagger = f" {DAGGER}" if change.found.is_unverified else ""
-    after = _goals_sentence(shown, visits, affected) or (_legs_sentence(walked, affected) if walked is not None else "")
+    after = _goals_sentence(shown, visits, affected) or (_beside_sentence(walked, affected) if walked else "")
     return _with_brief(ProgressWords(sentence, " ".join(filter(None, [fits + dagger, after]))), change, visits)
 
 
@@ -161,8 +161,7 @@ def _values(
     if not sentence:
         number = max(k for k, visit in enumerate(visits) if visit.course and visit.course.conditions)
         sentence = tr("No values were reported on {day}.").format(day=_long_day(number, visits))
-    between = walked.between_legs(KNEE)
-    healthy = healthy_sentence(between) if legs and between is not None and between.mark is Mark.HEALTHY else ""
+    healthy = _healthy_beside(walked) if legs else ""
     goals = _goals_sentence(shown, visits, affected)
     alone = tr("A trend needs a second visit.") if is_first and len(visits) == 1 else ""
     return ProgressWords(sentence, " ".join(filter(None, [*others, healthy, goals or alone])))
@@ -176,7 +175,7 @@ def _with_brief(words: ProgressWords, change: _Change, visits: Sequence[CourseVi
     brief = tr("{measure} {change} since {day}").format(
         measure=_short_name(column), change=figures, day=day_of(change.since, visits)
     )
-    return ProgressWords(words.sentence, words.second, brief, arrow_of(change.found))
+    return ProgressWords(words.sentence, words.second, brief, arrow_of(change.lane, change.found))
 
 
 def _rank(lane: CourseLane) -> tuple[bool, int, float]:
@@ -225,6 +224,17 @@ def _legs_sentence(walked: CourseCondition, affected: Side | None) -> str:
     )
     clause = _clause(side, value.removesuffix("°"))
     return stated.format(clause=clause, size=fixed(abs(difference), places) + "°", other=side_name(side.other))
+
+
+def _healthy_beside(walked: CourseCondition) -> str:
+    between = walked.between_legs(KNEE)
+    return healthy_sentence(between) if between is not None else ""
+
+
+def _beside_sentence(walked: CourseCondition, affected: Side | None) -> str:
+    """Both knees, and how healthy people's differ."""
+    legs = _legs_sentence(walked, affected)
+    return " ".join(filter(None, [legs, _healthy_beside(walked)])) if legs else ""
 
 
 def _clause(side: Side, value: str) -> str:

@@ -82,6 +82,7 @@ class PatientPanel(TallPage):
         self.shown = Segmented(look, tr("Progress of"), [(WALKING, tr("Walking"), ""), (TESTS, tr("Timed tests"), "")])
         self.condition = Choice(look, tr("Condition"))
         self.condition.let_shrink(100, 200)
+        self.condition.set_height(CONDITION)
         self.count = Text(look, size=12, tone="ink2", wraps=True)
         self.goals = Button(look, tr("Goals"), ButtonKind.QUIET, Icon.GOAL, height=36)
         self.course = CourseCard(look)
@@ -203,7 +204,6 @@ class PatientPanel(TallPage):
         self._statement.setSpacing(px(2))
         for row in (self._who, self._next_row):
             row.setSpacing(px(16))
-        self.condition.setFixedHeight(px(CONDITION))
         self.none_yet.setMinimumHeight(px(72))
         self._fit_sessions()
 
