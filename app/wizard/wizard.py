@@ -69,6 +69,7 @@ class Wizard(QWidget):
         self._steps: dict[StepId, Step] = {}
         self._current = self._offering = StepId.PATIENT  # `_offering`: whose offer to undo the toast shows
         self._ticks = 0
+        self._is_for_report = False  # as soon as what is resumed is there
         self._to_resume: UUID | None = None  # a session that waits for what visits before still save
         self._deaf_until_s = 0.0
         self._reported_of_recording: Message = NOTHING
@@ -121,10 +122,13 @@ class Wizard(QWidget):
             visit.patient.choose_from_list(patient)
         self._go_to(StepId.PATIENT)
 
-    def show_session(self, session_id: UUID) -> None:
-        """Look at what came of a session, or go on with it where nothing has come of it yet."""
+    def show_session(self, session_id: UUID, *, is_for_report: bool = False) -> None:
+        """Look at what came of a session, or go on with it where nothing has come of it yet.
+
+        `is_for_report`: its report is to be written, where that can be.
+        """
         self._begin_visit()
-        self._to_resume = session_id
+        self._to_resume, self._is_for_report = session_id, is_for_report
         self._on_resume_due()
 
     def _on_resume_due(self) -> None:
@@ -525,6 +529,9 @@ class Wizard(QWidget):
             self._go_to(StepId.SENSORS)
         else:
             self._go_to(StepId.RESULTS if all(walk.is_decided for walk in walks) else StepId.WALKING)
+            if self._is_for_report and self._current is StepId.RESULTS:
+                self.go_to(StepId.REPORT)
+        self._is_for_report = False
 
     def _on_room_changed(self, is_compact: bool, width: float, height: float) -> None:
         page = self.current.page if self.current is not None else None
