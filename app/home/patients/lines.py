@@ -9,6 +9,7 @@ from app.summary.course import Course
 from app.theme.icons import Icon
 from app.widgets.line_list import PatientLine, SessionLine
 from app.wording.patients import person, when
+from app.wording.recordings import name_in_words
 from app.wording.translation import tr, tr_n
 
 if TYPE_CHECKING:
@@ -51,5 +52,5 @@ def session_line(
         state, mark = tr("report saved"), Icon.CHECK
     elif has_walk:
         state, mark = tr("report not saved"), Icon.INFO
-    conditions = "; ".join(line.conditions)  # which may hold commas
+    conditions = "; ".join(map(name_in_words, line.conditions))  # which may hold commas
     return SessionLine(line.id, when(line.started, now), conditions, amount, state, is_undecided, mark)

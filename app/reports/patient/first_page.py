@@ -20,6 +20,8 @@ from app.summary.report_dates import moment
 from app.summary.request import ReportRequest
 from app.summary.what_stands_out import MAX_AWAY_SD, caveat, nothing_found, printed_findings
 from app.wording.body import name_of, side_name
+from app.wording.patients import aids_in_words
+from app.wording.recordings import name_in_words
 from app.wording.translation import capitalised, figure_text, joined, tr, tr_n
 from app.wording.verdicts import verdict_alone
 from core.body import Joint, JointKind, Side
@@ -58,7 +60,7 @@ def who(request: ReportRequest) -> str:
         f"{fixed(patient.mass_kg, 0)}\u00a0kg" if patient.mass_kg is not None else "",
         _side_in_words(side, is_prosthetic=is_prosthetic),
         patient.device,
-        tr("no walking aids") if patient.aids == "none" else patient.aids,
+        tr("no walking aids") if patient.aids == "none" else aids_in_words(patient.aids),
         session.surface,
     ]
     return " · ".join(typed(one) for one in known if one)
@@ -83,7 +85,8 @@ def what(request: ReportRequest, facts: Facts, comparison: Comparison | None) ->
     ]
     stated = [" · ".join(filter(None, parts))]
     if comparison is not None:
-        names = " · ".join(f"{part.letter}\u00a0{typed(part.name, CONDITION_LENGTH)}" for part in comparison.parts)
+        called = [(part.letter, name_in_words(part.name)) for part in comparison.parts]
+        names = " · ".join(f"{letter}\u00a0{typed(name, CONDITION_LENGTH)}" for letter, name in called)
         stated.append(
             tr("Compared: {parts} (this page shows {last})").format(parts=names, last=comparison.parts[-1].letter)
         )
