@@ -158,9 +158,7 @@ def test_what_somebody_chose_stays_when_another_walk_is_shown(
     assert page.thin.currentData() is ThinLine.LAST_VISIT
 
 
-def test_t_takes_the_thin_line_away_and_brings_it_back(
-    page: ResultPage, analysis: Analysis, session: Session
-) -> None:
+def test_t_takes_the_thin_line_away_and_brings_it_back(page: ResultPage, analysis: Analysis, session: Session) -> None:
     return_to(page, session, analysis, analysis, analysis)
     choose(page, ThinLine.FIRST_VISIT)
     drawn = thin_curves(page)
