@@ -117,6 +117,15 @@ class Settings(QObject):
         self._put("latest_library", folder)
 
     @property
+    def latest_source(self) -> str:
+        """The key of the source whose sensors were received last here."""
+        return str(self._kept.value("latest_source", ""))
+
+    @latest_source.setter
+    def latest_source(self, key: str) -> None:
+        self._put("latest_source", key)
+
+    @property
     def latest_table(self) -> str:
         """The table of a batch that was asked last; where it is not there any more, it is missing."""
         return str(self._kept.value("latest_table", ""))
