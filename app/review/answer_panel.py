@@ -2,8 +2,8 @@
 
 from collections.abc import Collection, Iterator
 
-from app.summary.answer import answer_of
 from app.summary.facts import Facts
+from app.summary.headline import headline_of
 from app.summary.interval_words import interval_in_figures
 from app.summary.numbers_in_words import in_words, signed
 from app.summary.request import AnalysedVisit
@@ -31,8 +31,8 @@ def panel(session: Session, analysis: Analysis, recording: RecordingAnalysis, dr
     lines: list[str] = []
     if recording.kind is RecordingKind.WALKING:
         facts = Facts(AnalysedVisit(session, analysis), recording)
-        answer = answer_of(facts)
-        lines += [f"### {answer.first}", "", answer.then, "", *_largest(facts), ""]
+        headline = headline_of(facts)
+        lines += [f"### {headline.first}", "", headline.then, "", *_largest(facts), ""]
     joints = [joint for joint in Joint if joint in recording.measured]
     lines += [_line(recording, joint, is_drawn=joint.side in drawn) for joint in joints]
     for side in Side:

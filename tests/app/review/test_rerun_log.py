@@ -17,9 +17,9 @@ from app.exports.gait_csv import write_gait
 from app.review import rerun_log
 from app.review.data_quality_panel import document, name_of_view
 from app.review.rerun_log import write_log
-from app.summary.answer import answer_of
 from app.summary.drawn_legs import draw_legs
 from app.summary.facts import Facts
+from app.summary.headline import headline_of
 from app.summary.request import AnalysedVisit
 from app.summary.walk_figures import verdict_of
 from app.theme.colours import DARK
@@ -468,8 +468,8 @@ def test_beside_the_legs_is_the_answer_with_a_verdict_for_each_joint(walk: tuple
     ((time_s, text),) = words(folder / "session.rrd", "/answer", "TextDocument:text")
     assert time_s == pytest.approx(WALKED.recordings[-1].imu[Site.LEFT_THIGH].time_s[0])  # there from the beginning
     facts = Facts(AnalysedVisit(WALKED, analysis), analysis.recordings[0])
-    answer = answer_of(facts)
-    assert text.startswith(f"### {answer.first}\n\n{answer.then}\n")
+    headline = headline_of(facts)
+    assert text.startswith(f"### {headline.first}\n\n{headline.then}\n")
     for joint in LEG_JOINTS:
         verdict = verdict_word(verdict_of(facts.verdicts.joint(joint)))
         assert f"- **{joint.replace('_', ' ').capitalize()}: {verdict}.**" in text
