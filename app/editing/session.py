@@ -5,9 +5,10 @@ from dataclasses import replace
 
 from PySide6.QtCore import QObject, Signal
 
+from app.editing.confirmation import confirmation, confirmed_by, is_confirmed
 from app.editing.edited_record import EditedRecord
 from app.editing.patient import PatientRecord
-from app.storage.edited_fields import SESSION_CORRECTABLE, session_fields, with_session_fields
+from app.storage.edited_fields import CONFIRMED, SESSION_CORRECTABLE, session_fields, with_session_fields
 from app.storage.stored import Limits, StoredSession
 from app.storage.three_way import Edited, Value, Values, rebased
 from app.system.logs import version_of
@@ -34,7 +35,7 @@ class SessionRecord(EditedRecord[StoredSession]):
         super().__init__(controller, parent)
         self._patient = patient
         self.stored: StoredSession | None = None
-        self._say(_stated_fields(Session(recordings=()), "", Limits()))
+        self._say(_stated_fields(*_whole(None)))
         self._sent = self._stated
         """What was stated about the session when the library was asked last."""
         self._is_busy = False
@@ -64,7 +65,7 @@ class SessionRecord(EditedRecord[StoredSession]):
             software=f"gaitwright {version_of('gaitwright')}",
         )
         limits = self.limits
-        self._sent = _stated_fields(reported, "", limits)
+        self._sent = _stated_fields(reported, "", limits, "")
         self._run(lambda opened: Edited(opened.library.sessions.create(patient.id, reported, limits)), self._on_saved)
 
     def resume(self, stored: StoredSession) -> None:
@@ -87,7 +88,7 @@ class SessionRecord(EditedRecord[StoredSession]):
     def set_limits(self, limits: Limits) -> None:
         """Take what the patient's body does not allow; before there is a session, it waits for that."""
         if limits != self.limits:
-            self._change(_stated_fields(self.reported, self.comment, limits))
+            self._change(_stated_fields(self.reported, self.comment, limits, self._confirmed))
 
     def set_comment(self, comment: str, shown: str) -> None:
         """Take the clinician's words, which were typed where `shown` stood.
@@ -96,15 +97,31 @@ class SessionRecord(EditedRecord[StoredSession]):
         """
         self._change({"comment": comment}, {"comment": shown} if shown != self.comment else {})
 
+    def confirm_comment(self, comment: str, shown: str) -> None:
+        """Take words as in `set_comment`, and that the user who is logged in confirms them."""
+        state = self._controller.state
+        by = state.operator.name if state is not None else ""
+        base = {"comment": shown} if shown != self.comment else {}
+        self._change({"comment": comment, CONFIRMED: confirmation(comment, by)}, base)
+
+    @property
+    def is_comment_confirmed(self) -> bool:
+        return is_confirmed(self.comment, self._confirmed)
+
+    @property
+    def comment_by(self) -> str:
+        """Who confirmed the comment as it is now; empty where nobody did."""
+        return confirmed_by(self._confirmed) if self.is_comment_confirmed else ""
+
     def set_turned(self, joint: Joint, sign: int | None) -> None:
         """Turn (-1) or confirm (1) the sign that was found of a joint; None: as found. `held` follows."""
         self._change({f"turned_sign.{joint}": sign})
 
     def _say(self, stated: Values) -> None:
         """Put what is stated on the screen."""
-        details, comment, limits = _whole(self.stored)
         self._stated = stated
-        self._reported, self.comment, self.limits = with_session_fields(details, comment, limits, stated)
+        whole = with_session_fields(*_whole(self.stored), stated)
+        self._reported, self.comment, self.limits, self._confirmed = whole
 
     def _change(self, stated: Values, base: Values | None = None) -> None:
         """Save what is stated about the session; `base`: what it was based on, if not what the library has."""
@@ -148,10 +165,14 @@ class SessionRecord(EditedRecord[StoredSession]):
         self.changed.emit()
 
     def _on_refused(self, what: str, remedy: str) -> None:
-        """Words stay as they were typed, and are saved with the next; so do limits before there is a session."""
+        """Words stay as they were typed, and are saved with the next; so do limits before there is a session.
+
+        A confirmation does not: what nobody holds is not printed.
+        """
         self._is_busy = False
-        details, _, limits = _whole(self.stored)
-        self._say(_stated_fields(details, self.comment, limits if self.stored is not None else self.limits))
+        details, _, limits, confirmed = _whole(self.stored)
+        limits = limits if self.stored is not None else self.limits
+        self._say(_stated_fields(details, self.comment, limits, confirmed))
         super()._on_refused(what, remedy)
         self.changed.emit()
 
@@ -161,17 +182,17 @@ def current_time() -> str:
     return datetime.datetime.now().astimezone().isoformat(timespec="seconds")
 
 
-def _whole(session: StoredSession | None) -> tuple[Session, str, Limits]:
+def _whole(session: StoredSession | None) -> tuple[Session, str, Limits, str]:
     if session is None:
-        return Session(recordings=()), "", Limits()
-    return session.details, session.comment, session.limits
+        return Session(recordings=()), "", Limits(), ""
+    return session.details, session.comment, session.limits, session.comment_confirmed
 
 
 def _fields_of(session: StoredSession) -> dict[str, Value]:
     return _stated_fields(*_whole(session))
 
 
-def _stated_fields(reported: Session, comment: str, limits: Limits) -> dict[str, Value]:
+def _stated_fields(reported: Session, comment: str, limits: Limits, confirmed: str) -> dict[str, Value]:
     """What is stated about a session while it goes on; the rest is stated once, by whatever made it."""
-    every = session_fields(reported, comment, limits)
+    every = session_fields(reported, comment, limits, confirmed)
     return {name: value for name, value in every.items() if name not in SESSION_CORRECTABLE}

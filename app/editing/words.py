@@ -6,7 +6,8 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from app.storage.edited_fields import ALIGNMENT, GOALS, KEPT, PLACEMENT, TEST
+from app.editing.confirmation import confirmed_by
+from app.storage.edited_fields import ALIGNMENT, CONFIRMED, GOALS, KEPT, PLACEMENT, TEST
 from app.storage.three_way import OtherChange, Value
 from app.wording.alignment import since_in_words
 from app.wording.body import name_of, side_name
@@ -49,6 +50,7 @@ def field_word(field: str) -> str:
         "notes": tr("Notes"),
         "software": tr("Software"),
         "comment": tr("Clinical comment"),
+        CONFIRMED: tr("Clinical comment confirmed"),
         "cannot_stand": tr("Standing"),
         "name": tr("Name"),
         "kind": tr("Type"),
@@ -123,6 +125,8 @@ def _text(name: str, value: str) -> str:
         return "; ".join(map(goal_in_words, held(goals_of_text(value)))) or tr("withdrawn")
     if name == ALIGNMENT:
         return since_in_words(alignment_of_text(value))
+    if name == CONFIRMED:
+        return confirmed_by(value) or tr("another user")
     if name == TEST:
         return planned_words(planned_of_text(value))
     if name == PLACEMENT:

@@ -18,6 +18,7 @@ from core.timed.protocols import planned_of_text, planned_text
 
 PATIENT_CORRECTABLE = tuple(field.name for field in fields(Patient) if field.name not in ("goals", "unknown"))
 KEPT = "is_kept"
+CONFIRMED = "comment_confirmed"
 PLACEMENT = "placement"
 """What a contest about who wears what is called; it is no field of a row that is edited."""
 ALIGNMENT = "alignment"
@@ -54,17 +55,20 @@ def with_patient_fields(reported: Patient, values: Values) -> Patient:
     return replace(reported, affected_side=affected, prosthetic_side=prosthetic, goals=goals, **every)
 
 
-def session_fields(reported: Session, comment: str, limits: Limits) -> dict[str, Value]:
+def session_fields(reported: Session, comment: str, limits: Limits, confirmed: str = "") -> dict[str, Value]:
+    """What was `confirmed` holds the comment's words again: of two people's edits none confirms the other's."""
     values: dict[str, Value] = {name: getattr(reported, name) for name in SESSION_CORRECTABLE}
-    values |= {"comment": comment, "cannot_stand": limits.cannot_stand}
+    values |= {"comment": comment, CONFIRMED: confirmed, "cannot_stand": limits.cannot_stand}
     values |= {f"without_ankle.{side}": side in limits.without_ankle for side in Side}
     values |= {f"zero_rad.{joint}": reported.zero_rad.get(joint) for joint in LEG_JOINTS}
     return values | {f"turned_sign.{joint}": reported.turned_sign.get(joint) for joint in LEG_JOINTS}
 
 
-def with_session_fields(reported: Session, comment: str, limits: Limits, values: Values) -> tuple[Session, str, Limits]:
-    """The same session, comment and limits with `values`, which may be of some fields only."""
-    every: Mapping[str, Any] = session_fields(reported, comment, limits) | dict(values)
+def with_session_fields(
+    reported: Session, comment: str, limits: Limits, confirmed: str, values: Values
+) -> tuple[Session, str, Limits, str]:
+    """The same session, comment, limits and confirmation with `values`, which may be of some fields only."""
+    every: Mapping[str, Any] = session_fields(reported, comment, limits, confirmed) | dict(values)
     stated = replace(
         reported,
         zero_rad={joint: every[f"zero_rad.{joint}"] for joint in LEG_JOINTS if every[f"zero_rad.{joint}"] is not None},
@@ -72,7 +76,7 @@ def with_session_fields(reported: Session, comment: str, limits: Limits, values:
         **{name: every[name] for name in SESSION_CORRECTABLE},
     )
     without = frozenset(side for side in Side if every[f"without_ankle.{side}"])
-    return stated, every["comment"], Limits(without, every["cannot_stand"])
+    return stated, every["comment"], Limits(without, every["cannot_stand"]), every[CONFIRMED]
 
 
 def recording_fields(reported: Recording) -> dict[str, Value]:

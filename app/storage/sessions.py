@@ -223,13 +223,19 @@ def new_placement(
 
 
 def session_changes(
-    row: SessionRow, reported: Session, comment: str | None = None, limits: Limits | None = None
+    row: SessionRow,
+    reported: Session,
+    comment: str | None = None,
+    limits: Limits | None = None,
+    confirmed: str | None = None,
 ) -> list[Change]:
     """What has to change in `row` and its joints so that they match `reported`; raises as `Sessions.change`."""
     _refuse_wrong_joints(reported)
     needed = {name: getattr(reported, name) for name in SESSION_CORRECTABLE}
     if comment is not None:
         needed["comment"] = comment
+    if confirmed is not None:
+        needed["comment_confirmed"] = confirmed
     if limits is not None:
         needed["cannot_stand"] = limits.cannot_stand
     changes = differences(row, needed)

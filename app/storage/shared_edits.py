@@ -31,6 +31,7 @@ from app.storage.sessions import existing_session, new_placement, session_change
 from app.storage.stored import (
     Change,
     LibraryError,
+    Limits,
     PlacedSensor,
     RecordingState,
     Role,
@@ -41,6 +42,7 @@ from app.storage.stored import (
 from app.storage.three_way import Edited, MergeConflict, OtherChange, Value, Values, three_way
 from app.storage.unit_of_work import UnitOfWork
 from core.body import Site
+from core.samples import Session
 
 Changes = Callable[[Values], list[Change]]
 Worn = Mapping[Site, PlacedSensor]
@@ -89,11 +91,11 @@ class SharedEdits:
 
             def changes(values: Values) -> list[Change]:
                 held = stored_session(row)
-                return session_changes(row, *with_session_fields(held.details, held.comment, held.limits, values))
+                return session_changes(row, *with_session_fields(*_whole(held), values))
 
             held = stored_session(row)
             edit = _Edit(self._unit, session, row.patient_id, row.id, changes)
-            contests, others = edit.take(base, stated, session_fields(held.details, held.comment, held.limits))
+            contests, others = edit.take(base, stated, session_fields(*_whole(held)))
             return Edited(stored_session(row), contests, others)
 
     def recording(self, recording_id: UUID, base: Values, stated: Values) -> Edited[StoredRecording]:
@@ -236,3 +238,8 @@ def _worn(row: RecordingRow) -> Worn:
 def _names(sensors: Worn) -> str:
     """Which sensor is worn where, in one line that can be compared and read again."""
     return json.dumps({site.value: sensors[site].name for site in Site if site in sensors}, ensure_ascii=False)
+
+
+def _whole(held: StoredSession) -> tuple[Session, str, Limits, str]:
+    """All that can be edited of a session, as `session_fields` takes it."""
+    return held.details, held.comment, held.limits, held.comment_confirmed

@@ -210,7 +210,10 @@ class Limits:
 
 @dataclass(frozen=True, slots=True)
 class StoredSession:
-    """One visit. `details` holds the recordings too, in order, without samples; `comment` is the clinician's."""
+    """One visit. `details` holds the recordings too, in order, without samples; `comment` is the clinician's.
+
+    `comment_confirmed` is what was confirmed of it, and by whom, as `app.editing.confirmation` has it.
+    """
 
     id: UUID
     version: int
@@ -222,6 +225,7 @@ class StoredSession:
     placements: tuple[Placement, ...]
     recordings: tuple[StoredRecording, ...]
     limits: Limits
+    comment_confirmed: str = ""
 
 
 @dataclass(frozen=True, slots=True)

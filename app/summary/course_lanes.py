@@ -11,7 +11,7 @@ from dataclasses import dataclass
 from typing import NamedTuple
 from uuid import UUID
 
-from app.summary.course import Course, CourseCondition, change
+from app.summary.course import Course, CourseCondition, change, change_between_legs
 from app.wording.measures import decimals
 from core.body import Side
 from core.goals import Goal, GoalOf, agreed_by, held, is_of_walk
@@ -262,10 +262,10 @@ def _change(visits: Sequence[CourseVisit], kind: LaneKind, line: LaneLine, goals
 def _difference(
     visits: Sequence[CourseVisit], kind: LaneKind, line: LaneLine, last: LanePoint, first: LanePoint, is_chosen: bool
 ) -> Difference | None:
-    if kind.is_between:  # what legs differ by at one visit and another: no error of that is known
-        return Difference(last.value - first.value, math.nan, Judgement.NO_PUBLISHED_FIGURE)
     walked = [course.condition(line.condition) for at in (last, first) if (course := visits[at.visit].course)]
     one, other = walked
     assert one is not None  # both have a point in this line
     assert other is not None
+    if kind.is_between:
+        return change_between_legs(one, other, kind.column)
     return change(one, other, kind.column, line.side, is_chosen_before=is_chosen)

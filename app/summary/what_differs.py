@@ -1,16 +1,20 @@
-"""Measures in which the legs differ most.
+"""Measures in which the legs differ most: beyond healthy people's difference, beyond error, within it, not reported.
 
-Measures with goals come first, then those judged, the one of most errors first.
+Among alike those with goals come first, then joints, stance and time, the foot, then the one of most errors.
 """
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
 from app.summary.comparison import compare_legs
+from app.summary.course import change
 from app.summary.facts import Facts
+from app.summary.headline import order_of
 from app.summary.measure_sentences import unit_and_decimals
 from app.summary.numbers_in_words import Band
+from app.summary.trend_lines import walked_visits
 from app.summary.walk_figures import NO_HEIGHT, NO_ZERO, doubt_in
+from app.summary.what_stands_out import FAMILIES
 from app.wording.measures import measure_name
 from app.wording.translation import tr
 from app.wording.verdicts import verdict_word
@@ -18,7 +22,7 @@ from core.body import Side
 from core.gait.spatiotemporal import MeanAndSd
 from core.goals import Goal
 from core.parameters import BETWEEN_LEGS
-from core.verdicts.measurement_error import Difference
+from core.verdicts.measurement_error import Difference, Mark
 from core.verdicts.model import Verdict
 from core.verdicts.quantities import joint_of
 
@@ -45,14 +49,40 @@ class LegsRow:
 
 
 def what_differs(facts: Facts) -> tuple[LegsRow, ...]:
-    """Judged differences by how many errors they are large, then those without an error, then those not reported."""
+    """Every measure of the legs, the largest differences first."""
     rows = [_row(facts, column) for column in BETWEEN_LEGS if any(facts.is_worn(side, column) for side in facts.gait)]
-    return tuple(sorted(rows, key=_weight))
+    return tuple(sorted(rows, key=lambda row: _weight(facts, row)))
 
 
-def _weight(row: LegsRow) -> tuple[bool, bool, bool, float]:
-    """What is reported first is least: measures with goals, then what is judged by how many errors it is large."""
-    return not row.goals, not row.difference.is_judged, not row.difference.is_reported, -row.difference.ratio
+def without_family(rows: Sequence[LegsRow]) -> list[LegsRow]:
+    """A range and the excursion that makes most of it are one movement: the excursion, where it is reported."""
+    reported = {row.column for row in rows if row.difference.is_reported}
+    return [row for row in rows if FAMILIES.get(row.column) not in reported]
+
+
+def since_last(facts: Facts, column: str) -> tuple[Side, Difference] | None:
+    """What a measure of the affected leg, else the left, has changed by since the last visit that has it."""
+    walked = walked_visits(facts.course, facts.condition)
+    parts = [visit.course.condition(facts.condition) for visit in walked if visit.course is not None]
+    side = facts.first_and_second[0]
+    for then in reversed(parts[:-1]):
+        if then is not None and parts[-1] is not None:
+            changed = change(parts[-1], then, column, side)
+            if changed is not None and changed.is_reported:
+                return side, changed
+    return None
+
+
+def _weight(facts: Facts, row: LegsRow) -> tuple[bool, bool, int, tuple[bool, int, bool, float]]:
+    """What is shown first is least: the mark, then as for the headline; what is not judged, then not reported, last."""
+    found = row.difference
+    marks = (Mark.HEALTHY, Mark.ERROR, Mark.NONE)
+    return (
+        not found.is_reported,
+        not found.is_judged,
+        marks.index(found.mark),
+        order_of(facts, row.column, None, found),
+    )
 
 
 def _row(facts: Facts, column: str) -> LegsRow:

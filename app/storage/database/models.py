@@ -158,6 +158,7 @@ class SessionRow(Versioned, Base):
     notes: Mapped[str]
     software: Mapped[str]
     comment: Mapped[str]
+    comment_confirmed: Mapped[str] = mapped_column(default="", server_default="")
     is_simulated: Mapped[bool]
     cannot_stand: Mapped[bool] = mapped_column(default=False, server_default=false())
     findings: Mapped[list[dict[str, Any]]] = mapped_column(JSON)

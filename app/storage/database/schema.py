@@ -11,7 +11,7 @@ from app.storage.stored import LibraryError
 if TYPE_CHECKING:  # it takes long to load, and is needed after an update only
     from alembic.config import Config
 
-NEWEST = "0013"
+NEWEST = "0014"
 
 
 def bring_up_to_date(database: Database) -> None:

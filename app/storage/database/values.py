@@ -134,6 +134,7 @@ def stored_session(row: SessionRow) -> StoredSession:
         placements,
         recordings,
         Limits(frozenset(joint.joint.side for joint in row.joints if joint.is_absent), row.cannot_stand),
+        row.comment_confirmed,
     )
 
 

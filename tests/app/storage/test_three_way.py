@@ -108,8 +108,8 @@ def test_fields_and_back_are_the_same() -> None:
     assert with_patient_fields(Patient(unknown={"x": 1}), patient_fields(patient)) == patient
     reported = Session((), surface="grass", zero_rad={Joint.LEFT_KNEE: 0.0}, turned_sign={Joint.LEFT_ANKLE: -1})
     limits = Limits(frozenset({Side.LEFT}), cannot_stand=True)
-    values = session_fields(reported, "words", limits)
-    assert with_session_fields(Session(()), "", Limits(), values) == (reported, "words", limits)
+    values = session_fields(reported, "words", limits, "confirmed")
+    assert with_session_fields(Session(()), "", Limits(), "", values) == (reported, "words", limits, "confirmed")
     turned = AlignmentChange("A", (PartChange(ProsthesisPart.KNEE_UNIT, turns=-0.5),))
     walk = Recording(
         "walk 1",

@@ -120,7 +120,7 @@ def test_a_visit_that_cannot_be_read_is_a_gap_and_the_change_counts_from_the_fir
     assert change.since_first.difference == pytest.approx(20.0)
     assert lane_in_words(knee, visits).startswith(
         "Knee flexion, stance to swing, left: not reported on 20 Feb, 40 degrees on 20 Mar, not reported on 20 Apr, "
-        "60 degrees on 20 May. +20° since 20 Mar, beyond error (6."
+        "60 degrees on 20 May. +20° since 20 Mar, beyond error (7."
     )
 
 
@@ -161,7 +161,7 @@ def test_a_lane_states_every_value_with_its_day_and_unit() -> None:
     stance = lane_in_words(lane(found, STANCE_LANE), visits)
     assert stance == (
         "Stance, left minus right: \N{MINUS SIGN}4.0 percent of the gait cycle on 20 Jun,"
-        " 0.0 percent of the gait cycle on 20 Nov. +4.0 since 20 Jun, not judged."
+        " 0.0 percent of the gait cycle on 20 Nov. +4.0 since 20 Jun, within error (5.2)."
     )
     assert visit_in_words(0, found, visits) == (
         "20 Jun. Walking speed: 0.71 metres per second. Knee flexion, stance to swing, "
@@ -270,7 +270,7 @@ def test_a_lane_holds_its_goals_and_the_leg_that_they_are_of() -> None:
     assert lane_in_words(knee, visits).endswith("Goal: Knee flexion, stance to swing, right: at least 72°.")
     before = replace(right, agreed=datetime.date(2026, 3, 19))  # the day before the last visit
     reported = lane_in_words(lane(lanes(visits, goals=[before]), KNEE_LANE), visits)
-    assert reported.endswith("right: at least 72°. Not reached; the difference is beyond measurement error (±7.5°).")
+    assert reported.endswith("right: at least 72°. Not reached; the difference is beyond measurement error (±8.0°).")
     same_day = replace(right, agreed=datetime.date(2026, 3, 20))
     assert "Not reached" not in lane_in_words(lane(lanes(visits, goals=[same_day]), KNEE_LANE), visits)
     apart = goal(STANCE_LANE.column, GoalOf.BETWEEN, 2.0)

@@ -1,0 +1,316 @@
+"""The one sentence over a walk: what changed, else how the legs differ, else that they are similar, with numbers.
+
+The first rule that holds makes it: a change since the last visit, since the first, the affected side against the sound
+one beyond what healthy people differ by, the same beyond error alone, and legs that are similar. Screen and report show
+the same one.
+"""
+
+import datetime
+import math
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+from enum import StrEnum
+
+from app.charts.cycles import is_mean_enough
+from app.summary.comparison import compare_legs
+from app.summary.course_lanes import CourseVisit
+from app.summary.facts import Facts
+from app.summary.interval_words import evidence, interval_words, may_be_error_sentence
+from app.summary.measure_sentences import CLAUSES, unit_and_decimals, unit_in_sentence, who_in_sentence
+from app.summary.numbers_in_words import DAGGER, fixed, signed
+from app.summary.trend_lines import TrendLine, trend_columns, trend_lines, walked_visits
+from app.summary.what_stands_out import LEAST_CERTAIN, STATED_BETWEEN_LEGS, unsure_sentence
+from app.wording.body import side_name
+from app.wording.dates import day_in_words
+from app.wording.measures import name_in_sentence
+from app.wording.translation import capitalised, joined, tr
+from core.body import Side
+from core.parameters import BY_COLUMN, KNEE, SPEED, STANCE, QuantityClass, Unit, unit_of
+from core.timed.measures import COLUMNS, PROTOCOLS
+from core.verdicts.measurement_error import Difference, Mark
+from core.verdicts.quantities import joint_of
+
+MOST_BESIDE = 3  # sentences of the second line
+
+
+class Rule(StrEnum):
+    """What the sentence is of."""
+
+    SINCE_LAST = "since_last_visit"
+    SINCE_FIRST = "since_first_visit"
+    LEGS = "legs_beyond_healthy"
+    LEGS_BEYOND_ERROR = "legs_beyond_error"
+    SIMILAR = "similar"
+    ONE_LEG = "one_leg"
+    NOTHING = "nothing"
+    """Too few strides, or nothing of the walk is reported."""
+
+
+@dataclass(frozen=True, slots=True)
+class Headline:
+    """`first` is read from afar, `beside` are at most three sentences under it; the last is left out first.
+
+    `column` and `side` are what it is of, empty and None where it is of no single measure. `since` is the visit that
+    it compares with, else the last one before, None at a first visit: its curves are drawn thin.
+    """
+
+    rule: Rule
+    first: str
+    beside: tuple[str, ...] = ()
+    column: str = ""
+    side: Side | None = None
+    since: CourseVisit | None = None
+
+    @property
+    def then(self) -> str:
+        """The second line whole."""
+        return " ".join(self.beside)
+
+
+def headline_of(facts: Facts) -> Headline:
+    """The sentence of a walk's condition."""
+    strides = {side: facts.strides(side) for side in facts.gait}
+    if not strides:
+        return Headline(Rule.NOTHING, tr("No results for this walk: no foot or shank sensor showed a stride."))
+    if not any(map(is_mean_enough, strides.values())):
+        counted = joined([f"{side.letter}\N{NO-BREAK SPACE}{strides[side]}" for side in Side if side in strides])
+        first = tr("Too few strides for a mean: {counted}.").format(counted=counted)
+        return Headline(Rule.NOTHING, first, (tr("Repeat the walk over a longer distance or time."),))
+    walked = walked_visits(facts.course, facts.condition)
+    lines = _lines(facts, walked)
+    found = _change(facts, walked, lines) or _between_legs(facts) or _similar(facts) or _one_leg(facts)
+    if found is None:
+        found = Headline(Rule.NOTHING, tr("No value of this walk is reported."))
+    last = _since_last(facts, walked, lines, found)
+    beside = (*found.beside, last) if found.rule is Rule.SINCE_FIRST else (last, *found.beside)
+    since = found.since if found.since is not None else walked[-2] if len(walked) > 1 else None
+    shown = tuple(filter(None, beside))[:MOST_BESIDE]
+    return Headline(found.rule, found.first, shown, found.column, found.side, since)
+
+
+def order_of(facts: Facts, column: str, side: Side | None, found: Difference) -> tuple[bool, int, bool, float]:
+    """What comes first among differences of one rule is least: goals, the joints, stance and time, the foot, the ratio.
+
+    Where both sides changed, the affected one comes before the other.
+    """
+    sides = tuple(Side) if side is None else (side,)
+    is_of_other = side is not None and facts.affected not in (None, side)
+    return not facts.part.agreed.is_chosen(column, sides), _kind(column), is_of_other, -round(found.ratio, 1)
+
+
+def _kind(column: str) -> int:
+    if joint_of(column, Side.LEFT) is not None:
+        return 0
+    if column in PROTOCOLS or column == SPEED or BY_COLUMN[column].rests_on is QuantityClass.TIMING:
+        return 1
+    return 2
+
+
+def _lines(facts: Facts, walked: Sequence[CourseVisit]) -> list[TrendLine]:
+    agreed = facts.part.agreed
+    return trend_lines(walked, facts.condition, (*trend_columns(agreed), *COLUMNS.values()), agreed)
+
+
+def _change(facts: Facts, walked: Sequence[CourseVisit], lines: Sequence[TrendLine]) -> Headline | None:
+    """What has changed by more than a sentence needs, since the last visit, else since the first."""
+    days = [visit.day for visit in walked]
+    for rule in (Rule.SINCE_LAST, Rule.SINCE_FIRST):
+        changed = [(line, found, at) for line, found, at in _since(rule, lines) if found.is_worth_a_sentence]
+        if changed:
+            line, found, at = min(changed, key=lambda one: order_of(facts, one[0].column, one[0].side, one[1]))
+            values = {one.visit: one.value for one in line.values}
+            first = change_sentence_since(
+                line.column, line.side, found.difference, (values[at], line.values[-1].value), (walked[at].day, days)
+            )
+            parts = evidence_in_sentences(line.column, found)
+            return Headline(rule, first, parts, line.column, line.side, walked[at])
+    return None
+
+
+def _since(rule: Rule, lines: Sequence[TrendLine]) -> Iterator[tuple[TrendLine, Difference, int]]:
+    """Each line with its change and the visit that this is from; since the first only where another is the last."""
+    for line in lines:
+        found, at = (line.since_last, line.before) if rule is Rule.SINCE_LAST else (line.since_first, line.first)
+        if found is not None and (rule is Rule.SINCE_LAST or line.first != line.before):
+            yield line, found, at
+
+
+def change_sentence_since(
+    column: str,
+    side: Side | None,
+    difference: float,
+    values: tuple[float, float],
+    since: tuple[datetime.date, Sequence[datetime.date]],
+) -> str:
+    """What a measure is, and by how much it is up or down since a day.
+
+    Parameters
+    ----------
+    difference
+        Subtracted before rounding; where rounded values disagree with it, all have a decimal more.
+    values
+        At that day and now.
+    since
+        The day, and all days of the visits, which have their years where they are of several.
+    """
+    day = day_in_words(*since)
+    if column == STANCE and side is not None:
+        before, now, size = rounded(column, (*values, abs(difference)))
+        stated = (
+            tr("{side} stance is {size} points shorter than on {day}: {before} → {now} %.")
+            if difference < 0
+            else tr("{side} stance is {size} points longer than on {day}: {before} → {now} %.")
+        )
+        return stated.format(side=capitalised(side_name(side)), size=size, day=day, before=before, now=now)
+    _, now, size = rounded(column, (*values, abs(difference)))
+    unit = unit_and_decimals(column)[0]
+    stated = tr("{clause}, down {size} since {day}.") if difference < 0 else tr("{clause}, up {size} since {day}.")
+    return stated.format(clause=clause_of(column, side, now + unit), size=size + unit, day=day)
+
+
+def clause_of(column: str, side: Side | None, value: str) -> str:
+    """What a measure is, as a main clause: "Left knee flexes 53° from stance to swing"."""
+    if side is None:
+        return capitalised(tr("{measure} is {value}").format(measure=name_in_sentence(column), value=value))
+    pattern = CLAUSES.get(column) if column != STANCE else None
+    if pattern is not None:
+        return tr(pattern).format(who=who_in_sentence(column, side), value=value)
+    stated = tr("{side} {measure} is {value}")
+    return stated.format(side=capitalised(side_name(side)), measure=name_in_sentence(column), value=value)
+
+
+def evidence_in_sentences(column: str, found: Difference) -> tuple[str, ...]:
+    """What is known of a difference beside its size, sentence by sentence, so that the last can be left out."""
+    stated = evidence(column, found)
+    likely = interval_words(column, found)
+    if not likely or not stated:
+        return (stated,) if stated else ()
+    first = f"{capitalised(likely)}.{f' {DAGGER}' if found.is_unverified else ''}"
+    rest = stated.removeprefix(first).strip()
+    return (first, rest) if rest else (first,)
+
+
+def rounded(column: str, values: Sequence[float], *, is_other_shown: bool = True) -> tuple[str, ...]:
+    """Two values and their difference, rounded once: degrees whole, all with a decimal more where they disagree.
+
+    The chart shows degrees of both legs beside the sentence; of other measures the first is shown if the sentence does.
+    """
+    is_angle = unit_of(column) is Unit.DEGREES
+    decimals = 0 if is_angle else unit_and_decimals(column)[1]
+    before, now, size = values
+    shown = abs(round(now, decimals) - round(before, decimals))
+    if (is_angle or is_other_shown) and not math.isclose(shown, round(size, decimals), abs_tol=0.1 * 10.0**-decimals):
+        decimals += 1
+    return tuple(fixed(value, decimals) for value in values)
+
+
+def _between_legs(facts: Facts) -> Headline | None:
+    """How the affected leg differs from the other: beyond healthy people's difference, else beyond error."""
+    if len(facts.gait) < len(Side):
+        return None
+    first, second = facts.first_and_second
+    legs = {column: compare_legs(facts.part, column, (first, second)) for column in STATED_BETWEEN_LEGS}
+    for rule, mark in ((Rule.LEGS, Mark.HEALTHY), (Rule.LEGS_BEYOND_ERROR, Mark.ERROR)):
+        marked = {column: found for column, found in legs.items() if found.is_reported and found.mark is mark}
+        if marked:
+            column = min(marked, key=lambda one: order_of(facts, one, None, marked[one]))
+            found = marked[column]
+            other, value = (facts.value(side, column).mean for side in (second, first))
+            _, now, size = rounded(column, (other, value, abs(found.difference)), is_other_shown=False)
+            unit = unit_and_decimals(column)[0]
+            clause = clause_of(column, first, now + unit)
+            points = tr("{size} points").format(size=size) if unit_of(column) is Unit.PERCENT else size + unit
+            is_usual = mark is Mark.ERROR and math.isfinite(found.healthy)
+            stated = _legs_pattern(is_less=found.difference < 0, is_usual=is_usual)
+            sentence = stated.format(clause=clause, size=points, other=side_name(second))
+            beside = evidence_in_sentences(column, found)[: None if mark is Mark.HEALTHY else 1]
+            return Headline(rule, sentence, (*beside, *_unsure(facts)), column, first)
+    return None
+
+
+def _legs_pattern(*, is_less: bool, is_usual: bool) -> str:
+    """`is_usual`: many healthy people differ as much; of some measures nobody knows."""
+    if not is_usual:
+        return (
+            tr("{clause}, {size} less than the {other}.") if is_less else tr("{clause}, {size} more than the {other}.")
+        )
+    if is_less:
+        return tr("{clause}, {size} less than the {other}; many healthy people differ as much.")
+    return tr("{clause}, {size} more than the {other}; many healthy people differ as much.")
+
+
+def _similar(facts: Facts) -> Headline | None:
+    """Both legs' values, where nothing that is judged differs by more than its error."""
+    if len(facts.gait) < len(Side):
+        return None
+    sides = facts.first_and_second
+    legs = {column: compare_legs(facts.part, column, sides) for column in (KNEE, STANCE, *STATED_BETWEEN_LEGS)}
+    column = next((one for one, found in legs.items() if found.is_judged), None)
+    if column is None:
+        return None
+    unit = unit_and_decimals(column)[0]
+    left, right = (facts.value(side, column).mean for side in Side)
+    shown = rounded(column, (left, right, abs(legs[column].difference)), is_other_shown=False)
+    if column == KNEE:
+        stated = tr("Left and right are similar: knee {left} and {right} from stance to swing.")
+    else:
+        stated = tr("Left and right are similar: {measure} {left} and {right}.")
+    first = stated.format(measure=name_in_sentence(column), left=shown[0] + unit, right=shown[1] + unit)
+    may_be = may_be_error_sentence(column, legs[column]) + (f" {DAGGER}" if legs[column].is_unverified else "")
+    return Headline(Rule.SIMILAR, first, (may_be, *_unsure(facts)), column)
+
+
+def _unsure(facts: Facts) -> list[str]:
+    """What tables mark and no sentence is made of: named, so that legs are not called similar above its mark."""
+    found = {column: compare_legs(facts.part, column, facts.first_and_second) for column in LEAST_CERTAIN}
+    return [unsure_sentence(column, one) for column, one in found.items() if one.exceeds]
+
+
+def _one_leg(facts: Facts) -> Headline | None:
+    """What one leg has of the knee, else of stance; else the walking speed."""
+    for side in facts.first_and_second:
+        for column in (KNEE, STANCE):
+            found = facts.value(side, column)
+            if side in facts.gait and is_mean_enough(found.n) and math.isfinite(found.mean):
+                unit, decimals = unit_and_decimals(column)
+                value = fixed(found.mean, 0 if unit_of(column) is Unit.DEGREES else decimals) + unit
+                return Headline(Rule.ONE_LEG, f"{clause_of(column, side, value)}.", (), column, side)
+    if math.isfinite(facts.speed_m_s):
+        unit, decimals = unit_and_decimals(SPEED)
+        return Headline(Rule.ONE_LEG, f"{clause_of(SPEED, None, fixed(facts.speed_m_s, decimals) + unit)}.", (), SPEED)
+    return None
+
+
+def _since_last(facts: Facts, walked: Sequence[CourseVisit], lines: Sequence[TrendLine], found: Headline) -> str:
+    """What the headline's measure, else the knee, stance or speed, is since the last visit: under other rules."""
+    if found.rule is Rule.SINCE_LAST:
+        return ""
+    judged = [line for line in lines if line.since_last is not None and line.since_last.is_judged]
+    side = found.side if found.side is not None else facts.first_and_second[0]
+    for column in (found.column, KNEE, STANCE, SPEED):
+        for line in judged:
+            if line.column == column and line.side in (None, side) and (change := line.since_last) is not None:
+                return last_visit_sentence(line, change, walked, is_named=column != found.column)
+    return ""
+
+
+def last_visit_sentence(line: TrendLine, change: Difference, walked: Sequence[CourseVisit], *, is_named: bool) -> str:
+    """A change since the last visit that makes no headline: "Since 3 November: +1°, within measurement error."."""
+    is_whole = unit_of(line.column) is Unit.DEGREES and round(change.difference)
+    decimals = 0 if is_whole else unit_and_decimals(line.column)[1]
+    size = signed(change.difference, decimals) + (unit_in_sentence(line.column))
+    day = day_in_words(walked[line.before].day, [visit.day for visit in walked])
+    dagger = f" {DAGGER}" if change.is_unverified else ""
+    if not is_named:
+        stated = (
+            tr("Since {day}: {size}, beyond measurement error.")
+            if change.exceeds
+            else tr("Since {day}: {size}, within measurement error.")
+        )
+        return stated.format(day=day, size=size) + dagger
+    stated = (
+        tr("Since {day}: {measure} {size}, beyond measurement error.")
+        if change.exceeds
+        else tr("Since {day}: {measure} {size}, within measurement error.")
+    )
+    return stated.format(day=day, measure=name_in_sentence(line.column), size=size) + dagger
