@@ -8,7 +8,7 @@ import numpy as np
 from app.charts.cycles import Band
 from app.wording.body import name_of
 from app.wording.translation import capitalised, tr
-from core.body import Joint, JointKind
+from core.body import Joint, JointKind, Side
 from core.samples import FloatArray
 
 MOST_MARKS = 2  # in one chart; more would hide the curves
@@ -29,11 +29,37 @@ class Point:
 
 
 @dataclass(frozen=True, slots=True)
+class CurveLabel:
+    """A named point of a curve with its value beside it: "R 58°", as the tables have it."""
+
+    point: Point
+    text: str
+
+    @property
+    def side(self) -> Side:
+        return self.point.joint.side
+
+    @property
+    def kind(self) -> JointKind:
+        return self.point.joint.kind
+
+    def lowered(self, height_deg: float) -> "CurveLabel":
+        return replace(self, point=self.point.lowered(height_deg))
+
+
+@dataclass(frozen=True, slots=True)
+class HiddenCurve:
+    """A leg whose curve is not reported, in whose place a hatched box has the reason: "±9.8°, limit ±9°"."""
+
+    side: Side
+    reason: str
+
+
+@dataclass(frozen=True, slots=True)
 class Deviation:
     """A difference between two points: of two curves, or of the two extremes of an excursion on one.
 
-    `words` name it ("L 12° under R"), `more` goes on in grey; `size` is what paper writes beside its bracket ("45°"),
-    `number` that of the sentence that reports it, None where none does.
+    `words` name it ("L 53°"), `more` goes on in grey ("1 Jul: 35°").
 
     Raises
     ------
@@ -46,8 +72,6 @@ class Deviation:
     words: str
     more: str = ""
     is_larger_than_error: bool = False
-    size: str = ""
-    number: int | None = None
 
     def __post_init__(self) -> None:
         if self.first.joint.kind is not self.second.joint.kind:

@@ -1,6 +1,6 @@
 """Painting on the screen: a chart of the stride in the theme's colours, its axes, curves, letters and marks."""
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Collection, Iterator, Sequence
 from contextlib import contextmanager
 
 import numpy as np
@@ -8,10 +8,11 @@ import pyqtgraph as pg
 from PySide6.QtCore import QPointF, QRectF, Qt
 from PySide6.QtGui import QColor, QFont, QFontMetrics, QPainter, QPen, QPolygonF
 
-from app.charts.axes import AXIS_WIDTH, angle_in_words, degrees_in_words
+from app.charts.axes import angle_in_words
 from app.charts.cycles import PERCENT
 from app.charts.frame import Frame
-from app.charts.marks_on_screen import paint_deviation, paint_gap_bars, paint_gaps, places_of
+from app.charts.marks_on_screen import paint_bracket, paint_gap_bars, paint_gaps, paint_hidden, paint_label
+from app.charts.places import Layout
 from app.charts.stride_chart import StrideChart, StrideCurve, toe_off_labels, toe_offs_in_order
 from app.theme.theme import Theme
 from app.wording.translation import later, tr
@@ -20,17 +21,19 @@ from core.samples import FloatArray
 
 LABEL_HEIGHT = 24  # toe-off is above the plot
 TICKS_HEIGHT = 24
-RIGHT_MARGIN = 20  # half of "100 %" is beside the plot
+LEFT_MARGIN = 32
+RIGHT_MARGIN = 24  # half of "100 %" is beside the plot, and SIMULATED upright
 TICK, TICK_PERCENT = 4, 20
 SIMULATED = later("SIMULATED")
-MEAN_PX, CASING_PX, STRIDE_PX, TOE_OFF_PX = 2.5, 2.0, 1.0, 1.5
+MEAN_PX, CASING_PX, STRIDE_PX, TOE_OFF_PX = 2.5, 2.0, 1.0, 1.25
 STRIDE_ALPHA = 0.7
 SMOOTH_UP_TO = 40  # strides; smooth lines take ten times as long
 FIRST_PX, LAST_PX, FIRST_ALPHA = 1.25, 2.75, 0.65  # of curves that are compared
-COMPARED_TOE_OFF_PX, COMPARED_DASH_PX = 0.75, (9.0, 5.0)
+COMPARED_TOE_OFF_PX, DASH_PX = 0.75, (9.0, 5.0)
 DOT, LETTER_PX, LETTERS_APART = 10, 12, 4  # DOT: radius of a letter's circle
+LINE_HEIGHT = 16
 LEADER_PERCENT = 16  # from where the curves are read to their letters
-CURSOR_DOT, CURSOR_ROW = 5, 16
+CURSOR_PX, HANDLE = 1.5, (9, 6)
 AT_RIGHT = Qt.AlignmentFlag.AlignRight | Qt.AlignmentFlag.AlignVCenter
 AT_LEFT = Qt.AlignmentFlag.AlignLeft | Qt.AlignmentFlag.AlignVCenter
 AT_CENTRE = Qt.AlignmentFlag.AlignHCenter | Qt.AlignmentFlag.AlignVCenter
@@ -38,13 +41,13 @@ AT_CENTRE = Qt.AlignmentFlag.AlignHCenter | Qt.AlignmentFlag.AlignVCenter
 
 def frame_of(theme: Theme, width: float, height: float, chart: StrideChart) -> Frame:
     """The room inside the axes of a chart of this size, px."""
-    left, top = theme.px(AXIS_WIDTH), theme.px(LABEL_HEIGHT)
+    left, top = theme.px(LEFT_MARGIN), theme.px(LABEL_HEIGHT)
     inside = width - left - theme.px(RIGHT_MARGIN), height - top - theme.px(TICKS_HEIGHT)
     return Frame(left, top, *inside, chart.axis.low, chart.axis.high)
 
 
 def paint(painter: QPainter, theme: Theme, frame: Frame, width: float, chart: StrideChart) -> None:
-    """Draw a chart whose plot is `frame`, in a widget of this width."""
+    """Draw a chart whose plot is `frame`, in a widget of this width; what `paint_words` draws lies over it."""
     painter.setRenderHint(QPainter.RenderHint.Antialiasing)
     if (band := chart.band) is not None:
         with _clipped(painter, frame):
@@ -57,11 +60,8 @@ def paint(painter: QPainter, theme: Theme, frame: Frame, width: float, chart: St
             for curve in chart.curves:
                 _paint_toe_off(painter, frame, curve, _pen(theme, curve, COMPARED_TOE_OFF_PX))
         for curve in chart.curves:
-            if curve.sd_deg is not None:
-                _fill(painter, frame, curve.angle_deg, curve.sd_deg, theme.band(curve.side))
-        for curve in chart.curves:
             _paint_strides(painter, theme, frame, curve)
-        for curve in (*chart.beside, *chart.curves):
+        for curve in (*chart.beside, *_solid_last(chart)):
             if curve.is_known:
                 _paint_mean(painter, theme, frame, curve)
         if chart.chosen is not None:
@@ -71,41 +71,34 @@ def paint(painter: QPainter, theme: Theme, frame: Frame, width: float, chart: St
     else:
         _paint_toe_offs(painter, theme, frame, width, chart)
     if chart.is_simulated:
-        painter.setFont(theme.font(12, QFont.Weight.DemiBold))
-        painter.setPen(QColor(theme.colours.ink))
-        painter.drawText(QRectF(0, 0, width, frame.top), AT_LEFT, tr(SIMULATED))
+        _paint_simulated(painter, theme, frame, width)
     paint_gap_bars(painter, theme, frame, chart.gaps)
-    for deviation, place in zip(chart.deviations, places_of(theme, frame, chart), strict=True):
-        paint_deviation(painter, theme, frame, deviation, place)
 
 
-def paint_cursor(
-    painter: QPainter, theme: Theme, frame: Frame, curves: Sequence[StrideCurve], readings: Mapping[Side, float]
-) -> None:
-    """A line at each leg's place, percent, with the angle there; solid at the left leg's, dashed at the right's."""
-    font, row = theme.font(12, QFont.Weight.DemiBold), theme.px(CURSOR_ROW)
+def paint_words(painter: QPainter, theme: Theme, frame: Frame, layout: Layout) -> None:
+    """Draw what is read on the curves: brackets, values at peaks, boxes of hidden curves."""
     painter.setRenderHint(QPainter.RenderHint.Antialiasing)
-    painter.setFont(font)
-    for number, curve in enumerate(curve for curve in curves if not curve.is_not_reported):
-        percent = readings.get(curve.side)
-        if percent is None or not curve.is_known:
-            continue
-        angle_deg = float(np.interp(percent, PERCENT, curve.angle_deg))
-        at = _at(frame, percent, angle_deg)
-        pen = theme.pen(theme.colours.ink, 1.5)
-        pen.setStyle(Qt.PenStyle.SolidLine if curve.side is Side.LEFT else Qt.PenStyle.DashLine)
-        painter.setPen(pen)
-        painter.drawLine(QPointF(at.x(), frame.top), QPointF(at.x(), frame.bottom))
-        painter.setPen(theme.pen(theme.curve(curve.side), 2))
-        painter.setBrush(theme.curve(curve.side) if curve.side is Side.LEFT else QColor(theme.colours.surface))
-        painter.drawEllipse(at, theme.px(CURSOR_DOT), theme.px(CURSOR_DOT))
-        words = f"{curve.letter} {degrees_in_words(angle_deg)}"
-        width = QFontMetrics(font).horizontalAdvance(words)
-        left = at.x() + theme.px(6) if at.x() + theme.px(6) + width < frame.right else at.x() - theme.px(6) - width
-        box = QRectF(left, frame.bottom - (number + 1) * row - theme.px(2), width + 1, row)
-        painter.fillRect(box, QColor(theme.colours.surface))
-        painter.setPen(theme.text(curve.side))
-        painter.drawText(box, Qt.AlignmentFlag.AlignVCenter, words)
+    for hidden, box in layout.hidden:
+        paint_hidden(painter, theme, hidden, box)
+    for bracket, place in layout.brackets:
+        paint_bracket(painter, theme, frame, bracket, place)
+    for label, label_box in layout.labels:
+        paint_label(painter, theme, frame, label, label_box)
+
+
+def paint_cursor(painter: QPainter, theme: Theme, frame: Frame, percents: Collection[float]) -> None:
+    """A line with a handle at each of these places, percent."""
+    painter.setRenderHint(QPainter.RenderHint.Antialiasing)
+    ink, half, height = QColor(theme.colours.ink), theme.px(HANDLE[0]) / 2, theme.px(HANDLE[1])
+    for percent in percents:
+        x = float(frame.x(percent))
+        painter.setPen(theme.pen(ink, CURSOR_PX))
+        painter.drawLine(QPointF(x, frame.top), QPointF(x, frame.bottom))
+        painter.setPen(Qt.PenStyle.NoPen)
+        painter.setBrush(ink)
+        corners = (x - half, frame.top), (x + half, frame.top), (x, frame.top + height)
+        painter.drawPolygon(QPolygonF([QPointF(*corner) for corner in corners]))
+    painter.setBrush(Qt.BrushStyle.NoBrush)
 
 
 def paint_letter(
@@ -200,9 +193,9 @@ def _pen(theme: Theme, curve: StrideCurve, width: float | None = None) -> QPen:
     """Left solid, right dashed; of curves that are compared thin and pale to begin with, thick at the end."""
     full = _width_px(curve)
     pen = theme.side_pen(curve.side, full)
+    if curve.side is Side.RIGHT:
+        pen.setDashPattern([length / full for length in DASH_PX])  # of one length, however thick
     if curve.order is not None:
-        if curve.side is Side.RIGHT:
-            pen.setDashPattern([length / full for length in COMPARED_DASH_PX])  # of one length, however thick
         colour = theme.text(curve.side) if not theme.is_dark else theme.curve(curve.side)
         if curve.is_few:
             colour = QColor(theme.colours.control)
@@ -245,19 +238,41 @@ def _paint_toe_off(painter: QPainter, frame: Frame, curve: StrideCurve, pen: QPe
         painter.drawLine(QPointF(x, frame.top), QPointF(x, frame.bottom))
 
 
-def _paint_toe_offs(painter: QPainter, theme: Theme, frame: Frame, width: float, chart: StrideChart) -> None:
-    """Each side's toe-off with its words above the plot, the earlier at the left of its line."""
+def _solid_last(chart: StrideChart) -> list[StrideCurve]:
+    """The order of painting: of both legs of one walk the dashed line first."""
+    return [*chart.curves] if chart.is_comparison else sorted(chart.curves, key=lambda curve: curve.side, reverse=True)
+
+
+def _paint_simulated(painter: QPainter, theme: Theme, frame: Frame, width: float) -> None:
+    """Turned, at the right edge."""
+    painter.save()
     painter.setFont(theme.font(12, QFont.Weight.DemiBold))
-    metrics = QFontMetrics(theme.font(12, QFont.Weight.DemiBold))
-    least = metrics.horizontalAdvance(tr(SIMULATED)) + theme.px(8) if chart.is_simulated else 0.0
+    painter.setPen(QColor(theme.colours.ink2))
+    painter.translate(width, frame.top + frame.height / 2)
+    painter.rotate(-90)
+    height = theme.px(LINE_HEIGHT)
+    painter.drawText(QRectF(-frame.height, -height, 2 * frame.height, height), AT_CENTRE, tr(SIMULATED))
+    painter.restore()
+
+
+def _paint_toe_offs(painter: QPainter, theme: Theme, frame: Frame, width: float, chart: StrideChart) -> None:
+    """What is positive, and each side's toe-off with its words above the plot, the earlier at the left of its line."""
+    metrics = QFontMetrics(theme.font(12, QFont.Weight.Medium))
+    painter.setFont(theme.font(12))
+    painter.setPen(QColor(theme.colours.ink2))
+    painter.drawText(QRectF(0, 0, width, frame.top), AT_LEFT, chart.sign)
+    least: float = QFontMetrics(theme.font(12)).horizontalAdvance(chart.sign) + theme.px(8)
+    painter.setFont(theme.font(12, QFont.Weight.Medium))
     labels = toe_off_labels(chart.curves)
+    if least + sum(metrics.horizontalAdvance(label) + 1 + theme.px(4) for label in labels.values()) > width:
+        labels = toe_off_labels(chart.curves, has_word=False)
     for i, curve in enumerate(toe_offs_in_order(chart.curves, 0)):
         _paint_toe_off(painter, frame, curve, theme.side_pen(curve.side, TOE_OFF_PX))
         painter.setPen(theme.text(curve.side))
         x, label = float(frame.x(curve.toe_off_percent)), labels[curve.side]
         needed = metrics.horizontalAdvance(label) + 1
         left = x - needed - theme.px(4) if i == 0 else x + theme.px(4)
-        left = min(max(left, least), width - needed)
+        left = min(max(left, least), width - needed)  # what is positive is known, and gives way last
         painter.drawText(QRectF(left, 0, needed, frame.top), AT_LEFT, label)
         least = left + needed + theme.px(4)
 

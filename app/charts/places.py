@@ -1,13 +1,13 @@
-"""Free places in a chart: where a mark's bar and words cover the curves least."""
+"""Free places in a chart: where a bracket, the value at a peak or the box of a hidden curve cover the curves least."""
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, field
 
 import numpy as np
 
 from app.charts.cycles import PERCENT
 from app.charts.frame import Frame
-from app.charts.marks import BAND_SDS
+from app.charts.marks import BAND_SDS, CurveLabel, Deviation, HiddenCurve
 from app.charts.stride_chart import StrideChart, toe_offs_in_order
 from core.body import JointKind
 from core.samples import FloatArray
@@ -27,6 +27,14 @@ PER_CURVE, PER_SOFT_CURVE, PER_UPRIGHT, PER_CROSSING = 5.0, 0.25, 15.0, 8.0
 UNREADABLE = 1000.0
 MOST_COVERED = 100.0  # before the second line is left away
 WORDS_AT_RIGHT, TOO_NEAR, PER_LENGTH_AWAY = 25.0, 60.0, 0.15
+# Of a label: rows and columns tried about its point, how far from it, and what a length away from it costs.
+LABEL_STEPS = np.linspace(0.0, 1.0, 9)
+FARTHEST_LABEL, PER_LABEL_AWAY, PER_WRONG_WAY = 60.0, 1.0, 3.0
+PEAK_WIDTH = 8  # percent of the stride
+HIDDEN_STEPS = np.linspace(0.03, 0.97, 9)
+PER_HIDDEN_AWAY = 0.15
+Size = tuple[float, float]
+"""Width and height."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -77,6 +85,19 @@ class Ground:
 
 
 @dataclass(frozen=True, slots=True)
+class Sizes:
+    """How large a painter's words are: a label's, a bracket's with one line, two lines and so on, a box's.
+
+    `dot` is the radius of the dot at a label's point.
+    """
+
+    label: Callable[[CurveLabel], Size]
+    bracket: Callable[[Deviation], Sequence[Size]]
+    hidden: Callable[[HiddenCurve], Size]
+    dot: float
+
+
+@dataclass(frozen=True, slots=True)
 class MarkPlace:
     """A mark's bar, and the room of its words: None where there is none. `lines` are those that have room."""
 
@@ -89,6 +110,41 @@ class MarkPlace:
     @property
     def are_words_at_right(self) -> bool:
         return self.words is not None and self.words.left > self.bar_x
+
+
+@dataclass(frozen=True, slots=True)
+class Layout:
+    """Where all words of a chart are. A label without a box has no room that leaves the others free."""
+
+    hidden: tuple[tuple[HiddenCurve, Box], ...]
+    brackets: tuple[tuple[Deviation, MarkPlace], ...]
+    labels: tuple[tuple[CurveLabel, Box | None], ...]
+
+
+def layout_of(ground: Ground, chart: StrideChart, sizes: Sizes) -> Layout:
+    """Boxes of hidden curves first, then brackets, then labels: what is larger chooses first."""
+    frame = ground.frame
+    hidden = tuple((one, place_hidden(ground, sizes.hidden(one))) for one in chart.hidden)
+    brackets = []
+    for deviation in chart.deviations:
+        ends = [_at(frame, point.percent, point.angle_deg) for point in deviation.points]
+        kind = USUAL_EMPTY_PERCENT[deviation.kind]
+        brackets.append((deviation, place_mark(ground, ends, sizes.bracket(deviation), kind)))
+    labels = sorted(chart.shown_labels, key=lambda label: label.side, reverse=True)  # filled dots over outlined ones
+    points = [_at(frame, one.point.percent, one.point.angle_deg) for one in labels]
+    are_above = [_is_higher(chart, one) for one in labels]
+    boxes = place_labels(ground, points, [sizes.label(one) for one in labels], are_above, sizes.dot)
+    return Layout(hidden, tuple(brackets), tuple(zip(labels, boxes, strict=True)))
+
+
+def _is_higher(chart: StrideChart, label: CurveLabel) -> bool:
+    """Whether a label's curve is the higher one at its point; of a curve alone, whether the point is a highest one."""
+    at, angle_deg = int(label.point.percent), label.point.angle_deg
+    others = [c.angle_deg for c in chart.curves if c.is_known and c.side is not label.side]
+    if others:
+        return angle_deg >= others[0][at]
+    own = next(curve.angle_deg for curve in chart.curves if curve.side is label.side)
+    return bool(angle_deg >= np.mean(own[[max(at - PEAK_WIDTH, 0), min(at + PEAK_WIDTH, 100)]]))
 
 
 def ground_of(frame: Frame, chart: StrideChart, taken: Sequence[Box] = ()) -> Ground:
@@ -141,6 +197,57 @@ def place_mark(
     ground.taken += [place.words] if place.words is not None else []
     ground.leaders += [_leader(place.bar_x, x, y) for x, y in ends] + [Box(x, y, x, y).grown(CLEAR) for x, y in ends]
     return place
+
+
+def place_labels(
+    ground: Ground, points: Sequence[tuple[float, float]], sizes: Sequence[Size], are_above: Sequence[bool], dot: float
+) -> list[Box | None]:
+    """The room of each label beside its point that covers least: inside the frame, over nothing that is there.
+
+    The higher of two curves has its label above its point or level with it, the other beneath. None where there is no
+    room near the point.
+    """
+    frame = ground.frame
+    inside = Box(frame.left, frame.top, frame.right, frame.bottom)
+    dots = [Box(x, y, x, y).grown(dot) for x, y in points]
+    found: list[Box | None] = []
+    for (x, y), (width, height), is_above in zip(points, sizes, are_above, strict=True):
+        best, least = None, UNREADABLE
+        for dx in (-1 + 2 * LABEL_STEPS) * (width / 2 + FARTHEST_LABEL):
+            for dy in (-1 + 2 * LABEL_STEPS) * (height / 2 + FARTHEST_LABEL / 2):
+                room = Box(x + dx - width / 2, y + dy - height / 2, x + dx + width / 2, y + dy + height / 2)
+                if not inside.contains(room):
+                    continue
+                apart = np.hypot(max(abs(dx) - width / 2, 0.0), max(abs(dy) - height / 2, 0.0))
+                cost = PER_LABEL_AWAY * float(apart) + PER_WRONG_WAY * max(dy if is_above else -dy, 0.0)
+                cost += ground.covered(room.grown(1.0))
+                cost += PER_UPRIGHT * sum(room.left < upright < room.right for upright in ground.uprights)
+                cost += UNREADABLE * any(map(room.overlaps, (*ground.taken, *ground.leaders, *dots)))
+                if cost < least:
+                    best, least = room, cost
+        found.append(best)
+        ground.taken += [best] if best is not None else []
+    return found
+
+
+def place_hidden(ground: Ground, size: Size) -> Box:
+    """The room for the box of a curve that is hidden; top left where all are alike."""
+    frame, (width, height) = ground.frame, size
+    best, least = Box(frame.left, frame.top, frame.left + width, frame.top + height), np.inf
+    for left in frame.left + HIDDEN_STEPS * max(frame.width - width, 0.0):
+        for top in frame.top + HIDDEN_STEPS * max(frame.height - height, 0.0):
+            room = Box(float(left), float(top), float(left) + width, float(top) + height)
+            cost = ground.covered(room) + PER_HIDDEN_AWAY * (left - frame.left + top - frame.top)
+            cost += PER_UPRIGHT * sum(room.left < upright < room.right for upright in ground.uprights)
+            cost += UNREADABLE * any(map(room.overlaps, ground.taken))
+            if cost < least:
+                best, least = room, cost
+    ground.taken.append(best)
+    return best
+
+
+def _at(frame: Frame, percent: float, angle_deg: float) -> tuple[float, float]:
+    return float(frame.x(percent)), float(frame.y(angle_deg))
 
 
 def _rooms(frame: Frame, bar_x: float, top: float, bottom: float, size: tuple[float, float]) -> Iterator[Box]:

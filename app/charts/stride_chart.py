@@ -6,8 +6,8 @@ from dataclasses import dataclass, field
 import numpy as np
 
 from app.charts.axes import ABOUT_MEAN_DEG, USUAL_DEG
-from app.charts.cycles import Band, SideCycle, is_mean_enough, is_spread_enough
-from app.charts.marks import Deviation, Gap
+from app.charts.cycles import Band, SideCycle, is_mean_enough
+from app.charts.marks import CurveLabel, Deviation, Gap, HiddenCurve
 from app.wording.translation import tr
 from core.body import JointKind, Side
 from core.gait.cycles import POINTS
@@ -34,9 +34,9 @@ class Axis:
 class StrideCurve:
     """One leg in one walk, condition or visit: its mean `angle_deg` (101,), NaN where it is not known or not shown.
 
-    `order` is its place among how many are compared, the earliest first. `sd_deg` (101,) is shown where it is given,
-    `strides_deg` (k, 101) are single strides; of a curve that is not reported they are evidence, not to be read.
-    `is_few`: of too few strides for a mean. `is_bare`: its single strides alone, without mean and letters.
+    `order` is its place among how many are compared, the earliest first. `strides_deg` (k, 101) are single strides; of
+    a curve that is not reported they are evidence, not to be read. `is_few`: of too few strides for a mean. `is_bare`:
+    its single strides alone, without mean and letters.
     """
 
     letter: str
@@ -46,7 +46,6 @@ class StrideCurve:
     toe_off_sd: float = float("nan")
     toe_off_label: str = ""
     order: tuple[int, int] | None = None
-    sd_deg: FloatArray | None = None
     strides_deg: FloatArray = field(default_factory=lambda: NO_STRIDES)
     is_not_reported: bool = False
     is_few: bool = False
@@ -61,9 +60,10 @@ class StrideCurve:
 class StrideChart:
     """One joint over 0 to 100 % of the stride.
 
-    `chosen` is one stride (101,) over all others. `not_reported` states why nothing of it may be read, and is
-    empty where something may. `alt` are the chart's words, for who cannot see it. `beside`: another walk's means, which
-    the screen draws thin, without spread and toe-off.
+    `sign` states what is positive. `chosen` is one stride (101,) over all others. `not_reported` states why nothing of
+    it may be read, and is empty where something may. `alt` are the chart's words, for who cannot see it. `beside`:
+    another walk's means, drawn thin, without toe-off. `labels` are the values at peaks, `deviations` the brackets: a
+    bar between two points with its words. `hidden` are legs whose curve is not reported.
     """
 
     axis: Axis
@@ -72,11 +72,20 @@ class StrideChart:
     is_simulated: bool
     beside: tuple[StrideCurve, ...] = ()
     title: str = ""
+    sign: str = ""
     alt: str = ""
     chosen: tuple[Side, FloatArray] | None = None
     not_reported: str = ""
     deviations: tuple[Deviation, ...] = ()
     gaps: tuple[Gap, ...] = ()
+    labels: tuple[CurveLabel, ...] = ()
+    hidden: tuple[HiddenCurve, ...] = ()
+
+    @property
+    def shown_labels(self) -> tuple[CurveLabel, ...]:
+        """Those that no bracket has at its end: one number at one place."""
+        ends = {point for bracket in self.deviations for point in bracket.points}
+        return tuple(label for label in self.labels if label.point not in ends)
 
     @property
     def is_comparison(self) -> bool:
@@ -110,7 +119,6 @@ def curves_of_walk(
                 side=side,
                 angle_deg=cycle.mean.mean if is_shown else NOT_KNOWN,
                 toe_off_percent=cycle.toe_off_percent if is_shown else float("nan"),
-                sd_deg=cycle.mean.sd if is_shown and is_spread_enough(n) and not has_strides else None,
                 strides_deg=cycle.strides_deg if are_strides_shown else NO_STRIDES,
                 is_not_reported=is_not_reported,
             )
@@ -118,9 +126,10 @@ def curves_of_walk(
     return tuple(curves)
 
 
-def toe_off_labels(curves: Sequence[StrideCurve]) -> dict[Side, str]:
-    """Name each toe-off: the word at the earlier line, which has the room at its left."""
-    labels = tr("toe-off {side} {percent:.0f} %"), "{side} {percent:.0f} %"
+def toe_off_labels(curves: Sequence[StrideCurve], *, has_word: bool = True) -> dict[Side, str]:
+    """Name each toe-off: the word at the earlier line, which has the room at its left, if anywhere."""
+    bare = "{side} {percent:.0f} %"
+    labels = tr("toe-off {side} {percent:.0f} %") if has_word else bare, bare
     in_order = toe_offs_in_order(curves, 0)
     return {
         curve.side: label.format(side=curve.letter, percent=curve.toe_off_percent)

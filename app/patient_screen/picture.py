@@ -22,9 +22,9 @@ from app.patient_screen.patient_view import (
     unit_words,
 )
 from app.theme.icons import Icon, paint_icon
+from app.theme.leg_chip import CHIP, paint_chip
 from app.theme.notifier import ThemeNotifier
 from app.theme.theme import Theme
-from app.widgets.chip import CHIP, paint_chip
 from app.widgets.text import MEDIUM, SEMIBOLD
 from app.wording.numbers import MINUS
 from app.wording.translation import tr

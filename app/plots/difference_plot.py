@@ -10,8 +10,8 @@ from PySide6.QtWidgets import QSizePolicy
 
 from app.charts.on_screen import DOT, paint_letter
 from app.theme.icons import Icon, paint_icon
+from app.theme.leg_chip import CHIP, paint_chip
 from app.theme.notifier import ThemeNotifier
-from app.widgets.chip import CHIP, paint_chip
 from app.widgets.painted_text import CENTRE, PaintedText
 from app.widgets.text import SEMIBOLD
 from app.widgets.themed import Themed

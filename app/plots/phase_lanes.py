@@ -13,10 +13,11 @@ from PySide6.QtGui import QAccessible, QColor, QMouseEvent, QPainter, QPaintEven
 from PySide6.QtWidgets import QGridLayout, QHBoxLayout, QSizePolicy, QWidget
 
 from app.charts.axes import AXIS_WIDTH, RIGHT_MARGIN
+from app.theme.leg_chip import CHIP, paint_chip
 from app.theme.notifier import ThemeNotifier
 from app.theme.theme import Theme
 from app.widgets.card import Card
-from app.widgets.chip import CHIP, Chip, paint_chip
+from app.widgets.chip import Chip
 from app.widgets.heard_order import hear_as_laid_out
 from app.widgets.text import MEDIUM, SEMIBOLD, Text
 from app.wording.translation import joined, later, tr, tr_n

@@ -10,7 +10,7 @@ from PySide6.QtWidgets import QApplication, QGridLayout, QHBoxLayout, QVBoxLayou
 
 from app.charts.cycles import Band, SideCycle
 from app.plots.compared_chart import ComparedChart, ComparedFrame
-from app.plots.cycle_chart import CycleCharts
+from app.plots.cycle_charts import CycleCharts
 from app.results.compared_card import ComparedCard, scrolling
 from app.results.compared_words import (
     conclusion,
@@ -456,8 +456,7 @@ class ComparePage(Themed):
         is_crowded = not charts.hip.isHidden() and not self._is_spacious
         is_beside = is_compact and (self._has_two_charts or is_crowded)
         charts.set_side_by_side(is_beside)
-        charts.set_tight(is_tight=is_crowded, is_narrow=is_crowded and is_beside)
-        charts.set_brief(is_compact or is_crowded)
+        charts.set_tight(is_tight=is_crowded)
 
     def _band(self, part: Part) -> tuple[ReferenceCurves | None, frozenset[Side]]:
         """The curves that a part may stand beside, and which of its legs."""

@@ -6,7 +6,7 @@ from dataclasses import replace
 import numpy as np
 from PySide6.QtWidgets import QHBoxLayout, QVBoxLayout, QWidget
 
-from app.plots.cycle_chart import CycleCharts
+from app.plots.cycle_charts import CycleCharts
 from app.summary.conditions import Part, by_hand_in_words
 from app.summary.reference_bands import OTHER_AGES, WHY_NO_BAND, bands_of, reference_curves, sides_with_band
 from app.summary.walk_figures import (
@@ -90,7 +90,6 @@ class CyclePage(QWidget):
         joints = [joint for side in part.sides for joint in part.joints if joint.side is side]
         own = replace(part, walks=(walk,))
         cycles = {joint: replace(side_cycle(part, joint), strides_deg=_strides_deg(own, joint)) for joint in joints}
-        self.charts.set_band(curves)
         self.charts.show_cycles(cycles, {joint: part.verdicts.joint(joint) for joint in joints}, is_simulated)
         strides = {side: part.strides(side) for side in part.sides}
         of_joints = peak_figures(part, curves)
@@ -113,6 +112,17 @@ class CyclePage(QWidget):
         if curves is not None and any(joint.is_hip for joint in joints):
             only = " ".join(filter(None, [only, tr(HIP_BAND)]))
         self.band_words = band_in_words(bands, part.of_both("speed_m_s"), sides_of_band, only)
+        self.charts.set_band(curves, _names_of_band(bands, sides_of_band), self.band_words)
+
+
+def _names_of_band(bands: Bands, sides_of_band: frozenset[Side]) -> tuple[str, ...]:
+    """What a chart's key calls the band, or that there is none; the longest first."""
+    if not sides_of_band or (bands.curves is None and bands.why_no_curves is not NoBand.OTHER_SPEED):
+        return (tr("No reference"),)
+    if bands.curves is None:
+        return tr("No reference at this speed"), tr("No reference")
+    of_others = (tr("Reference: young adults"),) if bands.are_curves_of_other_ages else ()
+    return *of_others, tr("Reference")
 
 
 def _under_heads(figures: Mapping[str, Sequence[Figure]], kinds: Sequence[str]) -> list[str | Figure]:

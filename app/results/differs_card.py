@@ -1,66 +1,64 @@
-"""In what the legs differ most, as a table: both values, their difference over its error, the band, and a word."""
+"""In what the legs differ most: both values, their difference, its likely interval beside healthy people's, a mark."""
 
 import math
 from collections.abc import Sequence
 
-from app.charts.cycles import is_mean_enough, is_spread_enough
-from app.results.beside_words import beside_columns, beside_rows
-from app.summary.comparison import Comparison
+from app.charts.cycles import is_mean_enough
 from app.summary.facts import Facts
 from app.summary.goals import goal_mark
 from app.summary.interval_words import interval_in_figures
-from app.summary.numbers_in_words import NOTHING, fixed, in_brief, judged_in_words, signed
-from app.summary.what_differs import LegsRow, what_differs
+from app.summary.numbers_in_words import NOTHING, fixed, judged_in_words, signed
+from app.summary.what_differs import LegsRow, what_differs, without_family
 from app.theme.icons import Icon
 from app.theme.notifier import ThemeNotifier
 from app.widgets.card import Card
 from app.widgets.figures_table import CARE_MARK
 from app.widgets.table import CellTable, TableColumn, TableRow
-from app.widgets.table_cells import CENTRE, RIGHT, ErrorStrip, TableCell, TextCell
+from app.widgets.table_cells import CENTRE, RIGHT, IntervalStrip, MarkCell, TableCell, TextCell
 from app.widgets.text import REGULAR, SEMIBOLD
 from app.wording.body import side_name
 from app.wording.translation import tr
 from core.body import Side
-from core.verdicts.measurement_error import Judgement
+from core.parameters import Unit, unit_of
+from core.verdicts.measurement_error import Difference, Judgement, Mark
 from core.verdicts.model import Verdict
 
-SCALE = 1.8  # errors, to either edge of a strip
-HEAD, ROW = 32, 28
-EDGES = 12  # px: the card's padding above and below
+ZONES = 2.3  # half a strip is so many times what healthy people differ by,
+HALVES = 1.6  # or where that is not known half of the likely interval;
+REACH = 1.04  # at least so many times what the interval reaches
+HEAD, ROW = 34, 28
+EDGES = 4  # px: the card's padding above and below
+SIDE, COMPACT_SIDE = 16, 12
+LEAST, MOST = 3, 8  # rows
 
 
 class DiffersCard(Card):
-    """As many rows as there is room for, judged ones first."""
+    """As many rows as there is room for, but at least three; those beyond healthy people's difference first."""
 
     def __init__(self, look: ThemeNotifier) -> None:
-        super().__init__(look, padding=16)
+        self._side = SIDE
+        super().__init__(look, padding=SIDE)
         self._columns: Sequence[TableColumn] = ()
         self._rows: Sequence[TableRow] = ()
-        self._most = 0
+        self._most = LEAST
         self.table = CellTable(look, tr("Largest differences"), row=ROW, head=HEAD)
         self.column.addWidget(self.table)
 
-    def show_facts(self, facts: Facts, found: Comparison | None = None) -> None:
-        """What the legs differ in, or else this walk and what is shown beside it."""
-        if found is not None:
-            self._columns, self._rows = beside_columns(found), beside_rows(found)
-        else:
-            rows = what_differs(facts) if len(facts.gait) == len(Side) else ()
-            self._columns, self._rows = _columns(facts), [_row(facts, row) for row in rows]
+    def show_facts(self, facts: Facts) -> None:
+        """What the legs differ in; a single leg has nothing to compare."""
+        rows = without_family(what_differs(facts)) if len(facts.gait) == len(Side) else []
+        self._columns, self._rows = _columns(facts), [_row(row) for row in rows]
         self._show()
-
-    def _on_look_changed(self) -> None:
-        px = self._look.theme.px
-        self.column.setContentsMargins(px(16), px(EDGES / 3), px(16), px(EDGES * 2 / 3))
 
     @property
     def has_rows(self) -> bool:
-        """Whether there is anything to compare: both legs, or a walk beside this one."""
         return bool(self._rows)
 
-    def set_room(self, height: float) -> None:
-        """Show what fits into so many px of the design."""
-        most = max(int((height - HEAD - EDGES) // ROW), 0)
+    def set_room(self, height: float, *, is_compact: bool) -> None:
+        """Show what fits into so many px of the design; nearer to the edge where the page is narrow."""
+        self._side = COMPACT_SIDE if is_compact else SIDE
+        self._on_look_changed()
+        most = min(max(int((height - HEAD - EDGES) // ROW), LEAST), MOST)
         if most != self._most:
             self._most = most
             self._show()
@@ -69,84 +67,79 @@ class DiffersCard(Card):
         if self._columns:
             self.table.show_rows(self._columns, self._rows[: self._most])
 
+    def _on_look_changed(self) -> None:
+        px = self._look.theme.px
+        self.column.setContentsMargins(px(self._side), px(EDGES / 3), px(self._side), px(EDGES * 2 / 3))
+
 
 def _columns(facts: Facts) -> list[TableColumn]:
     first, second = facts.first_and_second
     less = f"{first.letter} \N{MINUS SIGN} {second.letter}"
     return [
         TableColumn(TextCell(tr("Largest differences"), weight=SEMIBOLD), share=3),
-        *(TableColumn(_counted(facts, side), share=1) for side in Side),
+        *(TableColumn(TextCell(align=RIGHT, side=side, spoken=side_name(side)), share=1) for side in Side),
         TableColumn(TextCell(less, align=RIGHT, size=12, tone="ink2"), share=1),
-        TableColumn(TextCell(tr("grey: error"), align=CENTRE, size=12, tone="ink2"), share=2),
-        TableColumn(TextCell(tr("likely between"), align=RIGHT, size=12, tone="ink2"), share=1),
-        TableColumn(TextCell(tr("ref. ±2 SD"), align=RIGHT, size=12, tone="ink2"), share=1),
-        TableColumn(TextCell(tr("result"), size=12, tone="ink2"), share=1),
+        TableColumn(TextCell(tr("likely between"), align=RIGHT, size=12, tone="ink2"), share=2),
+        TableColumn(TextCell(tr("grey: 95 of 100 healthy people"), align=CENTRE, size=12, tone="ink2"), share=1),
+        TableColumn(share=1),
     ]
 
 
-def _counted(facts: Facts, side: Side) -> TextCell:
-    count = facts.strides(side)
-    return TextCell(
-        tr("{count} strides").format(count=count),
-        align=RIGHT,
-        size=12,
-        tone="ink2",
-        side=side,
-        spoken=tr("{side}, {count} strides").format(side=side_name(side), count=count),
+def _row(row: LegsRow) -> TableRow:
+    found, unit = row.difference, "°" if unit_of(row.column) is Unit.DEGREES else ""
+    weight = SEMIBOLD if found.mark is not Mark.NONE else REGULAR
+    shown = signed(found.difference, row.decimals) + unit if found.is_reported else NOTHING
+    stated = tr("{measure}, difference: {difference}{unit}").format(
+        measure=row.name, difference=signed(found.difference, row.decimals), unit=row.unit
     )
-
-
-def _row(facts: Facts, row: LegsRow) -> TableRow:
-    found, unit = row.difference, row.unit
-    exceeds = found.exceeds
-    weight = SEMIBOLD if exceeds else REGULAR
-    shown = signed(found.difference, row.decimals) if found.is_reported else ""
-    stated = tr("{measure}, difference: {difference}{unit}").format(measure=row.name, difference=shown, unit=unit)
+    goals = " · ".join(map(goal_mark, row.goals))
     cells: tuple[TableCell, ...] = (
-        TextCell(row.name, " · ".join(map(goal_mark, row.goals)), weight=weight),
-        *(_value(row, side) for side in Side),
-        TextCell(shown, align=RIGHT, weight=weight, spoken=stated if shown else ""),
-        _strip(row),
-        TextCell(interval_in_figures(row.column, found), align=RIGHT, tone="ink2"),
-        TextCell(_band(facts, row), align=RIGHT, tone="ink2"),
-        TextCell(in_brief(found), size=12, weight=weight, tone="ink" if exceeds else "ink2"),
+        TextCell(row.name, goals, weight=weight, small_yields=True),
+        *(_value(row, side, unit) for side in Side),
+        TextCell(shown, align=RIGHT, weight=weight, spoken=stated if found.is_reported else ""),
+        TextCell(interval_in_figures(row.column, found, unit), align=RIGHT, tone="ink2"),
+        _strip(found),
+        _mark(found),
     )
-    return TableRow(cells)
+    return TableRow(cells, hint=goals)
 
 
-def _value(row: LegsRow, side: Side) -> TextCell:
+def _value(row: LegsRow, side: Side, unit: str) -> TextCell:
     """Bold where it can be read, regular where with care; else why there is none, behind a barred circle."""
     if side not in row.values:
         is_not_reported = row.verdicts[side] is Verdict.NOT_REPORTED
         return TextCell(
             row.unknown[side], align=RIGHT, size=12, tone="ink2", mark=Icon.NOT_REPORTED if is_not_reported else None
         )
-    value, verdict = row.values[side], row.verdicts[side]
+    value, is_care = row.values[side], row.verdicts[side] is Verdict.CARE
     if not is_mean_enough(value.n):
         return TextCell(NOTHING, align=RIGHT, tone="ink2")
-    spread = f"± {fixed(value.sd, row.decimals)}" if is_spread_enough(value.n) else ""
-    is_care = verdict is Verdict.CARE
-    small = f"{spread} {CARE_MARK}".strip() if is_care else spread
     mean = fixed(value.mean, row.decimals)
     stated = tr("{measure}, {side}: {value}{unit}").format(
-        measure=row.name, side=side_name(side), value=f"{mean} {spread}".strip(), unit=row.unit
+        measure=row.name, side=side_name(side), value=mean, unit=row.unit
     )
     stated = tr("{stated}, caution").format(stated=stated) if is_care else stated
-    return TextCell(mean, small, align=RIGHT, weight=REGULAR if is_care else SEMIBOLD, spoken=stated)
+    weight = REGULAR if is_care else SEMIBOLD
+    return TextCell(mean + unit, CARE_MARK if is_care else "", align=RIGHT, weight=weight, spoken=stated)
 
 
-def _strip(row: LegsRow) -> TableCell:
-    found = row.difference
+def _strip(found: Difference) -> TableCell:
     if not found.is_reported:
         return TextCell(tr("difference not reported"), align=CENTRE, size=12, tone="ink2")
-    if not row.difference.is_judged:
+    if not found.is_judged:
         word = tr("too few strides") if found.judgement is Judgement.TOO_FEW_STRIDES else tr("no published error")
         return TextCell(word, align=CENTRE, size=12, tone="ink2")
-    return ErrorStrip(found.difference, found.error, SCALE * found.error, is_judged=True, spoken=judged_in_words(found))
+    usual = ZONES * found.healthy if math.isfinite(found.healthy) else HALVES * found.error
+    scale = max(usual, REACH * (abs(found.difference) + found.error))
+    return IntervalStrip(found.difference, found.error, found.healthy, scale, spoken=judged_in_words(found))
 
 
-def _band(facts: Facts, row: LegsRow) -> str:
-    if row.band is None or not math.isfinite(row.band[0]):
-        return ""
-    low, high = (fixed(edge, 0 if row.unit == "°" else row.decimals) for edge in row.band)
-    return tr("{low} to {high}").format(low=low, high=high)
+def _mark(found: Difference) -> TableCell:
+    if not found.is_judged:
+        return TextCell("")
+    words = {
+        Mark.HEALTHY: tr("beyond 95 of 100"),
+        Mark.ERROR: tr("beyond error"),
+        Mark.NONE: tr("within error"),
+    }
+    return MarkCell(words[found.mark], found.mark is not Mark.NONE, found.mark is Mark.HEALTHY)

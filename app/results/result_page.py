@@ -1,44 +1,48 @@
-"""What came of one session: the answer to a walk first, then its curves, what differs most, and how sure that is."""
+"""What came of one session: a walk's headline, four values, curves with the legs, largest differences, quality."""
 
 from collections.abc import Mapping, Sequence
 from enum import Enum, auto
 
+import numpy as np
 from PySide6.QtCore import Qt, Signal
-from PySide6.QtGui import QKeySequence, QShortcut
+from PySide6.QtGui import QKeySequence, QShortcut, QShowEvent
 from PySide6.QtWidgets import QBoxLayout, QGridLayout, QHBoxLayout, QVBoxLayout, QWidget
 
-from app.results.beside_choice import Beside, BesideChoice
-from app.results.beside_words import answer_beside, key_figures_beside
+from app.plots.stride_legs import ThinBend
 from app.results.differs_card import DiffersCard
+from app.results.headline_text import HeadlineText
 from app.results.result_parts import PageRoom, ResultParts
-from app.results.summary_text import door_words, figures_in_short, key_figures, strides_in_short
+from app.results.summary_text import door_words, strides_in_short
+from app.results.thin_line import ThinLine, ThinLineChoice
+from app.results.value_tile import TileRow
 from app.summary.agreed import agreed_with
-from app.summary.answer import Outcome, answer_of
-from app.summary.beside import changes_on_curves
 from app.summary.comparison import Comparison
 from app.summary.conditions import Part, conditions_of
 from app.summary.course_lanes import CourseVisit
 from app.summary.data_quality import data_quality, quality_without_walk
 from app.summary.facts import Facts
-from app.summary.marks_on_curves import deviations_of, gaps_of
-from app.summary.mean_legs import mean_legs
+from app.summary.headline import Headline, headline_of
+from app.summary.marks_on_curves import bracket_of, gaps_of, labels_of
+from app.summary.mean_legs import MeanLegs, mean_legs
+from app.summary.quality_line import quality_sentence
 from app.summary.reference_bands import age_and_height
 from app.summary.request import AnalysedVisit, default_walks
+from app.summary.tiles import tiles_of
 from app.summary.visits import ComparedVisits
 from app.theme.icons import Icon
 from app.theme.notifier import ThemeNotifier
 from app.widgets.button import Button, ButtonKind
 from app.widgets.choice import Choice
 from app.widgets.detail_button import DetailButton
-from app.widgets.fact_strip import FactStrip
 from app.widgets.heard_order import hear_as_laid_out
-from app.widgets.notice import Notice
 from app.widgets.segmented import Segmented
+from app.widgets.text import Text
 from app.widgets.themed import Themed
 from app.widgets.toggle import Toggle
 from app.wording.recordings import with_shown_names
 from app.wording.translation import later, tr
-from core.body import Joint, JointKind, Side, Site
+from core.body import Joint, JointKind, Side, Site, ankle_of, knee_of
+from core.gait.cycles import POINTS
 from core.results import RecordingAnalysis
 from core.samples import FloatArray, RecordingKind
 
@@ -46,28 +50,21 @@ LEG_KINDS = (JointKind.KNEE, JointKind.ANKLE)  # whose charts are always there
 
 # the views
 ANSWER, COMPARE, WHOLE, STRIDES = "answer", "compare", "whole", "strides"
+CURVES, TABLE = "curves", "table"  # of the summary, where there is no room for both
 WALK, RECORDING = later("Whole walk"), later("Whole recording")
 
-ANSWER_PX = 22
-RECORDINGS = (146, 280)  # px: the narrowest and the widest that their box becomes
-BOTTOM = 44  # px high: the row that closes the answer
-BESIDE_TABLE, NOT_REPORTED, NOTE = (
-    484,
-    40,
-    24,
-)  # px high: all else on a page, a curve not reported, strides left out by hand
+RECORDINGS = (116, 240)  # px: the narrowest and the widest that their box becomes
+BOTTOM = 40  # px high: the row that closes the summary
+OTHERS, COMPACT_OTHERS = 298, 270  # px high: all else of a summary than charts and table
+SECOND_TOOLS = 56  # px high: where the tools take two rows
+CHART = 222  # px high: what the charts have before the table gets more rows
+TOOLS = 44  # px high
+LEGS, LEGS_SHARE = 144, 0.135  # px wide, or of the page
 GAP = 12  # px between what is in one row
-PELVIS = 56  # px high: above the legs
-ANSWER_ICONS = {
-    Outcome.DIFFERS: Icon.DIFFERENCE,
-    Outcome.NOTHING: Icon.READ,
-    Outcome.OPEN: Icon.INFO,
-    Outcome.UNREADABLE: Icon.NOT_REPORTED,
-}
 
 
 class Behind(Enum):
-    """What somebody looks at behind the answer, in place of its curves."""
+    """What somebody looks at behind the summary, in place of its curves."""
 
     NOTHING = auto()
     FIGURES = auto()
@@ -85,7 +82,7 @@ class ResultPage(Themed):
         self._look = look
         self._visit: AnalysedVisit | None = None
         self._facts: Facts | None = None  # of the walk on the screen
-        self._found: Comparison | None = None  # with what is beside it
+        self._headline: Headline | None = None
         self._can_choose = self._is_live = False
         self._course: tuple[CourseVisit, ...] = ()
         self._stride: Mapping[Joint, FloatArray] = {}  # in force
@@ -93,6 +90,10 @@ class ResultPage(Themed):
         self._width = self._height = 0.0
         self._has_tools = False  # views, recordings and methods in one row
         self._has_choices = False  # views and what else is chosen in one row
+        self._thin: Mapping[Side, ThinBend] = {}
+        self._drawn: tuple[AnalysedVisit, RecordingAnalysis, MeanLegs | None] | None = None
+        self._mended_by_motion: Side | None = None  # whose free motion would mend the gravest cause
+        self._has_band, self._has_chosen_legs = True, False
         self._behind = Behind.NOTHING
         self._required = ANSWER  # of a walk; kept while recordings without it are looked at
         self.view = Segmented(
@@ -107,14 +108,17 @@ class ResultPage(Themed):
         )
         self.to_answer = Button(look, tr("Summary"), ButtonKind.SECONDARY, Icon.BACK, tr("Esc"))
         self.recordings = Choice(look, tr("Recording"))
-        self.beside = BesideChoice(look)
+        self.thin = ThinLineChoice(look)
         self.recordings.let_shrink(*RECORDINGS)  # conditions are typed
-        self.answer = Notice(look, ANSWER_PX, padding=4)
-        self.key_figures = FactStrip(look)
+        self.part = Segmented(look, tr("Part"), [(CURVES, tr("Curves"), ""), (TABLE, tr("Table"), "")])
+        self.headline = HeadlineText(look)
+        self.tiles = TileRow(look)
         self.differs = DiffersCard(look)
         self.door = DetailButton(look, tr("Q"))
+        self.repeat = Button(look, tr("Repeat free motion"), ButtonKind.SECONDARY, Icon.REPEAT, height=BOTTOM)
+        self.repeat.hide()
         self.all_figures = Toggle(look, tr("All values"), tr("F"), is_on=False)
-        self.show_legs = Toggle(look, tr("Legs"), tr("G"), is_on=False)
+        self.show_legs = Toggle(look, tr("Legs"), tr("G"), is_on=True)
         self.cycles = parts.cycles
         self.legs = parts.legs
         self.strides = parts.strides
@@ -149,7 +153,7 @@ class ResultPage(Themed):
         is_prosthetic = session.patient.prosthetic_side in set(Side)
         parts = conditions_of(analysis, session.recordings, agreed=agreed_with(session))
         self.compare.show_conditions(analysis, parts, is_prosthetic, age_and_height(session))
-        self.beside.show_visit(visit)
+        self.thin.show_visit(visit)
         names = [recording.name for recording in analysis.recordings]
         self.recordings.blockSignals(True)
         self.recordings.clear()
@@ -173,34 +177,43 @@ class ResultPage(Themed):
     def show_visits(self, visits: Sequence[ComparedVisits], walked: str = "", every: Sequence[Part] = ()) -> None:
         """Show earlier visits, which `compare` requested, as `ComparePage.show_visits` describes."""
         self.compare.show_visits(visits, walked, every)
-        if self.beside.currentData() is Beside.LAST_VISIT:
-            self._show_beside()
+        if isinstance(self.thin.currentData(), ThinLine):
+            self._show_thin()
 
     def set_room(self, width: float, height: float) -> None:
         """Fold the page as far as its room, in px of the design, asks for it.
 
-        Where there is little room the key figures join the sentence, and the controls take two rows.
+        Where there is little room curves and table are shown one at a time, and legs take the place of the ankle.
         """
         room = PageRoom.of(width, height)
         self._width, self._height = width, height
+        if not self._has_chosen_legs:  # where there is little room the ankle is shown first
+            self.show_legs.show_on(not room.is_compact)
         if room != self._room or self._is_placed_otherwise():
             self._room = room
             self._place()
+        legs = self._look.theme.px(max(LEGS, LEGS_SHARE * width))
+        self.legs.setFixedWidth(max(legs, _least_width(self.legs)))  # words may need more in another language
         self._fit_parts()
         self._fit_table()
 
+    def showEvent(self, event: QShowEvent) -> None:
+        super().showEvent(event)
+        if self._is_placed_otherwise():  # words are measured by the fonts that they are shown in
+            self._place()
+
     def _fit_table(self) -> None:
-        """Show as many rows of what differs as leave the charts their room."""
-        frames = self.cycles.charts.frames
-        is_not_reported = any(panel.text for frame in frames for panel in frame.not_reported.values())
-        taken = BESIDE_TABLE + (NOT_REPORTED if is_not_reported else 0) + (NOTE if self.cycles.by_hand.text() else 0)
-        taken += PELVIS if self.show_legs.isChecked() and len(frames) > len(LEG_KINDS) else 0
-        self.differs.set_room(self._height - taken)
+        """Show as many rows of what differs as leave the charts their room; alone it has all of the page."""
+        others = COMPACT_OTHERS if self._room.is_compact else OTHERS + CHART
+        others += 0 if self._has_choices else SECOND_TOOLS
+        self.differs.set_room(self._height - others, is_compact=self._room.is_compact)
 
     def focus(self) -> None:
         """Give the focus to the first choice of the page."""
         if self._behind is Behind.QUALITY:
             self.quality.focus()
+        elif self.legs.isVisible():
+            self.legs.setFocus()  # arrows move the cursor at once
         else:
             (self.whole.methods if self.view.isHidden() else self.view).focus()
 
@@ -222,8 +235,8 @@ class ResultPage(Themed):
     @property
     def band_words(self) -> str:
         """Whose band is drawn behind the curves and how fast this walk was; empty where no curve has a band."""
-        is_shown = self.view.choice == ANSWER and self._behind is not Behind.QUALITY
-        return self.cycles.band_words if is_shown and self.beside.currentData() is Beside.BAND else ""
+        is_shown = self.view.choice == ANSWER and self._behind is Behind.FIGURES
+        return self.cycles.band_words if is_shown else ""  # over the curves their info button has it
 
     @property
     def tab_order(self) -> list[QWidget]:
@@ -231,19 +244,21 @@ class ResultPage(Themed):
         choices = [
             self.to_answer,
             *self.view.segments,
+            *self.part.segments,
             self.recordings,
-            self.beside,
+            self.thin,
             self.show_legs,
             *self.whole.methods.segments,
         ]
         shown = [
             *self.whole.tab_order,
             *self.strides.tab_order,
+            self.legs,
             self.differs.table,
             *self.cycles.tables,
             *self.compare.tab_order,
         ]
-        return [*choices, *shown, *self.quality.tab_order, self.door, self.all_figures]
+        return [*choices, *shown, *self.quality.tab_order, self.door, self.repeat, self.all_figures]
 
     def _build(self) -> None:
         self._controls = QGridLayout()
@@ -258,11 +273,9 @@ class ResultPage(Themed):
         self._choices = QWidget()
         choices = QHBoxLayout(self._choices)
         choices.setContentsMargins(0, 0, 0, 0)
-        for widget in (self.recordings, self.beside, self.show_legs, self._against):
+        self._thin_name = Text(self._look, tr("Thin line"), size=12, tone="ink2")
+        for widget in (self.part, self.recordings, self._thin_name, self.thin, self.show_legs, self._against):
             choices.addWidget(widget)
-        self._head = QHBoxLayout()
-        self._head.addWidget(self.answer, 1)
-        self._head.addWidget(self.key_figures, 0, Qt.AlignmentFlag.AlignTop)
         self._figures = QWidget()
         self._tables = QBoxLayout(QBoxLayout.Direction.LeftToRight, self._figures)
         self._tables.setContentsMargins(0, 0, 0, 0)
@@ -284,12 +297,15 @@ class ResultPage(Themed):
             self._columns.addWidget(widget, share)
         self._bottom = QHBoxLayout()
         self._bottom.addWidget(self.door, 1)
+        self._bottom.addWidget(self.repeat)
         self._bottom.addWidget(self.all_figures)
         self.all_figures.set_face(height=BOTTOM)
+        self.show_legs.set_face(height=TOOLS)
         self._page = QVBoxLayout(self)
         self._page.addLayout(self._controls)
         self._page.addWidget(self._compared_as, 0, Qt.AlignmentFlag.AlignLeft)
-        self._page.addLayout(self._head)
+        self._page.addWidget(self.headline)
+        self._page.addWidget(self.tiles)
         self._page.addLayout(self._columns, 1)
         self._page.addWidget(self.differs)
         self._page.addLayout(self._bottom)
@@ -298,13 +314,15 @@ class ResultPage(Themed):
     def _connect(self) -> None:
         self.view.chosen.connect(self._on_view_chosen)
         self.recordings.currentIndexChanged.connect(self._on_recording_changed)
-        self.beside.currentIndexChanged.connect(self._on_beside_changed)
+        self.thin.currentIndexChanged.connect(self._on_thin_changed)
+        self.part.chosen.connect(self._show_parts)
         self.strides.chosen.connect(self._on_stride_chosen)
         self.cycles.charts.picked.connect(self._on_stride_picked)
         self.show_legs.toggled.connect(self._on_legs_toggled)
-        self.legs.moved.connect(lambda: self.cycles.charts.show_cursor(self.legs.places))
+        self.legs.moved.connect(self._on_cursor_moved)
         self.door.clicked.connect(self._on_door)
         self.to_answer.clicked.connect(self.leave_behind)
+        self.repeat.clicked.connect(lambda: self.quality.repeat_requested.emit(self._mended_by_motion))
         self.all_figures.toggled.connect(lambda is_on: self._show_behind(Behind.FIGURES if is_on else Behind.NOTHING))
         for key, button in (
             (tr("Q"), self.door),
@@ -314,6 +332,9 @@ class ResultPage(Themed):
         ):
             shortcut = QShortcut(QKeySequence(key), button)  # asleep while its button is hidden
             shortcut.activated.connect(button.click)
+        for key, turn in ((tr("B"), self._turn_band), (tr("T"), self.thin.turn)):
+            shortcut = QShortcut(QKeySequence(key), self.cycles)  # asleep while there are no curves
+            shortcut.activated.connect(turn)
 
     def _place(self) -> None:
         """Put the controls into one row, where they fit; the methods go under the curves where they do not."""
@@ -338,10 +359,9 @@ class ResultPage(Themed):
             self._controls.addWidget(self.whole.methods, 0, 3)
         self.compare.set_room(room.is_compact, room.is_spacious, room.has_two_charts, has_view=not room.is_narrow)
         self.strides.set_charts_beside(self._room.has_strides_beside)
-        self.legs.set_brief(self._room.is_compact)
+        self.tiles.set_brief(self._room.is_compact)
         hear_as_laid_out(self)
         self._on_look_changed()
-        self._show_answer()
         self._offer()
 
     def _fit_parts(self) -> None:
@@ -374,12 +394,25 @@ class ResultPage(Themed):
         return self._inner_width >= sum(one.sizeHint().width() for one in tools) + self._look.theme.px(3 * GAP)
 
     def _do_choices_fit(self) -> bool:
-        """Whether the views fit into one row with what is chosen of an answer, and with what of a comparison."""
+        """Whether the views fit into one row with what is chosen in the one that is shown."""
         if self._room.is_narrow:
             return False
-        of_answer = _least_width(self.recordings) + _least_width(self.beside) + self.show_legs.sizeHint().width()
+        of_answer = self._least_of_choices()
         of_comparison = self.compare.kinds.sizeHint().width() + self.compare.bases.sizeHint().width()
-        needed = self.view.sizeHint().width() + max(of_answer, of_comparison) + self._look.theme.px(3 * GAP)
+        of_view = of_comparison if self.view.choice == COMPARE else of_answer
+        needed = self.view.sizeHint().width() + of_view + self._look.theme.px(3 * GAP)
+        return self._inner_width >= needed
+
+    def _least_of_choices(self) -> int:
+        """What the choices of a summary need at least, with the gaps between them."""
+        other = self.part if self._room.is_compact else self.thin
+        shown = (other, self.recordings, self.show_legs)
+        return sum(map(_least_width, shown)) + self._look.theme.px((len(shown) - 1) * GAP)
+
+    def _has_room_for_name(self) -> bool:
+        """Whether the thin line's name has room before its choice, with nothing cut."""
+        shown = (self.view, self.recordings, self._thin_name, self.thin, self.show_legs)
+        needed = sum(one.sizeHint().width() for one in shown) + self._look.theme.px(len(shown) * GAP)
         return self._inner_width >= needed
 
     def _offer(self) -> None:
@@ -404,49 +437,60 @@ class ResultPage(Themed):
 
     def _show_parts(self) -> None:
         """Show what belongs to the view, or the details behind the answer."""
+        if self._is_placed_otherwise():  # each view has choices of its own
+            self._place()
+            return
         recording, view = self.recording, self.view.choice
         is_walk = recording is not None and recording.kind is RecordingKind.WALKING
         has_answer = is_walk and view == (ANSWER if self.view.segments[0].isEnabled() else WHOLE)
         has_door = self._visit is not None and view in (ANSWER, WHOLE)
         behind = self._behind if has_answer or (has_door and self._behind is Behind.QUALITY) else Behind.NOTHING
         is_answer = view == ANSWER and behind is Behind.NOTHING
-        has_curves = is_answer and not (self._room.is_compact and self.show_legs.isChecked())
-        is_quality = behind is Behind.QUALITY
+        is_compact, is_quality = self._room.is_compact, behind is Behind.QUALITY
+        has_curves = is_answer and not (is_compact and self.part.choice == TABLE)
         self.view.setVisible(is_walk and not is_quality)
         self.to_answer.setVisible(is_quality)
         self.whole.methods.setVisible(view == WHOLE and not is_quality)
-        self.recordings.setVisible(view != COMPARE and self.recordings.count() > 0)
-        self.beside.setVisible(view == ANSWER and not is_quality and (has_curves or behind is Behind.FIGURES))
-        self.show_legs.setVisible(view == ANSWER and behind is Behind.NOTHING)
+        self.part.setVisible(is_answer and is_compact)
+        self.recordings.setVisible(view != COMPARE and self.recordings.count() > (1 if view == ANSWER else 0))
+        has_thin = has_curves and self.thin.count() > 1 and not is_compact
+        self.thin.setVisible(has_thin)
+        self._thin_name.setVisible(has_thin and self._has_room_for_name())
+        self.show_legs.setVisible(has_curves)
         self._against.setVisible(view == COMPARE)
-        self._compared_as.setVisible(view == COMPARE and self._room.is_compact and not self._room.is_narrow)
+        self._compared_as.setVisible(view == COMPARE and is_compact and not self._room.is_narrow)
         self.compare.setVisible(view == COMPARE)
-        self.answer.setVisible(has_answer and behind is Behind.NOTHING and bool(self.answer.text))
-        self.key_figures.setVisible(is_answer and not self._room.is_compact)
+        self.headline.setVisible(has_answer and behind is Behind.NOTHING and bool(self.headline.text))
+        self.tiles.setVisible(is_answer)
         self.whole.setVisible(view == WHOLE and not is_quality)
         self.cycles.setVisible(has_curves or (view == STRIDES and self._room.has_strides_beside))
-        has_legs = is_answer and self.show_legs.isChecked()
-        has_table = not has_legs or self._room.is_spacious
+        has_legs = has_curves and self.show_legs.isChecked()
         self.legs.setVisible(has_legs)
-        if not has_legs:
-            self.cycles.charts.show_cursor({})
-        room, charts = self._room, self.cycles.charts
-        has_hips = len(charts.frames) > len(LEG_KINDS)
-        is_beside = view == ANSWER and (has_hips or (room.has_two_charts and (room.is_spacious or not has_legs)))
-        is_crowded = has_hips and (has_legs or not room.is_spacious)
-        charts.set_side_by_side(is_beside)
-        charts.set_tight(is_tight=is_crowded, is_narrow=is_crowded and is_beside and (room.is_narrow or has_legs))
-        charts.set_brief(room.is_compact or view == STRIDES or is_crowded)
+        self._fit_charts(has_legs=has_legs)
         self.cycles.set_notes_shown(is_answer)
         self.strides.setVisible(view == STRIDES)
         self._show_strides()
         self._figures.setVisible(behind is Behind.FIGURES)
         self.quality.setVisible(is_quality)
-        self.differs.setVisible(is_answer and has_table and not self._room.is_compact and self.differs.has_rows)
+        self.differs.setVisible(is_answer and self.differs.has_rows and not (is_compact and has_curves))
+        is_table_alone = is_answer and not has_curves
+        self._page.setStretchFactor(self._columns, 0 if is_table_alone else 1)
+        self._page.setStretchFactor(self.differs, 1 if is_table_alone else 0)
         self.door.setVisible(has_door and not is_quality)
+        self.repeat.setVisible(is_answer and self._is_live and self._mended_by_motion is not None and not is_compact)
         self.all_figures.setVisible(view == ANSWER and not is_quality)
         self._page.activate()  # now, else the charts would be painted once too small and once right
         self.reported.emit()
+
+    def _fit_charts(self, *, has_legs: bool) -> None:
+        """Charts side by side where two have room; where there is little, the legs take the ankle's place."""
+        room, charts = self._room, self.cycles.charts
+        is_answer = self.view.choice == ANSWER
+        has_hips = len(charts.frames) > len(LEG_KINDS)
+        charts.set_side_by_side(is_answer and (has_hips or room.has_two_charts))
+        charts.set_tight(is_tight=is_answer and (has_hips or room.is_compact))
+        charts.ankle.setVisible(not (room.is_compact and has_legs))
+        charts.show_cursor(dict.fromkeys(Side, self.legs.percent) if has_legs else {})
 
     def _on_view_chosen(self) -> None:
         if self.view.choice in (ANSWER, WHOLE) and self.view.segments[0].isEnabled():
@@ -467,42 +511,54 @@ class ResultPage(Themed):
             self._offer()
             return
         self.strides.show_walk(recording, self._can_choose)
-        self.beside.offer(recording.name, has_visits=self.compare.has_visits)
-        self._show_beside()
+        self._show_walk()
         self._offer()
 
     def _called(self, name: str) -> str:
         """What a recording of this session is called."""
         return str(self._visit.shown_names.get(name, name)) if self._visit is not None else name
 
-    def _show_beside(self) -> None:
-        """Show the walk with what is beside it: its curves, what differs and the key figures."""
+    def _show_walk(self) -> None:
+        """Show the walk: headline, values, curves and what differs; then what is thin beside it."""
         recording, visit = self.recording, self._visit
         if recording is None or visit is None or recording.kind is not RecordingKind.WALKING:
-            self._facts = self._found = None
-            self._show_answer()
+            self._facts = self._headline = None
+            self.headline.show_sentences("")
             return
-        chosen = self.beside.currentData()
-        if chosen is Beside.LAST_VISIT:
-            self.compare.wish_visits()
-        facts = self._facts = Facts(visit, recording, self.beside.walks, self._course)
-        found, words = self.beside.compared(facts, self.compare.visits)
-        self._found = found
+        facts = Facts(visit, recording, course=self._course)
+        headline = self._headline = headline_of(facts)
+        self.thin.offer(facts, headline)
+        if self.thin.walks:
+            facts = Facts(visit, recording, self.thin.walks, self._course)
+            headline = self._headline = headline_of(facts)
+        self._facts = facts
+        self.headline.show_sentences(headline.first, headline.beside)
+        self.tiles.show_tiles(tiles_of(facts))
         self.cycles.show_walk(facts.part, recording, facts.is_simulated, age_and_height(visit.session))
-        charts = self.cycles.charts
-        charts.set_band_shown(chosen is Beside.BAND)
-        charts.show_beside(found, words)
-        if found is None:
-            self.key_figures.show_figures(key_figures(facts))
-            charts.show_marks(deviations_of(facts), gaps_of(facts))
-        else:
-            self.key_figures.show_figures(key_figures_beside(key_figures(facts), found))
-            charts.show_marks(changes_on_curves(found))
-        self.differs.show_facts(facts, found)
-        self._show_answer()
+        self.differs.show_facts(facts)
+        self._show_thin()
         self._fit_table()
-        if self.show_legs.isChecked():
-            self._show_moving_legs()
+        self._show_moving_legs()
+
+    def _show_thin(self) -> None:
+        """Draw the thin line again, with what is marked on the curves."""
+        facts, headline = self._facts, self._headline
+        if facts is None or headline is None:
+            return
+        chosen = self.thin.currentData()
+        if isinstance(chosen, ThinLine) and chosen.is_visit and self.compare.visits is None:
+            self.compare.wish_visits()
+        found, words = self.thin.compared(facts, self.compare.visits)
+        charts, bracket = self.cycles.charts, bracket_of(facts, headline)
+        sides = frozenset((facts.affected,)) if facts.affected is not None else frozenset(Side)
+        charts.show_beside(found, words, sides)
+        charts.show_marks([bracket] if bracket is not None else [], gaps_of(facts))
+        charts.show_labels([label for kind in facts.kinds for label in labels_of(facts, kind)])
+        points = bracket.points if bracket is not None else [label.point for label in labels_of(facts, JointKind.KNEE)]
+        if points:  # of the headline, else where the knee is bent most
+            self.legs.percent = max(points, key=lambda one: one.angle_deg).percent
+        self._thin = _bent(found) if found is not None else {}
+        self._show_moving_legs()
 
     def _show_quality(self) -> None:
         """Say what can be read of a walk, and of anything else what was noticed."""
@@ -517,7 +573,10 @@ class ResultPage(Themed):
             found, strides, joints = quality_without_walk(visit, recording.name if recording else ""), "", {}
             calibrated = visit.analysis.calibrated_for(recording) if recording is not None else {}
         sites = [site for site in Site if any(site in one.imu for one in visit.session.recordings)]
-        self.door.show_message(door_words(found))
+        of_walk = recording if recording is not None and recording.kind is RecordingKind.WALKING else None
+        line = quality_sentence(Facts(visit, of_walk), found) if of_walk is not None else None
+        self.door.show_message(door_words(found, line))
+        self._mended_by_motion = line.line.side if line is not None and line.line is not None else None
         self.quality.show_quality(found, joints, sites, strides, can_repeat=self._is_live)
         names = visit.shown_names
         self.quality.show_engineering(
@@ -525,18 +584,6 @@ class ResultPage(Themed):
             [with_shown_names(finding, names) for finding in visit.analysis.findings],
             recording.hips if recording is not None else {},
         )
-
-    def _show_answer(self) -> None:
-        """Say what came of the walk; the key figures follow where there is no room for them beside it."""
-        facts, found = self._facts, self._found
-        if facts is None:
-            self.answer.show_message(None, "")
-            return
-        answer = answer_of(facts)
-        if found is not None and answer.outcome is not Outcome.UNREADABLE:
-            answer = answer_beside(found)
-        then = [answer.then, figures_in_short(facts) if self._room.is_compact else ""]
-        self.answer.show_message(ANSWER_ICONS[answer.outcome], answer.first, " ".join(filter(None, then)))
 
     def _show_strides(self) -> None:
         """Draw single strides where they are chosen from; the one in force only there."""
@@ -549,17 +596,35 @@ class ResultPage(Themed):
         self._show_strides()
 
     def _on_legs_toggled(self, is_on: bool) -> None:
-        if is_on:
-            self._show_moving_legs()
+        self._has_chosen_legs = True
+        self._show_moving_legs()
         self._fit_table()
         self._show_parts()
         if is_on:
             self.legs.setFocus()
 
     def _show_moving_legs(self) -> None:
-        recording, visit = self.recording, self._visit
-        if recording is not None and visit is not None:
-            self.legs.show_legs(mean_legs(visit.session, visit.analysis, recording))
+        """Draw the legs where they are shown; they take longest, and what was drawn of the same walk stays."""
+        recording, visit, facts = self.recording, self._visit, self._facts
+        if recording is None or visit is None or facts is None or not self.show_legs.isChecked():
+            return
+        if self._drawn is None or self._drawn[0] is not visit or self._drawn[1] is not recording:
+            self._drawn = visit, recording, mean_legs(visit.session, visit.analysis, recording)
+        knees = {
+            side: facts.measured_curve_deg(side, JointKind.KNEE)
+            if facts.verdicts.joint(knee_of(side)).shape.is_reported
+            else None
+            for side in facts.gait
+        }
+        self.legs.show_legs(self._drawn[2], knees, self._thin)
+
+    def _on_cursor_moved(self, percent: float) -> None:
+        self.cycles.charts.show_cursor(dict.fromkeys(Side, percent) if not self.legs.isHidden() else {})
+
+    def _turn_band(self) -> None:
+        """Show or hide the reference."""
+        self._has_band = not self._has_band
+        self.cycles.charts.set_band_shown(self._has_band)
 
     def _on_stride_picked(self, kind: JointKind, percent: float, angle_deg: float) -> None:
         if self.legs.isVisible():
@@ -567,18 +632,21 @@ class ResultPage(Themed):
         elif self.view.choice == STRIDES:
             self.strides.choose_nearest(kind, percent, angle_deg, self.cycles.charts.heights_deg)
 
-    def _on_beside_changed(self) -> None:
-        self._show_beside()
-        self._show_parts()
+    def _on_thin_changed(self) -> None:
+        if self._facts is not None and bool(self._facts.chosen) != bool(self.thin.walks):
+            self._show_walk()  # of one condition with the other walk it now stands alone, or together again
+        else:
+            self._show_thin()
 
     def _on_look_changed(self) -> None:
         px, is_compact = self._look.theme.px, self._room.is_compact
         side = px(self._side)
-        self._page.setContentsMargins(side, px(12 if is_compact else 16), side, px(8 if is_compact else 12))
-        self._page.setSpacing(px(12))
+        self._page.setContentsMargins(side, px(12), side, px(8))
+        self._page.setSpacing(px(10))
+        for choice in (self.recordings, self.thin):
+            choice.setFixedHeight(px(TOOLS))
         self._controls.setSpacing(px(8 if is_compact else 12))
         self._columns.setSpacing(px(12))
-        self._head.setSpacing(px(24))
         self._bottom.setSpacing(px(12))
         self._tables.setSpacing(px(12))
         for part in (self._against, self._choices):
@@ -589,3 +657,17 @@ class ResultPage(Themed):
 
 def _least_width(widget: QWidget) -> int:
     return widget.minimumSizeHint().width()
+
+
+def _bent(found: Comparison) -> dict[Side, ThinBend]:
+    """How much further each leg was bent where the thin line is drawn, of joints whose heights can be compared."""
+    then, now = found.against, found.others[-1]
+
+    def change(joint: Joint) -> FloatArray:
+        is_known = all(joint in part.joints and part.verdicts.joint(joint).height.is_reported for part in (then, now))
+        if not is_known or not found.has_one_zero(joint):
+            return np.full(POINTS, np.nan)
+        return then.cycle(joint).mean - now.cycle(joint).mean
+
+    bends = {side: ThinBend(change(knee_of(side)), change(ankle_of(side))) for side in found.sides}
+    return {side: bend for side, bend in bends.items() if np.isfinite(bend.knee_deg).all()}

@@ -3,7 +3,7 @@
 from dataclasses import dataclass
 from functools import cached_property
 
-from app.plots.moving_legs import MovingLegs
+from app.plots.stride_legs import StrideLegs
 from app.results.compare_page import ComparePage
 from app.results.cycle_page import CyclePage
 from app.results.quality_page import QualityPage
@@ -69,8 +69,8 @@ class ResultParts:
         return WholePage(self._look)
 
     @cached_property
-    def legs(self) -> MovingLegs:
-        return MovingLegs(self._look)
+    def legs(self) -> StrideLegs:
+        return StrideLegs(self._look)
 
     @cached_property
     def quality(self) -> QualityPage:

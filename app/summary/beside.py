@@ -1,4 +1,4 @@
-"""What a walk can stand beside: another walk of its session, or its condition on the visit before."""
+"""What a walk can stand beside: another walk of its session, or its condition on an earlier visit."""
 
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
@@ -40,14 +40,14 @@ def beside_walk(shown: Part, other: Part, *, is_simulated: bool) -> Comparison:
     return Comparison(Contrast.CONDITIONS, (other, shown), is_simulated=is_simulated)
 
 
-def beside_last_visit(
-    shown: Part, condition: str, visits: Sequence[ComparedVisits], *, is_simulated: bool
+def beside_visit(
+    shown: Part, condition: str, visits: Sequence[ComparedVisits], *, is_first: bool, is_simulated: bool
 ) -> Comparison | None:
-    """A condition against itself on the latest earlier visit that has it; None where none has."""
+    """A condition beside itself on the first or the latest earlier visit that has it; None where none has."""
     for found in visits:
         if found.condition == condition:
-            *_, before, now = found.parts
-            pair = before, replace(shown, visit=now.visit)
+            before = found.parts[0] if is_first else found.parts[-2]
+            pair = before, replace(shown, visit=found.parts[-1].visit)
             return Comparison(Contrast.VISITS, pair, is_simulated=is_simulated)
     return None
 
@@ -73,7 +73,6 @@ def changes_on_curves(found: Comparison) -> list[Deviation]:
                 words=f"{row.side[0].upper()} {size}",
                 more=pattern.format(size=apart, other=row.against.name),
                 is_larger_than_error=True,
-                size=size,
             )
         )
     return marked

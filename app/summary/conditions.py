@@ -19,6 +19,7 @@ from app.summary.alignments import alignments_of
 from app.summary.measures import Measure
 from app.summary.pooled_walks import Pool, pool_letters, pools_of
 from app.wording.body import side_name
+from app.wording.dates import short_date
 from app.wording.recordings import LETTERS
 from app.wording.translation import tr
 from core.alignment import AlignmentChange
@@ -72,6 +73,11 @@ class Part:
     @property
     def sides(self) -> tuple[Side, ...]:
         return tuple(side for side in Side if any(side in walk.gait for walk in self.walks))
+
+    @property
+    def short_name(self) -> str:
+        """As a chart's key has room for: the day of another visit, else its name."""
+        return short_date(self.day) if self.day is not None else self.name
 
     def is_again(self, other: "Part") -> bool:
         """Whether it is the condition of another part, which the prosthesis was put back to since."""

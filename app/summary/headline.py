@@ -155,14 +155,14 @@ def change_sentence_since(
     """
     day = day_in_words(*since)
     if column == STANCE and side is not None:
-        before, now, size = _rounded(column, (*values, abs(difference)))
+        before, now, size = rounded(column, (*values, abs(difference)))
         stated = (
             tr("{side} stance is {size} points shorter than on {day}: {before} → {now} %.")
             if difference < 0
             else tr("{side} stance is {size} points longer than on {day}: {before} → {now} %.")
         )
         return stated.format(side=capitalised(side_name(side)), size=size, day=day, before=before, now=now)
-    _, now, size = _rounded(column, (*values, abs(difference)))
+    _, now, size = rounded(column, (*values, abs(difference)))
     unit = unit_and_decimals(column)[0]
     stated = tr("{clause}, down {size} since {day}.") if difference < 0 else tr("{clause}, up {size} since {day}.")
     return stated.format(clause=clause_of(column, side, now + unit), size=size + unit, day=day)
@@ -190,7 +190,7 @@ def evidence_in_sentences(column: str, found: Difference) -> tuple[str, ...]:
     return (first, rest) if rest else (first,)
 
 
-def _rounded(column: str, values: Sequence[float], *, is_other_shown: bool = True) -> tuple[str, ...]:
+def rounded(column: str, values: Sequence[float], *, is_other_shown: bool = True) -> tuple[str, ...]:
     """Two values and their difference, rounded once: degrees whole, all with a decimal more where they disagree.
 
     The chart shows degrees of both legs beside the sentence; of other measures the first is shown if the sentence does.
@@ -216,19 +216,21 @@ def _between_legs(facts: Facts) -> Headline | None:
             column = min(marked, key=lambda one: order_of(facts, one, None, marked[one]))
             found = marked[column]
             other, value = (facts.value(side, column).mean for side in (second, first))
-            _, now, size = _rounded(column, (other, value, abs(found.difference)), is_other_shown=False)
+            _, now, size = rounded(column, (other, value, abs(found.difference)), is_other_shown=False)
             unit = unit_and_decimals(column)[0]
             clause = clause_of(column, first, now + unit)
             points = tr("{size} points").format(size=size) if unit_of(column) is Unit.PERCENT else size + unit
-            stated = _legs_pattern(is_less=found.difference < 0, is_healthy=mark is Mark.HEALTHY)
+            is_usual = mark is Mark.ERROR and math.isfinite(found.healthy)
+            stated = _legs_pattern(is_less=found.difference < 0, is_usual=is_usual)
             sentence = stated.format(clause=clause, size=points, other=side_name(second))
             beside = evidence_in_sentences(column, found)[: None if mark is Mark.HEALTHY else 1]
             return Headline(rule, sentence, (*beside, *_unsure(facts)), column, first)
     return None
 
 
-def _legs_pattern(*, is_less: bool, is_healthy: bool) -> str:
-    if is_healthy:
+def _legs_pattern(*, is_less: bool, is_usual: bool) -> str:
+    """`is_usual`: many healthy people differ as much; of some measures nobody knows."""
+    if not is_usual:
         return (
             tr("{clause}, {size} less than the {other}.") if is_less else tr("{clause}, {size} more than the {other}.")
         )
@@ -248,7 +250,7 @@ def _similar(facts: Facts) -> Headline | None:
         return None
     unit = unit_and_decimals(column)[0]
     left, right = (facts.value(side, column).mean for side in Side)
-    shown = _rounded(column, (left, right, abs(legs[column].difference)), is_other_shown=False)
+    shown = rounded(column, (left, right, abs(legs[column].difference)), is_other_shown=False)
     if column == KNEE:
         stated = tr("Left and right are similar: knee {left} and {right} from stance to swing.")
     else:

@@ -9,11 +9,11 @@ from core.parameters import Unit, unit_of
 from core.verdicts.measurement_error import Difference, Mark
 
 
-def interval_in_figures(column: str, found: Difference) -> str:
-    """Both ends with their signs, as a table has them: "−13 to +4"; a dash where there is none."""
+def interval_in_figures(column: str, found: Difference, unit: str = "") -> str:
+    """Both ends with their signs and `unit`, as a table has them: "−13 to +4"; a dash where there is none."""
     if not found.is_judged:
         return NOTHING
-    low, high = (signed(edge, _edge_decimals(column, found)) for edge in found.interval)
+    low, high = (signed(edge, _edge_decimals(column, found)) + unit for edge in found.interval)
     return tr("{low} to {high}").format(low=low, high=high) + (DAGGER if found.is_unverified else "")
 
 

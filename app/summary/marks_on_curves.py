@@ -1,111 +1,85 @@
 """Places of a walk's curves that the answer refers to. What differs most, and where a curve leaves the band."""
 
-from collections.abc import Mapping
-
 import numpy as np
 
 from app.charts.cycles import Band, is_mean_enough
-from app.charts.marks import BAND_SDS, Deviation, Gap, Point, extreme_of, gaps_outside, laid_at_height_of
-from app.summary.comparison import Comparison
+from app.charts.marks import BAND_SDS, CurveLabel, Deviation, Gap, extreme_of, gaps_outside, laid_at_height_of
 from app.summary.facts import KINDS, Facts, joint_of
+from app.summary.headline import Headline, Rule, rounded
+from app.summary.measure_sentences import unit_and_decimals
 from app.summary.numbers_in_words import fixed
-from app.summary.what_differs import LegsRow, what_differs
-from app.summary.what_stands_out import (
-    BANDS_ON_PAPER,
-    BANDS_ON_SCREEN,
-    Candidate,
-    Since,
-    printed_findings,
-    ranked_findings,
-)
+from app.wording.dates import short_date
 from app.wording.translation import tr
-from core.body import Joint, Side
+from core.body import Joint, JointKind, Side
 from core.parameters import BY_COLUMN, QuantityClass
 from core.samples import FloatArray
 from core.verdicts.norms import KNEE_OVERREAD
-from core.verdicts.quantities import EXCURSIONS_BY_COLUMN
+from core.verdicts.quantities import EXCURSIONS_BY_COLUMN, WINDOWS
 
+LABELLED = {  # peaks whose values are on the curves
+    JointKind.KNEE: ("knee_swing_peak_deg",),
+    JointKind.ANKLE: ("ankle_stance_dorsiflexion_deg", "ankle_push_off_plantarflexion_deg"),
+}
+MARKED = (QuantityClass.SHAPE, QuantityClass.EXCURSION)
 CONTACT, ALL = (0.0, 0.0), (0.0, 100.0)  # percent of the stride
 
 
-def deviations_of(facts: Facts) -> list[Deviation]:
-    """Of each kind of joint the excursion between the legs that the findings report first, on the first leg.
+def labels_of(facts: Facts, kind: JointKind) -> list[CurveLabel]:
+    """The peaks of each leg's curve with the values that the tables have: "R 58°"; none where a peak is not reported.
 
-    Degrees as measured: the screen takes away the height of a curve without a zero, and of its marks with it.
+    Degrees as measured: who draws a curve about its mean lowers its labels with it, and states no value.
     """
-    rows = {row.column: row for row in what_differs(facts)}
-    reported = [rows[one.column] for one in ranked_findings(facts, None, BANDS_ON_SCREEN) if _is_between(one, rows)]
-    found: list[Deviation] = []
-    for kind in facts.kinds:
-        row = next((row for row in reported if _has_extremes(row, kind)), None)
-        if row is not None:
-            found.append(_on_leg(facts, row, kind))
+    found: list[CurveLabel] = []
+    for column in LABELLED.get(kind, ()):
+        window = WINDOWS[column]
+        for side in Side:
+            value, curve = facts.value(side, column), facts.measured_curve_deg(side, kind)
+            if is_mean_enough(value.n) and np.isfinite(curve).all() and not facts.is_no_peak(side, column):
+                at = extreme_of(kind.of(side), curve, window.first, window.last, is_maximum=window.is_maximum)
+                found.append(CurveLabel(at, f"{side.letter} {fixed(value.mean, 0)}°"))
     return found
 
 
-def brackets_of(facts: Facts, comparison: Comparison | None) -> dict[Joint, Deviation]:
-    """The same for paper, which has a panel for each leg: the first leg's has the number of its sentence.
+def bracket_of(facts: Facts, headline: Headline) -> Deviation | None:
+    """The movement that the headline is of, on its leg's curve, with its numbers; None where it is of none.
 
-    The other leg's bracket shows the same movement, without a number.
+    Degrees as measured: who draws a curve about its mean lowers its bracket with it.
     """
-    printed = [one.stated for one in printed_findings(facts, comparison)]
-    found: dict[Joint, Deviation] = {}
-    for candidate, row in _reported_between_legs(facts):
-        kind = next((kind for kind in facts.kinds if _has_extremes(row, kind)), None)
-        if kind is None or joint_of(kind, Side.LEFT) in found or joint_of(kind, Side.RIGHT) in found:
-            continue
-        number = printed.index(candidate.stated) + 1 if candidate.stated in printed else None
-        for side in facts.first_and_second:
-            if np.isfinite(facts.mean_curve_deg(side, kind)).all():
-                size = fixed(row.values[side].mean, row.decimals) + row.unit
-                low, high = _extremes(row, joint_of(kind, side), facts.mean_curve_deg(side, kind))
-                is_first = side is facts.first_and_second[0]
-                words = f"{side[0].upper()} {size}"
-                found[joint_of(kind, side)] = Deviation(
-                    low, high, words=words, size=size, number=number if is_first else None
-                )
-    return found
-
-
-def _reported_between_legs(facts: Facts) -> list[tuple[Candidate, LegsRow]]:
-    """The findings between the legs, each with its figures."""
-    rows = {row.column: row for row in what_differs(facts)}
-    return [(one, rows[one.column]) for one in ranked_findings(facts, None, BANDS_ON_PAPER) if _is_between(one, rows)]
-
-
-def _is_between(one: Candidate, rows: Mapping[str, LegsRow]) -> bool:
-    """Whether a finding is between the legs, and no change since a visit."""
-    return one.since is Since.NOTHING and one.column in rows
-
-
-def _has_extremes(row: LegsRow, kind: str) -> bool:
-    return row.column.startswith(kind) and BY_COLUMN[row.column].rests_on in (
-        QuantityClass.SHAPE,
-        QuantityClass.EXCURSION,
-    )
-
-
-def _on_leg(facts: Facts, row: LegsRow, kind: str) -> Deviation:
-    """The extremes of the first leg's mean curve; the sizes are means of the strides, as everywhere."""
-    first, second = facts.first_and_second
-    low, high = _extremes(row, joint_of(kind, first), facts.measured_curve_deg(first, kind))
-    size = fixed(row.values[first].mean, row.decimals) + row.unit
-    pattern = tr("{size} less than {other}") if row.difference.difference < 0 else tr("{size} more than {other}")
-    apart = fixed(abs(row.difference.difference), row.decimals) + row.unit
+    column, side = headline.column, headline.side
+    kind = next((kind for kind in facts.kinds if column.startswith(kind)), None)
+    if kind is None or side is None or BY_COLUMN[column].rests_on not in MARKED:
+        return None
+    curve, value = facts.measured_curve_deg(side, kind), facts.value(side, column)
+    if not is_mean_enough(value.n) or not np.isfinite(curve).all():
+        return None
+    now, more = _numbers_of(facts, headline, value.mean)
+    high, low = windows_of(column)
+    joint, unit = kind.of(side), unit_and_decimals(column)[0]
     return Deviation(
-        low,
-        high,
-        words=f"{first[0].upper()} {size}",
-        more=pattern.format(size=apart, other=second[0].upper()),
+        extreme_of(joint, curve, *low, is_maximum=False),
+        extreme_of(joint, curve, *high, is_maximum=True),
+        words=f"{side.letter} {now}{unit}",
+        more=more,
         is_larger_than_error=True,
-        size=size,
     )
 
 
-def _extremes(row: LegsRow, joint: Joint, curve: FloatArray) -> tuple[Point, Point]:
-    """The lowest and the highest point of a leg's mean curve (101,), degrees, that a movement goes between."""
-    high, low = windows_of(row.column)
-    return extreme_of(joint, curve, *low, is_maximum=False), extreme_of(joint, curve, *high, is_maximum=True)
+def _numbers_of(facts: Facts, headline: Headline, now: float) -> tuple[str, str]:
+    """The headline's value and what it is compared with, rounded as the headline has them."""
+    column, side, since = headline.column, headline.side, headline.since
+    assert side is not None
+    unit = unit_and_decimals(column)[0]
+    if headline.rule in (Rule.LEGS, Rule.LEGS_BEYOND_ERROR):
+        other = facts.value(side.other, column).mean
+        _, value, size = rounded(column, (other, now, abs(now - other)), is_other_shown=False)
+        pattern = tr("{size} less than {other}") if now < other else tr("{size} more than {other}")
+        return value, pattern.format(size=size + unit, other=side.other.letter)
+    walked = since.course.condition(facts.condition) if since is not None and since.course is not None else None
+    figure = walked.figure(column, side) if walked is not None else None
+    if since is None or figure is None or not figure.is_reported:
+        return fixed(now, 0), ""
+    then, value, _ = rounded(column, (figure.found.mean, now, abs(now - figure.found.mean)))
+    return value, f"{short_date(since.day)}: {then}{unit}"
 
 
 def windows_of(column: str) -> tuple[tuple[float, float], tuple[float, float]]:

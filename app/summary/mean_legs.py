@@ -80,6 +80,20 @@ class MeanLegs:
         return np.asarray((1 - share) * points[low] + share * points[low + 1])
 
 
+def bent_by(pose_m: FloatArray, knee_deg: float, ankle_deg: float) -> FloatArray:
+    """A pose (4, 2) with its knee flexed and its ankle dorsiflexed by so much more, on the same thigh."""
+    hip, knee, ankle, toes = pose_m
+    shank_rad, foot_rad = -math.radians(knee_deg), math.radians(ankle_deg - knee_deg)
+    new_ankle = knee + _turned(ankle - knee, shank_rad)
+    return np.stack([hip, knee, new_ankle, new_ankle + _turned(toes - ankle, foot_rad)])
+
+
+def _turned(vector: FloatArray, angle_rad: float) -> FloatArray:
+    """Forward and up, turned from forward to up."""
+    cos, sin = math.cos(angle_rad), math.sin(angle_rad)
+    return np.array([cos * vector[0] - sin * vector[1], sin * vector[0] + cos * vector[1]])
+
+
 def mean_legs(session: Session, analysis: Analysis, walk: RecordingAnalysis) -> MeanLegs | None:
     """The mean over the strides used; None where no thigh sensor sent or no knee's height may be read."""
     drawn = draw_legs(session, analysis, walk)

@@ -8,8 +8,8 @@ from app.summary.facts import Facts
 from app.wording.translation import joined, tr, tr_n
 from app.wording.verdicts import verdict_word
 from core.body import Side
+from core.gait.clocks import ClockTie
 from core.verdicts.model import Verdict
-from core.verdicts.quality import MIN_LOSS_PERCENT
 
 
 @dataclass(frozen=True, slots=True)
@@ -40,7 +40,7 @@ def quality_sentence(facts: Facts, found: DataQuality | None = None) -> QualityS
     if not known.lines:
         if not facts.gait:
             return QualitySentence(known.first, known.then)
-        return QualitySentence(tr("Data quality: good."), _in_order(facts))
+        return QualitySentence(tr("Data quality: good."), in_order(facts))
     line = known.lines[0]
     pattern = tr("{where}: {verdict}.") if line.where else tr("Data quality: {verdict}.")
     first = pattern.format(where=line.where, verdict=_in_sentence(line.verdict))
@@ -54,16 +54,14 @@ def _in_sentence(verdict: Verdict) -> str:
     return word[:1].lower() + word[1:]
 
 
-def _in_order(facts: Facts) -> str:
+def in_order(facts: Facts) -> str:
     """Strides of each leg, and what was looked at without finding anything."""
     counts = [str(facts.strides(side)) for side in Side if side in facts.gait]
     parts = [tr("{counts} strides").format(counts=joined(counts))]
     if facts.verdicts.between.verdict is Verdict.READ and len(counts) > 1:
-        parts.append(one_time_in_words(facts.walk))
+        is_by_hips = facts.walk.clocks is not None and facts.walk.clocks.tie is ClockTie.PELVIS
+        parts.append(one_time_in_words(facts.walk) if is_by_hips else tr("sensors synchronised"))
     if not quality.slipped_straps(facts):
         parts.append(tr("no strap moved"))
-    lost = max((one for walk in facts.part.walks for one in walk.lost_percent.values()), default=0.0)
-    if lost < MIN_LOSS_PERCENT:
-        parts.append(tr("hardly any samples lost"))
     words = ", ".join(parts)
     return f"{words}."

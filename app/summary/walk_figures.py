@@ -16,7 +16,7 @@ from app.summary.conditions import Part
 from app.wording.body import side_name
 from app.wording.findings import NAMES
 from app.wording.translation import capitalised, joined, later, tr, tr_n
-from app.wording.verdicts import GateWords, gate_words
+from app.wording.verdicts import GateWords, gate_figures, gate_words
 from core.body import Joint, JointKind, Side
 from core.gait.cycles import find_peak, mean_cycle
 from core.gait.spatiotemporal import MeanAndSd
@@ -262,6 +262,12 @@ def verdict_of(found: JointVerdicts) -> Verdict:
 def reason_in_words(found: JointVerdicts) -> str:
     """The gravest reason against a joint's curve, what to do: of a shape not reported, else height, else care."""
     return " ".join(filter(None, _words_of(found)))
+
+
+def why_in_figures(found: JointVerdicts) -> str:
+    """The same in a value and its limit; empty where it has none."""
+    reasons = (reason for part in (found.shape, found.height) for reason in part.reasons)
+    return next((gate_figures(one) for one in reasons if one.verdict is Verdict.NOT_REPORTED), "")
 
 
 def why_in_words(found: JointVerdicts) -> str:

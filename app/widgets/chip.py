@@ -1,42 +1,15 @@
-"""The letter of a leg in its frame: L filled, R outlined and dashed, so that it is read without colour too."""
+"""The chip of a leg as a widget, alone or before its line."""
 
-from PySide6.QtCore import QRectF, QSize, Qt
-from PySide6.QtGui import QAccessible, QColor, QPainter, QPaintEvent
+from PySide6.QtCore import QRectF, QSize
+from PySide6.QtGui import QAccessible, QPainter, QPaintEvent
 from PySide6.QtWidgets import QSizePolicy, QWidget
 
+from app.theme.leg_chip import CHIP, paint_chip
 from app.theme.notifier import ThemeNotifier
-from app.theme.theme import CHIP_RADIUS, Theme
-from app.widgets.text import SEMIBOLD
 from app.wording.translation import tr
 from core.body import Side
 
-CHIP = 20
 LINE = 24
-
-
-def paint_chip(painter: QPainter, rect: QRectF, side: Side, theme: Theme) -> None:
-    """Draw the chip of `side` into the square `rect`."""
-    painter.save()
-    painter.setRenderHint(QPainter.RenderHint.Antialiasing)
-    radius = CHIP_RADIUS * theme.scale
-    colour = theme.text(side)
-    if side is Side.LEFT:
-        painter.setPen(Qt.PenStyle.NoPen)
-        painter.setBrush(colour)
-        painter.drawRoundedRect(rect, radius, radius)
-        painter.setPen(QColor(theme.colours.ground if theme.is_dark else theme.colours.surface))
-    else:
-        pen = theme.pen(colour, 1.75)
-        pen.setCapStyle(Qt.PenCapStyle.FlatCap)
-        pen.setDashPattern([2.4, 1.4])
-        painter.setPen(pen)
-        painter.setBrush(Qt.BrushStyle.NoBrush)
-        half = pen.widthF() / 2
-        painter.drawRoundedRect(rect.adjusted(half, half, -half, -half), radius, radius)
-        painter.setPen(colour)
-    painter.setFont(theme.font(CHIP * 0.65, SEMIBOLD))
-    painter.drawText(rect, Qt.AlignmentFlag.AlignCenter, side.letter)
-    painter.restore()
 
 
 class Chip(QWidget):

@@ -14,7 +14,7 @@ from app.widgets.text import SEMIBOLD
 from app.wording.translation import tr
 from core.verdicts.model import Verdict
 
-HEIGHT = 44
+HEIGHT = 40
 PADDING = 16
 ICON = 20
 CAP = 22

@@ -19,9 +19,9 @@ from PySide6.QtGui import (
 from PySide6.QtWidgets import QHBoxLayout, QLineEdit, QSizePolicy, QVBoxLayout
 
 from app.theme.icons import Icon
+from app.theme.leg_chip import paint_chip
 from app.theme.notifier import ThemeNotifier
 from app.theme.style import IS_WRONG
-from app.widgets.chip import paint_chip
 from app.widgets.icons import IconMark
 from app.widgets.text import MEDIUM, REGULAR, SEMIBOLD, Text
 from app.widgets.themed import Themed

@@ -11,9 +11,9 @@ from PySide6.QtGui import QAccessible, QColor, QFontMetrics, QPainter, QPaintEve
 from PySide6.QtWidgets import QSizePolicy, QWidget
 
 from app.theme.icons import Icon, paint_icon
+from app.theme.leg_chip import paint_chip
 from app.theme.notifier import ThemeNotifier
 from app.theme.theme import CARD_RADIUS
-from app.widgets.chip import paint_chip
 from app.widgets.gauge import DASH, DASHES, UNKNOWN, GaugeMeasure, gauge_measure
 from app.widgets.painted_text import RIGHT, PaintedText, height_for
 from app.widgets.text import MEDIUM, SEMIBOLD

@@ -9,9 +9,9 @@ from PySide6.QtGui import QAccessible, QColor, QFontMetrics, QPainter, QPaintEve
 from PySide6.QtWidgets import QSizePolicy, QWidget
 
 from app.theme.icons import Icon, paint_icon
+from app.theme.leg_chip import CHIP, paint_chip
 from app.theme.notifier import ThemeNotifier
 from app.theme.theme import CHIP_RADIUS
-from app.widgets.chip import CHIP, paint_chip
 from app.widgets.text import MEDIUM, REGULAR, SEMIBOLD
 from app.wording.body import segment_name
 from app.wording.translation import figure_text, tr

@@ -8,9 +8,9 @@ from PySide6.QtCore import QPointF, QRectF, Qt
 from PySide6.QtGui import QColor, QFont, QFontMetrics, QPainter
 
 from app.theme.icons import Icon, paint_icon
+from app.theme.leg_chip import CHIP, paint_chip
 from app.theme.theme import Theme
-from app.widgets.chip import CHIP, paint_chip
-from app.widgets.text import REGULAR
+from app.widgets.text import MEDIUM, REGULAR
 from core.body import Side
 
 LEFT, RIGHT, CENTRE = Qt.AlignmentFlag.AlignLeft, Qt.AlignmentFlag.AlignRight, Qt.AlignmentFlag.AlignHCenter
@@ -22,6 +22,7 @@ LINE = 18  # from one line of a text to the next
 ONE_LINE = 28
 STRIP_WIDTH, STRIP_HEIGHT = 120, 18
 DOT = 11
+INTERVAL_WIDTH, CIRCLE = 146, 11
 
 
 class TableCell(ABC):
@@ -67,7 +68,8 @@ class TextCell(TableCell):
     r"""A text in one or several lines ("\n"), with a mark or the chip of a leg before and smaller words behind it.
 
     `align` is LEFT, RIGHT or CENTRE, `tone` the token of the text's colour. `wraps`: it asks for the room of its
-    longest word only. `spoken` represents its words where these alone would not be understood.
+    longest word only. `small_yields`: it asks for no room for its small words, which are cut where there is none.
+    `spoken` represents its words where these alone would not be understood.
     """
 
     text: str = ""
@@ -80,6 +82,7 @@ class TextCell(TableCell):
     side: Side | None = None
     span: int = 1
     wraps: bool = False
+    small_yields: bool = False
     spoken: str = ""
 
     @property
@@ -92,8 +95,8 @@ class TextCell(TableCell):
         return self.spoken or self.words
 
     def width(self, theme: Theme) -> int:
-        parts = (self._mark_width(theme), self._chip_width(theme), self._text_width(theme), self._small_width(theme))
-        return sum(parts)
+        small = 0 if self.small_yields else self._small_width(theme)
+        return self._mark_width(theme) + self._chip_width(theme) + self._text_width(theme) + small
 
     def height(self, theme: Theme) -> int:
         return theme.px(ONE_LINE) + self.text.count("\n") * theme.px(LINE)
@@ -133,7 +136,10 @@ class TextCell(TableCell):
     def _paint_small(self, painter: QPainter, room: QRectF, theme: Theme) -> None:
         painter.setFont(theme.font(SMALL))
         painter.setPen(QColor(theme.colours.ink2))
-        painter.drawText(room, int(self._way | MIDDLE), self.small)
+        small = self.small
+        if self.small_yields:
+            small = QFontMetrics(theme.font(SMALL)).elidedText(small, Qt.TextElideMode.ElideRight, int(room.width()))
+        painter.drawText(room, int(self._way | MIDDLE), small)
 
     @property
     def _way(self) -> Qt.AlignmentFlag:
@@ -227,3 +233,78 @@ class ErrorStrip(TableCell):
         reach = (strip.width() - theme.px(DOT)) / 2
         part = min(max(value / self.scale, -1.0), 1.0) if self.scale > 0 else 0.0
         return strip.center().x() + part * reach
+
+
+@dataclass(frozen=True, slots=True)
+class IntervalStrip(TableCell):
+    """A difference as a dot on its likely interval, over the grey zone of what healthy people differ by; one unit.
+
+    `half` and `zone` are the halves of both, NaN where not known. The edges of the strip are -`scale` and `scale`; the
+    line in the middle is no difference. What reaches beyond an edge ends there.
+    """
+
+    difference: float
+    half: float
+    zone: float
+    scale: float
+    spoken: str = ""
+
+    @property
+    def stated(self) -> str:
+        return self.spoken
+
+    def width(self, theme: Theme) -> int:
+        return theme.px(INTERVAL_WIDTH)
+
+    def paint(self, painter: QPainter, room: QRectF, theme: Theme) -> None:
+        c, px, middle, zero = theme.colours, theme.px, room.center().y(), room.center().x()
+        painter.setRenderHint(QPainter.RenderHint.Antialiasing)
+        if math.isfinite(self.zone):
+            edge = self._x(self.zone, room, theme) - zero
+            painter.fillRect(QRectF(zero - edge, middle - px(8), 2 * edge, 2 * px(8)), QColor(c.band_2sd))
+        painter.setPen(theme.pen(c.control, 1))
+        painter.drawLine(QPointF(zero, middle - px(9)), QPointF(zero, middle + px(9)))
+        if not math.isfinite(self.difference):
+            return
+        painter.setPen(theme.pen(c.ink, 1.5))
+        if math.isfinite(self.half):
+            ends = [self._x(self.difference + sign * self.half, room, theme) for sign in (-1.0, 1.0)]
+            painter.drawLine(QPointF(ends[0], middle), QPointF(ends[1], middle))
+            for end in ends:
+                painter.drawLine(QPointF(end, middle - px(4)), QPointF(end, middle + px(4)))
+        painter.setPen(Qt.PenStyle.NoPen)
+        painter.setBrush(QColor(c.ink))
+        dot = px(9 if abs(self.difference) > self.half else 7) / 2
+        painter.drawEllipse(QPointF(self._x(self.difference, room, theme), middle), dot, dot)
+
+    def _x(self, value: float, room: QRectF, theme: Theme) -> float:
+        reach = room.width() / 2 - theme.px(5)
+        return room.center().x() + reach * min(max(value / self.scale, -1.0), 1.0)
+
+
+@dataclass(frozen=True, slots=True)
+class MarkCell(TableCell):
+    """What a difference is beyond: a filled or an outlined circle, or none, and the words for it."""
+
+    text: str
+    has_circle: bool = False
+    is_filled: bool = False
+
+    @property
+    def words(self) -> str:
+        return self.text
+
+    def width(self, theme: Theme) -> int:
+        font = theme.font(SMALL, MEDIUM if self.is_filled else REGULAR)
+        return theme.px(CIRCLE) + theme.px(CHIP_GAP) + QFontMetrics(font).horizontalAdvance(self.text)
+
+    def paint(self, painter: QPainter, room: QRectF, theme: Theme) -> None:
+        c, px, radius = theme.colours, theme.px, theme.px(CIRCLE) / 2
+        painter.setRenderHint(QPainter.RenderHint.Antialiasing)
+        if self.has_circle:
+            painter.setPen(theme.pen(c.ink, 1.5))
+            painter.setBrush(QColor(c.ink) if self.is_filled else Qt.BrushStyle.NoBrush)
+            painter.drawEllipse(QPointF(room.left() + radius, room.center().y()), radius - 1, radius - 1)
+        painter.setFont(theme.font(SMALL, MEDIUM if self.is_filled else REGULAR))
+        painter.setPen(QColor(c.ink if self.has_circle else c.ink2))
+        painter.drawText(room.adjusted(px(CIRCLE) + px(CHIP_GAP), 0, 0, 0), int(LEFT | MIDDLE), self.text)

@@ -316,7 +316,7 @@ class Visit(QObject):
             self.evaluate()
 
     def read_earlier(self) -> None:
-        """Evaluate the patient's latest visits before this one; `earlier_read` follows."""
+        """Evaluate the patient's first visit and the latest before this one; `earlier_read` follows."""
         if self.session is None:
             return
         session = self.session
@@ -324,7 +324,8 @@ class Visit(QObject):
         def work(opened: "OpenedLibrary", report: Report) -> "list[tuple[Session, Analysis]]":
             lines = opened.library.sessions.list(session.patient_id)  # latest first
             before = [line for line in lines if line.id != session.id and line.started < session.details.started]
-            return [read_analysed(opened, line.id, report) for line in reversed(before[:MOST_EARLIER])]
+            shown = before if len(before) <= MOST_EARLIER else [*before[: MOST_EARLIER - 1], before[-1]]
+            return [read_analysed(opened, line.id, report) for line in reversed(shown)]
 
         self._controller.run_long(work, self._on_earlier_read, self._on_refused, None, self)
 

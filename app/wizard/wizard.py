@@ -67,8 +67,9 @@ class Wizard(QWidget):
         self._demonstration: Visit | None = None  # that waits for its patient
         self._closing: list[Visit] = []  # their threads end by themselves
         self._steps: dict[StepId, Step] = {}
-        self._current = StepId.PATIENT
+        self._current = self._offering = StepId.PATIENT  # `_offering`: whose offer to undo the toast shows
         self._ticks = 0
+        self._is_for_report = False  # as soon as what is resumed is there
         self._to_resume: UUID | None = None  # a session that waits for what visits before still save
         self._deaf_until_s = 0.0
         self._reported_of_recording: Message = NOTHING
@@ -121,10 +122,13 @@ class Wizard(QWidget):
             visit.patient.choose_from_list(patient)
         self._go_to(StepId.PATIENT)
 
-    def show_session(self, session_id: UUID) -> None:
-        """Look at what came of a session, or go on with it where nothing has come of it yet."""
+    def show_session(self, session_id: UUID, *, is_for_report: bool = False) -> None:
+        """Look at what came of a session, or go on with it where nothing has come of it yet.
+
+        `is_for_report`: its report is to be written, where that can be.
+        """
         self._begin_visit()
-        self._to_resume = session_id
+        self._to_resume, self._is_for_report = session_id, is_for_report
         self._on_resume_due()
 
     def _on_resume_due(self) -> None:
@@ -177,7 +181,7 @@ class Wizard(QWidget):
         shell.bar.back_pressed.connect(self._on_back)
         shell.bar.pressed.connect(self._on_bar_pressed)
         shell.bar.sound_pressed.connect(self._on_sound_pressed)
-        shell.toast.undone.connect(self._on_undo)
+        shell.toast.undone.connect(self._on_offer_undone)
         shell.banner.acted.connect(self._on_new_state_requested)
         shell.room_changed.connect(self._on_room_changed)
         self._keys.pressed.connect(self.act_on)
@@ -413,11 +417,21 @@ class Wizard(QWidget):
         self.left.emit()
 
     def _on_undo(self) -> None:
-        self.shell.toast.hide()
-        if self._steps:
+        """Take back what the toast offers, else what the current step can."""
+        if self.shell.toast.isVisible():
+            self.shell.toast.undo()
+        elif self._steps:
             self._steps[self._current].undo()
 
+    def _on_offer_undone(self) -> None:
+        """Let the step that offered it take it back, though it may be out of sight by now."""
+        if self._offering in self._steps:
+            self._steps[self._offering].undo()
+
     def _on_offered(self, what: str) -> None:
+        step = self.sender()
+        assert isinstance(step, Step)
+        self._offering = step.id
         self.shell.toast.offer(what)
 
     def _on_demonstration_required(self) -> None:
@@ -515,6 +529,9 @@ class Wizard(QWidget):
             self._go_to(StepId.SENSORS)
         else:
             self._go_to(StepId.RESULTS if all(walk.is_decided for walk in walks) else StepId.WALKING)
+            if self._is_for_report and self._current is StepId.RESULTS:
+                self.go_to(StepId.REPORT)
+        self._is_for_report = False
 
     def _on_room_changed(self, is_compact: bool, width: float, height: float) -> None:
         page = self.current.page if self.current is not None else None

@@ -3,7 +3,7 @@
 import datetime
 from typing import TYPE_CHECKING
 
-from app.wording.dates import date
+from app.wording.dates import date, short_date
 from app.wording.translation import tr
 
 if TYPE_CHECKING:
@@ -57,6 +57,13 @@ def when(started: str, now: datetime.datetime) -> str:
     if days == 0:
         return tr("today {time}").format(time=f"{at:%H:%M}")
     return tr("yesterday") if days == 1 else date(at.date())
+
+
+def when_in_brief(started: str, now: datetime.datetime) -> str:
+    """The same without the year, where that is this year."""
+    day = day_of_session(started, now)
+    is_plain = day is not None and day.year == now.year and (now.date() - day).days > 1
+    return short_date(day) if day is not None and is_plain else when(started, now)
 
 
 def length(seconds: float) -> str:

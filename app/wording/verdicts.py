@@ -218,6 +218,17 @@ def gate_words(reason: GateReason) -> GateWords:
     return GateWords(why, tr(words.to_do) if words.to_do else "")
 
 
+def gate_figures(reason: GateReason) -> str:
+    """What was found and the limit, where a sentence has no room: "±9.8°, limit ±9.0°"; empty without figures."""
+    if reason.value is None or reason.limit is None:
+        return ""
+    words, is_share = WORDS[reason.gate].why, reason.gate in SHARES
+    sign = "±" if "±{value}" in words else ""
+    value, limit = (sign + _figure(figure, reason.unit, is_share=is_share) for figure in (reason.value, reason.limit))
+    pattern = tr("{value}, required {limit}") if "required" in words else tr("{value}, limit {limit}")
+    return pattern.format(value=value, limit=limit)
+
+
 def gate_sentence(reason: GateReason) -> str:
     """The same in one piece."""
     return " ".join(filter(None, gate_words(reason)))

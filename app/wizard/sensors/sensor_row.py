@@ -17,12 +17,12 @@ from PySide6.QtGui import (
 from PySide6.QtWidgets import QMenu, QSizePolicy, QWidget
 
 from app.theme.icons import Icon, paint_icon
+from app.theme.leg_chip import paint_chip
 from app.theme.notifier import ThemeNotifier
 from app.theme.theme import CHIP_RADIUS, CONTROL_RADIUS
 from app.widgets.battery import HEIGHT as CELL_HEIGHT
 from app.widgets.battery import LOW, paint_battery
 from app.widgets.battery import WIDTH as CELL_WIDTH
-from app.widgets.chip import paint_chip
 from app.widgets.painted_button import PaintedButton
 from app.widgets.painted_text import PaintedText
 from app.widgets.sensor_tile import quiet_words

@@ -16,9 +16,9 @@ from PySide6.QtWidgets import QSizePolicy
 
 from app.charts.axes import AXIS_WIDTH, RIGHT_MARGIN
 from app.plots.phase_lanes import BETWEEN, GAP_PX, LANE, paint_phase
+from app.theme.leg_chip import CHIP, paint_chip
 from app.theme.notifier import ThemeNotifier
 from app.theme.theme import CHIP_RADIUS
-from app.widgets.chip import CHIP, paint_chip
 from app.widgets.text import MEDIUM
 from app.widgets.themed import Themed
 from app.wizard.walking.live_strip import SHOWN_S

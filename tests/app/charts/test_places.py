@@ -7,7 +7,7 @@ import pytest
 
 from app.charts.cycles import PERCENT
 from app.charts.frame import Frame
-from app.charts.places import Box, Ground, MarkPlace, line_of, place_mark
+from app.charts.places import Box, Ground, MarkPlace, line_of, place_hidden, place_labels, place_mark
 from core.samples import FloatArray
 
 FRAME = Frame(40, 24, 428, 150, -10, 80)
@@ -97,3 +97,41 @@ def test_of_a_curve_that_is_nowhere_known_nothing_is_in_the_way() -> None:
     assert line_of(FRAME, PERCENT, np.full(101, np.nan)).shape == (0, 2)
     place = place_mark(ground_of(np.full(101, np.nan)), ends((73, 55), (73, 44)), [ONE_LINE], 50)
     assert place.bar_x == pytest.approx(float(FRAME.x(50)))
+
+
+LABEL, DOT = (44.0, 16.0), 6.0
+
+
+@pytest.mark.parametrize("apart_deg", [0.0, 1.0, 6.0, 20.0])
+@pytest.mark.parametrize("percent", [2.0, 43.0, 73.0, 98.0])
+def test_labels_of_two_peaks_overlap_neither_each_other_nor_dots_and_stay_in_the_plot(
+    percent: float, apart_deg: float
+) -> None:
+    curve: FloatArray = 50 * np.exp(-(((PERCENT - percent) / 12) ** 2))
+    ground = ground_of(curve, curve - apart_deg, uprights=(float(FRAME.x(60)), float(FRAME.x(62))))
+    points = ends((percent, 50), (percent, 50 - apart_deg))
+    one, other = place_labels(ground, points, [LABEL, LABEL], [True, False], DOT)
+    assert one is not None
+    assert other is not None
+    assert not one.overlaps(other)
+    inside = Box(FRAME.left, FRAME.top, FRAME.right, FRAME.bottom)
+    for box in (one, other):
+        assert inside.contains(box)
+        assert not any(box.overlaps(Box(x, y, x, y).grown(DOT)) for x, y in points)
+    assert one.top <= other.top
+
+
+def test_a_label_leaves_a_bracket_and_the_box_of_a_hidden_curve_free() -> None:
+    ground = ground_of(KNEE)
+    hidden = place_hidden(ground, (152.0, 46.0))
+    assert length_covered(ground, hidden) == 0
+    bracket = place_mark(ground, ends((45, 0), (73, 55)), [ONE_LINE, TWO_LINES], 50)
+    (label,) = place_labels(ground, ends((73, 55)), [LABEL], [True], DOT)
+    assert label is not None
+    assert bracket.words is not None
+    assert not any(map(label.overlaps, (hidden, bracket.words)))
+
+
+def test_where_a_plot_is_too_small_a_label_is_left_away() -> None:
+    tiny = Ground(Frame(0, 0, 60, 20, -10, 80), [])
+    assert place_labels(tiny, [(30.0, 10.0)], [(200.0, 16.0)], [True], DOT) == [None]

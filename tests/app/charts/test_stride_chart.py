@@ -1,13 +1,26 @@
 """The description of a chart: what of a walk is shown, and what is held back."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
 from app.charts.axes import angle_in_words
 from app.charts.cycles import PERCENT, SideCycle
-from app.charts.stride_chart import StrideCurve, curves_of_walk, toe_off_labels, toe_offs_in_order, usual_range_deg
-from core.body import JointKind, Side
+from app.charts.marks import CurveLabel, Deviation, Point
+from app.charts.stride_chart import (
+    Axis,
+    StrideChart,
+    StrideCurve,
+    curves_of_walk,
+    toe_off_labels,
+    toe_offs_in_order,
+    usual_range_deg,
+)
+from core.body import Joint, JointKind, Side
 from core.gait.cycles import mean_cycle
+
+LEFT, RIGHT = Joint.LEFT_KNEE, Joint.RIGHT_KNEE
 
 
 def cycle(n: int, toe_off_percent: float = 60.0) -> SideCycle:
@@ -21,19 +34,24 @@ def only(n: int, *, is_not_reported: bool = False, has_strides: bool = False) ->
     return curve
 
 
-def test_spread_is_shown_of_ten_strides_and_not_under_single_strides() -> None:
-    assert only(10).sd_deg is not None
-    assert only(9).sd_deg is None
-    shown = only(10, has_strides=True)
-    assert shown.sd_deg is None
-    assert len(shown.strides_deg) == 10
+def test_single_strides_are_described_on_demand() -> None:
+    assert len(only(10).strides_deg) == 0
+    assert len(only(10, has_strides=True).strides_deg) == 10
 
 
-def test_of_a_not_reported_curve_neither_mean_nor_toe_off_nor_spread_is_described() -> None:
+def test_a_label_at_the_end_of_a_bracket_gives_way_to_it() -> None:
+    low, high, other = (Point(joint, 72.0, angle) for joint, angle in ((LEFT, 0.0), (LEFT, 58.0), (RIGHT, 58.0)))
+    labels = CurveLabel(high, "L 58°"), CurveLabel(other, "R 58°")
+    bare = StrideChart(Axis(-10, 80, 20, 20), (), None, is_simulated=False, labels=labels)
+    assert bare.shown_labels == labels
+    bracket = Deviation(low, high, "L 53°")
+    assert replace(bare, deviations=(bracket,)).shown_labels == labels[1:]
+
+
+def test_of_a_not_reported_curve_neither_mean_nor_toe_off_is_described() -> None:
     not_reported = only(12, is_not_reported=True)
     assert not not_reported.is_known
     assert np.isnan(not_reported.toe_off_percent)
-    assert not_reported.sd_deg is None
     assert len(not_reported.strides_deg) == 0
     assert len(only(12, is_not_reported=True, has_strides=True).strides_deg) == 12
     assert len(only(2, is_not_reported=True).strides_deg) == 2  # too few for a mean: they are all there is

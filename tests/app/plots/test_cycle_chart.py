@@ -11,7 +11,8 @@ from app.charts.axes import ANKLE_DEG, KNEE_DEG
 from app.charts.cycles import SideCycle
 from app.charts.marks import Deviation, Gap, Point
 from app.charts.stride_chart import toe_off_labels
-from app.plots.cycle_chart import CycleChart, CycleCharts
+from app.plots.cycle_chart import CycleChart
+from app.plots.cycle_charts import CycleCharts
 from app.summary.reference_bands import reference_curves
 from app.theme.notifier import ThemeNotifier
 from core.body import Joint, Side
@@ -97,15 +98,6 @@ def test_the_band_is_there_in_two_greys_and_can_be_taken_away(charts: CycleChart
     assert colour_at(chart, at, mean + 0.6 * sd).name() == c.surface.lower()
 
 
-def test_the_spread_needs_ten_strides(charts: CycleCharts, look: ThemeNotifier) -> None:
-    charts.set_band_shown(False)
-    for n, has_spread in ((12, True), (9, False)):
-        chart = show(charts, left=cycle(n))
-        sd_deg = float(chart.cycles[Side.LEFT].mean.sd[72])
-        inside = colour_at(chart, 72, 60 + 0.85 * sd_deg)
-        assert (inside.name() != look.theme.colours.surface.lower()) is has_spread, n
-
-
 def judged_as(shape: Assessment = READ, height: Assessment = READ, sign: Assessment = READ) -> JointVerdicts:
     return JointVerdicts(shape, height, sign)
 
@@ -123,27 +115,29 @@ def test_of_a_not_reported_joint_no_mean_is_drawn_but_why(charts: CycleCharts, l
     charts.show_cycles(cycles, {Joint.LEFT_KNEE: judged_as(PAIRING, PAIRING)}, is_simulated=False)
     chart = charts.knee.chart
     assert colour_at(chart, 72, 60).name() == look.theme.colours.surface.lower()
-    assert [side for side, panel in charts.knee.not_reported.items() if panel.isVisible()] == [Side.LEFT]
-    stated = charts.knee.not_reported[Side.LEFT].text
-    assert stated.startswith("Not reported. Sensor positions could not be confirmed (clarity 1.05, required 1.30).")
-    assert "record free motion" not in stated  # what to do is beneath, once for all
-    assert stated in charts.knee.in_words()
+    ((hidden, box),) = chart.layout_of_words.hidden
+    assert (hidden.side, hidden.reason) == (Side.LEFT, "1.05, required 1.30")
+    middle = QColor(chart.grab().toImage().pixelColor(round(box.left + 3), round(box.top + 3)))
+    assert middle.name() != ""
+    assert list(charts.knee.key.words.legs) == [Side.RIGHT]
+    stated = charts.knee.not_reported[Side.LEFT]
+    assert stated == "Sensor positions could not be confirmed (clarity 1.05, required 1.30)."
+    assert f"Left knee: Not reported. {stated}" in charts.knee.in_words()
     assert list(toe_off_labels(chart.described.curves)) == [Side.RIGHT]
     charts.show_cycles(cycles, {}, is_simulated=False)
-    assert not charts.knee.not_reported[Side.LEFT].isVisible()
+    assert not chart.layout_of_words.hidden
     assert is_like(colour_at(chart, 72, 60), look.theme.curve(Side.LEFT))
 
 
-def test_with_both_legs_not_reported_the_panels_take_the_charts_place(charts: CycleCharts) -> None:
+def test_with_both_legs_not_reported_each_has_its_box(charts: CycleCharts) -> None:
     nothing = judged_as(PAIRING, PAIRING)
     cycles = {Joint.LEFT_KNEE: cycle(12), Joint.RIGHT_KNEE: cycle(12)}
     charts.show_cycles(cycles, dict.fromkeys(cycles, nothing), is_simulated=False)
-    assert not charts.knee.chart.isVisible()
-    charts.set_strides_shown(True)  # to choose from, in grey
-    assert charts.knee.chart.isVisible()
-    charts.set_strides_shown(False)
+    (left, one), (right, other) = charts.knee.chart.layout_of_words.hidden
+    assert (left.side, right.side) == (Side.LEFT, Side.RIGHT)
+    assert not one.overlaps(other)
     charts.show_cycles(cycles, {Joint.LEFT_KNEE: nothing}, is_simulated=False)
-    assert charts.knee.chart.isVisible()
+    assert [hidden.side for hidden, _ in charts.knee.chart.layout_of_words.hidden] == [Side.LEFT]
 
 
 def test_of_fewer_than_three_strides_each_is_drawn_in_grey_and_no_mean(
@@ -152,7 +146,7 @@ def test_of_fewer_than_three_strides_each_is_drawn_in_grey_and_no_mean(
     charts.set_band_shown(False)
     charts.show_cycles({Joint.LEFT_KNEE: cycle(2)}, {Joint.LEFT_KNEE: judged_as(FEW, FEW)}, is_simulated=False)
     chart = charts.knee.chart
-    assert "Few strides (2 used, 3 required)" in charts.knee.not_reported[Side.LEFT].text
+    assert "Few strides (2 used, 3 required)" in charts.knee.not_reported[Side.LEFT]
     highest = float(chart.cycles[Side.LEFT].strides_deg.max())
     assert colour_at(chart, 72, highest).name() != look.theme.colours.surface.lower()
     assert colour_at(chart, 72, 60).name() == look.theme.colours.surface.lower()
@@ -160,14 +154,15 @@ def test_of_fewer_than_three_strides_each_is_drawn_in_grey_and_no_mean(
 
 def test_care_is_in_the_key_of_its_leg(charts: CycleCharts) -> None:
     cycles = {Joint.LEFT_KNEE: cycle(12), Joint.RIGHT_KNEE: cycle(12)}
-    slanted, chips = judged_as(SLANTED, SLANTED), charts.knee.chips
+    slanted, key = judged_as(SLANTED, SLANTED), charts.knee.key
     charts.show_cycles(cycles, dict.fromkeys(cycles, slanted), is_simulated=False)
-    assert {chip.verdict for chip in chips.values()} == {Verdict.CARE}
+    assert key.words.legs == dict.fromkeys(Side, Verdict.CARE)
     charts.show_cycles(cycles, {Joint.RIGHT_KNEE: slanted}, is_simulated=False)
-    assert {side: chip.verdict for side, chip in chips.items()} == {Side.LEFT: Verdict.READ, Side.RIGHT: Verdict.CARE}
+    assert key.words.legs == {Side.LEFT: Verdict.READ, Side.RIGHT: Verdict.CARE}
+    assert key.accessibleName() == "left leg: good, right leg: caution and Reference"
     assert "Right leg: caution." in charts.knee.in_words()
     charts.show_cycles(cycles, {}, is_simulated=False)
-    assert {chip.verdict for chip in chips.values()} == {Verdict.READ}
+    assert key.words.legs == dict.fromkeys(Side, Verdict.READ)
     assert "caution" not in charts.knee.in_words()
 
 
@@ -260,8 +255,9 @@ def test_simulated_is_on_both_charts_and_only_then(charts: CycleCharts, look: Th
         charts.show_cycles({Joint.LEFT_KNEE: cycle(12), Joint.LEFT_ANKLE: cycle(12)}, {}, is_simulated)
         for frame in charts.frames:
             picture, chart = frame.chart.grab().toImage(), frame.chart
-            corner = [picture.pixelColor(x, y).lightness() for x in range(60) for y in range(int(chart.frame.top) - 6)]
-            inked.append(min(corner) < 100)
+            right = chart.width() - 1
+            edge = [picture.pixelColor(right - x, y).lightness() for x in range(14) for y in range(40, 100)]
+            inked.append(min(edge) < 100)
     assert inked == [False, False, True, True]
 
 
@@ -277,9 +273,9 @@ LEFT_UNDER_RIGHT = Deviation(
 def test_a_difference_has_dots_at_its_ends_and_a_bar_in_free_space(charts: CycleCharts, look: ThemeNotifier) -> None:
     charts.set_band_shown(False)
     chart = show(charts, left=cycle(12, 40), right=cycle(12, 60))
-    assert chart.places() == []
+    assert not chart.layout_of_words.brackets
     charts.show_marks([LEFT_UNDER_RIGHT])
-    (place,) = chart.places()
+    ((_, place),) = chart.layout_of_words.brackets
     assert place.lines == 2
     assert (place.top, place.bottom) == (chart.at(72, 60).y(), chart.at(72, 40).y())
     middle = (place.top + place.bottom) / 2
@@ -297,7 +293,7 @@ def test_a_difference_has_dots_at_its_ends_and_a_bar_in_free_space(charts: Cycle
 def test_a_difference_inside_the_error_is_grey(charts: CycleCharts, look: ThemeNotifier) -> None:
     chart = show(charts, left=cycle(12, 40), right=cycle(12, 60))
     charts.show_marks([replace(LEFT_UNDER_RIGHT, is_larger_than_error=False)])
-    (place,) = chart.places()
+    ((_, place),) = chart.layout_of_words.brackets
     found = chart.grab().toImage().pixelColor(round(place.bar_x - 0.5), round((place.top + place.bottom) / 2))
     assert is_like(found, look.theme.colours.control)
     assert "beyond measurement error" not in charts.knee.in_words()

@@ -1,0 +1,112 @@
+"""What is drawn thin beside a walk's curves: its condition at an earlier visit, another walk, or nothing."""
+
+from collections.abc import Mapping, Sequence
+from dataclasses import replace
+from enum import Enum, auto
+
+from app.summary.agreed import agreed_with
+from app.summary.beside import beside_visit, beside_walk, walks_alone
+from app.summary.comparison import Comparison
+from app.summary.conditions import Part
+from app.summary.facts import Facts, part_of
+from app.summary.headline import Headline, Rule
+from app.summary.request import AnalysedVisit
+from app.summary.trend_lines import walked_visits
+from app.summary.visits import ComparedVisits
+from app.theme.notifier import ThemeNotifier
+from app.widgets.choice import Choice
+from app.wording.dates import day_in_words
+from app.wording.translation import tr
+
+NARROWEST, WIDEST = 150, 260  # px
+
+
+class ThinLine(Enum):
+    """Which visit; another walk of the session is chosen by its recording's name."""
+
+    NOTHING = auto()
+    LAST_VISIT = auto()
+    FIRST_VISIT = auto()
+
+    @property
+    def is_visit(self) -> bool:
+        return self is not ThinLine.NOTHING
+
+
+class ThinLineChoice(Choice):
+    """The choice, and the comparison that its curves come from."""
+
+    def __init__(self, look: ThemeNotifier) -> None:
+        super().__init__(look, tr("Thin line"))
+        self.let_shrink(NARROWEST, WIDEST)  # conditions are typed
+        self._visit: AnalysedVisit | None = None
+        self._walks: Mapping[str, Part] = {}  # of this session, each alone
+        self._shown = ""
+        self._is_own = False  # somebody chose
+        self.activated.connect(self._on_activated)
+
+    def show_visit(self, visit: AnalysedVisit) -> None:
+        """Take the walks of this session; `offer` follows."""
+        agreed = agreed_with(visit.session)
+        self._visit, self._walks = visit, walks_alone(visit.analysis, visit.session.recordings, agreed)
+        self._is_own = False
+
+    def offer(self, facts: Facts, headline: Headline) -> None:
+        """Offer what the walk of these facts can stand beside; unless somebody chose, the headline's visit is drawn."""
+        before, self._shown = self.currentData(), facts.walk.name
+        called = self._visit.shown_names if self._visit is not None else {}
+        walked = walked_visits(facts.course, facts.condition)
+        days = [visit.day for visit in walked]
+        self.blockSignals(True)
+        self.clear()
+        if len(walked) > 1:
+            self.addItem(tr("Last visit, {day}").format(day=day_in_words(days[-2], days)), ThinLine.LAST_VISIT)
+        if len(walked) > 2:
+            self.addItem(tr("First visit, {day}").format(day=day_in_words(days[0], days)), ThinLine.FIRST_VISIT)
+        for name in self._walks:
+            if name != self._shown:
+                self.addItem(str(called.get(name, name)), name)
+        self.addItem(tr("No thin line"), ThinLine.NOTHING)
+        proposed = ThinLine.FIRST_VISIT if headline.rule is Rule.SINCE_FIRST else ThinLine.LAST_VISIT
+        chosen = self.findData(before if self._is_own else proposed)
+        self.setCurrentIndex(chosen if chosen >= 0 else self.findData(ThinLine.NOTHING))
+        self.blockSignals(False)
+        self.setVisible(self.count() > 1)
+        self.updateGeometry()
+
+    def turn(self) -> None:
+        """Take the line away, or draw the first that there is."""
+        nothing = self.findData(ThinLine.NOTHING)
+        self._is_own = True
+        self.setCurrentIndex(0 if self.currentIndex() == nothing else nothing)
+
+    @property
+    def walks(self) -> tuple[str, ...]:
+        """The walk that is shown and the one beside it, which stand alone where both are of one condition."""
+        chosen = self.currentData()
+        return (self._shown, chosen) if isinstance(chosen, str) else ()
+
+    def compared(self, facts: Facts, visits: Sequence[ComparedVisits] | None) -> tuple[Comparison | None, str]:
+        """The walk's condition with what was chosen, or why there is no thin line.
+
+        Parameters
+        ----------
+        visits
+            Those of the patient; None while they are being read.
+        """
+        chosen, visit = self.currentData(), self._visit
+        if visit is None or self._shown not in self._walks or chosen in (None, ThinLine.NOTHING):
+            return None, ""
+        is_simulated, names = visit.analysis.is_simulated, visit.shown_names
+        walk = replace(facts.part, name=str(names.get(self._shown, self._shown)))
+        if isinstance(chosen, ThinLine):
+            if visits is None:
+                return None, ""  # it comes in a moment
+            is_first = chosen is ThinLine.FIRST_VISIT
+            found = beside_visit(walk, facts.condition, visits, is_first=is_first, is_simulated=is_simulated)
+            return found, "" if found is not None else tr("The earlier visit has no curve in this condition.")
+        other = replace(part_of(visit, chosen, self.walks), name=str(names.get(chosen, chosen)))
+        return beside_walk(walk, other, is_simulated=is_simulated), ""
+
+    def _on_activated(self, _index: int) -> None:
+        self._is_own = True
