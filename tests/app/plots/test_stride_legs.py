@@ -24,7 +24,7 @@ def leg(ahead_m: float) -> FloatArray:
     """A straight leg (101, 4, 2) whose foot goes from `ahead_m` to as far behind over the stride."""
     share = np.linspace(0.0, 1.0, POINTS)
     ankle = np.stack([ahead_m * (1 - 2 * share), np.full(POINTS, -0.8)], axis=1)
-    return np.stack([np.zeros((POINTS, 2)), ankle / 2, ankle, ankle + [0.2, 0.0]], axis=1)
+    return np.stack([np.zeros((POINTS, 2)), ankle / 2, ankle, ankle + np.array([0.2, 0.0])], axis=1)
 
 
 def both(**change: object) -> MeanLegs:

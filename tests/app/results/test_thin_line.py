@@ -158,9 +158,7 @@ def test_what_somebody_chose_stays_when_another_walk_is_shown(
     assert page.thin.currentData() is ThinLine.LAST_VISIT
 
 
-def test_t_takes_the_thin_line_away_and_brings_it_back(
-    page: ResultPage, analysis: Analysis, session: Session
-) -> None:
+def test_t_takes_the_thin_line_away_and_brings_it_back(page: ResultPage, analysis: Analysis, session: Session) -> None:
     return_to(page, session, analysis, analysis, analysis)
     choose(page, ThinLine.FIRST_VISIT)
     drawn = thin_curves(page)
@@ -238,7 +236,7 @@ def test_a_not_reported_joint_has_no_thin_curve_and_no_difference(
     page.show_visit(AnalysedVisit(session, gated))
     show(page, "walk 1")
     choose(page, "walk 2")
-    knee, ankle = page.cycles.charts.frames
+    _, ankle = page.cycles.charts.frames
     assert set(thin_curves(page)) == {Side.RIGHT}
     assert words_beside(page) == ["L: not reported in B AFO.", ""]
     assert [curve.side for curve in ankle.chart.described.beside] == list(Side)
