@@ -66,7 +66,7 @@ LIGHT = Colours(
     right_soft="#A3CCE5",
     band_1sd="#C3CBD3",
     band_2sd="#E3E8EC",
-    disabled="#9AA6B1",
+    disabled="#7B8792",
 )
 
 DARK = Colours(
@@ -97,7 +97,7 @@ DARK = Colours(
     right_soft="#1D5275",
     band_1sd="#414D58",
     band_2sd="#29333C",
-    disabled="#5F6D79",
+    disabled="#738290",
 )
 
 
@@ -116,6 +116,10 @@ class PaperColours:
     band_mean: str
     left: str
     right: str
+    left_soft: str
+    earlier: str
+    track: str
+    way: str
 
 
 PAPER = PaperColours(
@@ -130,4 +134,8 @@ PAPER = PaperColours(
     band_mean="#6E6E6E",
     left=LIGHT.left,
     right=LIGHT.right,
+    left_soft="#F3BE9B",
+    earlier="#EEF2F5",
+    track="#E6EAED",
+    way="#C9D1D8",
 )

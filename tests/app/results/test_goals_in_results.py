@@ -6,7 +6,6 @@ from dataclasses import replace
 
 import pytest
 
-from app.reports.patient.key_numbers import key_rows
 from app.results.compared_table import comparison_table
 from app.summary.agreed import agreed_with
 from app.summary.comparison import Comparison, Contrast
@@ -70,7 +69,7 @@ def test_a_figure_that_is_not_reported_has_its_reason_and_no_goal(visit: tuple[S
     assert values["speed_m_s"] == pytest.approx(1.18, abs=0.01)
 
 
-def test_measures_with_goals_come_first_in_what_differs_and_stand_among_the_key_numbers(
+def test_measures_with_goals_come_first_in_what_differs(
     visit: tuple[Session, Analysis],
 ) -> None:
     rows = what_differs(facts("2026-11-21", visit))
@@ -78,9 +77,6 @@ def test_measures_with_goals_come_first_in_what_differs_and_stand_among_the_key_
     assert all(row.goals for row in rows[:3])
     assert not any(row.goals for row in rows[3:])
     assert not any(row.goals for row in what_differs(facts("2026-09-29", visit)))
-    assert {"ankle_push_off_deg", "stance_percent"} <= {
-        row.column for row in key_rows(facts("2026-11-21", visit), None)
-    }
 
 
 def test_between_visits_the_goal_is_behind_the_name_and_is_dotted_in_the_trend(
