@@ -104,7 +104,7 @@ def test_every_word_of_a_tile_is_in_its_box_and_none_is_over_another(
         assert all(QRectF(tile.rect()).contains(box) for box in boxes)
         crossed = [(i, k) for i, one in enumerate(boxes) for k in range(i) if one.intersects(boxes[k])]
         assert crossed == [], [words(tile), language]
-        if (bar := tile._bar(tile.tile)) is not None:
+        if tile.tile is not None and (bar := tile._bar(tile.tile)) is not None:
             assert not any(bar.intersects(box) for box in boxes)
 
 
@@ -129,8 +129,9 @@ def test_the_arrow_is_filled_beyond_error_and_outlined_within_it(
 
 
 def test_a_first_visit_has_no_arrow(tile: ValueTile) -> None:
-    tile.show_tile(replace(four()[0], change=TileChange("First visit", brief="First visit")))
-    (change,) = tile._change(tile.tile) if tile.tile is not None else ()
+    first = replace(four()[0], change=TileChange("First visit", brief="First visit"))
+    tile.show_tile(first)
+    (change,) = tile._change(first)
     assert change.text == "First visit"
     assert change.box.left() == tile._look.theme.px(16)  # where the arrow would be
 
