@@ -185,9 +185,7 @@ def test_an_earlier_visit_is_compared_as_worn_again(qtbot: QtBot, visit: Visit, 
         assert strapped_again < row.difference.error < 1.2 * strapped_again  # chance is added
 
 
-def test_the_last_visit_is_read_from_the_library_and_drawn_thin(
-    qtbot: QtBot, visit: Visit, step: ResultsStep
-) -> None:
+def test_the_last_visit_is_read_from_the_library_and_drawn_thin(qtbot: QtBot, visit: Visit, step: ResultsStep) -> None:
     """Without that anybody asks for it."""
     results = step.page.results()
     knee = results.cycles.charts.knee
