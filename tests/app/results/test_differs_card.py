@@ -95,7 +95,7 @@ def test_a_row_has_both_values_their_difference_and_its_interval(
     _, left, right, less, likely, strip, _ = row(card, "Knee flexion, stance to swing")
     column = "knee_stance_to_swing_deg"
     values = [found.value(side, column).mean for side in Side]
-    assert [cell.words for cell in (left, right)] == [f"{value:.1f}°" for value in values]  # type: ignore[attr-defined]
+    assert [cell.words for cell in (left, right)] == [f"{value:.1f}°" for value in values]  # type: ignore[attr-defined] # cells are objects here
     assert isinstance(less, TextCell)
     assert less.words == f"{values[0] - values[1]:+.1f}°".replace("-", MINUS)
     assert isinstance(strip, IntervalStrip)
@@ -112,7 +112,7 @@ def test_what_is_not_reported_comes_last_with_a_word_and_no_strip(
     gated = recalibrated(analysis, [Joint.LEFT_KNEE], axis_sd_rad=np.deg2rad(11.0))
     card.show_facts(facts(session, gated))
     assert all(not one.cells[0].words.startswith("Knee") for one in card.table.cells.rows)  # others are reported
-    cells = [one.cells for one in card._rows]
+    cells = [one.cells for one in card.rows]
     knees = [k for k, one in enumerate(cells) if one[0].words.startswith("Knee")]
     assert min(knees) > max(k for k, one in enumerate(cells) if isinstance(one[5], IntervalStrip))
     assert cells[knees[0]][5].words == "difference not reported"

@@ -26,33 +26,37 @@ def headline(qtbot: QtBot, look: ThemeNotifier) -> HeadlineText:
     return found
 
 
-def width_of(headline: HeadlineText, text: str, size: int, *, is_first: bool) -> int:
-    theme = headline._look.theme
+def width_of(look: ThemeNotifier, text: str, size: int, *, is_first: bool) -> int:
+    theme = look.theme
     return QFontMetrics(theme.font(size, SEMIBOLD) if is_first else theme.font(size)).horizontalAdvance(text)
 
 
 def test_where_there_is_room_all_of_it_is_shown_in_large_letters(headline: HeadlineText) -> None:
-    assert headline._first.font().pixelSize() == SIZES[0]
+    assert headline.first.font().pixelSize() == SIZES[0]
     assert headline.shown == " ".join(BESIDE)
 
 
 @pytest.mark.parametrize("size", SIZES)
-def test_letters_shrink_as_far_as_the_sentence_needs_and_no_further(headline: HeadlineText, size: int) -> None:
-    headline.resize(width_of(headline, FIRST, size, is_first=True) + SPARE, 50)
-    assert headline._first.font().pixelSize() == size
+def test_letters_shrink_as_far_as_the_sentence_needs_and_no_further(
+    look: ThemeNotifier, headline: HeadlineText, size: int
+) -> None:
+    headline.resize(width_of(look, FIRST, size, is_first=True) + SPARE, 50)
+    assert headline.first.font().pixelSize() == size
 
 
 def test_a_sentence_that_is_longer_still_takes_two_lines(headline: HeadlineText) -> None:
     headline.resize(400, 80)
-    assert headline._first.font().pixelSize() == SIZES[-1]
-    assert headline._first.wordWrap()
-    assert headline._first.heightForWidth(400) > headline._first.heightForWidth(1016)
+    assert headline.first.font().pixelSize() == SIZES[-1]
+    assert headline.first.wordWrap()
+    assert headline.first.heightForWidth(400) > headline.first.heightForWidth(1016)
 
 
 @pytest.mark.parametrize("count", [3, 2, 1])
-def test_the_last_sentence_goes_first_and_the_first_one_stays(headline: HeadlineText, count: int) -> None:
+def test_the_last_sentence_goes_first_and_the_first_one_stays(
+    look: ThemeNotifier, headline: HeadlineText, count: int
+) -> None:
     shown = " ".join(BESIDE[:count])
-    headline.resize(width_of(headline, shown, SECOND, is_first=False) + SPARE, 50)
+    headline.resize(width_of(look, shown, SECOND, is_first=False) + SPARE, 50)
     assert headline.shown == shown
     headline.resize(60, 50)
     assert headline.shown == BESIDE[0]
@@ -71,5 +75,5 @@ def test_room_brings_sentences_back(headline: HeadlineText) -> None:
 
 def test_without_anything_beside_it_there_is_no_second_line(headline: HeadlineText) -> None:
     headline.show_sentences(FIRST)
-    assert not headline._second.isVisible()
+    assert not headline.second.isVisible()
     assert headline.text == FIRST

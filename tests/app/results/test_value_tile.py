@@ -67,17 +67,17 @@ def words(tile: ValueTile) -> list[str]:
     return [text.text for text in tile.painted_texts()]
 
 
-def ink_boxes(tile: ValueTile) -> list[QRectF]:
+def ink_boxes(tile: ValueTile, look: ThemeNotifier) -> list[QRectF]:
     """Where letters and chips are."""
     assert tile.tile is not None
-    px, found = tile._look.theme.px, []
+    px, found = look.theme.px, []
     for text in tile.painted_texts():
         ink = QFontMetrics(text.font).tightBoundingRect(text.text)
         box = QRectF(text.box.left(), text.box.center().y() - ink.height() / 2, ink.width(), ink.height())
         if text.align.value & 0x2:  # at the right
             box.moveRight(text.box.right())
         found.append(box)
-    for text, side in tile._values(tile.tile):
+    for text, side in tile.value_texts(tile.tile):
         if side is not None:
             found.append(QRectF(text.box.right() + px(6), text.box.center().y() - px(9), px(18), px(18)))
     return found
@@ -100,19 +100,19 @@ def test_every_word_of_a_tile_is_in_its_box_and_none_is_over_another(
     assert row.minimumSizeHint().width() <= row.width()
     assert words_cut(row) == []
     for tile in row.tiles:
-        boxes = ink_boxes(tile)
+        boxes = ink_boxes(tile, look)
         assert all(QRectF(tile.rect()).contains(box) for box in boxes)
         crossed = [(i, k) for i, one in enumerate(boxes) for k in range(i) if one.intersects(boxes[k])]
         assert crossed == [], [words(tile), language]
-        if tile.tile is not None and (bar := tile._bar(tile.tile)) is not None:
+        if tile.tile is not None and (bar := tile.bar_of(tile.tile)) is not None:
             assert not any(bar.intersects(box) for box in boxes)
 
 
-def arrow_pixels(image: QImage, tile: ValueTile) -> tuple[QColor, QColor]:
+def arrow_pixels(image: QImage, tile: ValueTile, look: ThemeNotifier) -> tuple[QColor, QColor]:
     """The middle of the arrow, and what is around the tile's text."""
     assert tile.tile is not None
-    (change,) = tile._change(tile.tile)
-    px = tile._look.theme.px
+    (change,) = tile.change_texts(tile.tile)
+    px = look.theme.px
     x, y = change.box.left() - px(5) - px(9) / 2, change.box.center().y()
     return image.pixelColor(round(x), round(y + (1 if tile.tile.change.rises else -1))), image.pixelColor(8, 50)
 
@@ -124,16 +124,16 @@ def test_the_arrow_is_filled_beyond_error_and_outlined_within_it(
 ) -> None:
     speed = four()[0]
     tile.show_tile(replace(speed, change=since("+0.13", rises=rises, is_beyond=is_beyond)))
-    middle, ground = arrow_pixels(tile.grab().toImage(), tile)
+    middle, ground = arrow_pixels(tile.grab().toImage(), tile, look)
     assert middle.name() == (QColor(look.theme.colours.ink).name() if is_beyond else ground.name())
 
 
-def test_a_first_visit_has_no_arrow(tile: ValueTile) -> None:
+def test_a_first_visit_has_no_arrow(look: ThemeNotifier, tile: ValueTile) -> None:
     first = replace(four()[0], change=TileChange("First visit", brief="First visit"))
     tile.show_tile(first)
-    (change,) = tile._change(first)
+    (change,) = tile.change_texts(first)
     assert change.text == "First visit"
-    assert change.box.left() == tile._look.theme.px(16)  # where the arrow would be
+    assert change.box.left() == look.theme.px(16)  # where the arrow would be
 
 
 def test_where_the_change_has_no_room_its_words_go_and_then_its_day_and_the_tooltip_has_all(tile: ValueTile) -> None:
@@ -141,7 +141,7 @@ def test_where_the_change_has_no_room_its_words_go_and_then_its_day_and_the_tool
     tile.show_tile(speed)
     for width, shown in ((280, 0), (220, 1), (100, 2)):
         tile.resize(width, 93)
-        assert tile._change(speed)[0].text == (speed.change.words, speed.change.brief, speed.change.size)[shown]
+        assert tile.change_texts(speed)[0].text == (speed.change.words, speed.change.brief, speed.change.size)[shown]
     assert speed.change.words in tile.toolTip()
     assert tile.accessibleName() == tile.toolTip()
 
@@ -149,7 +149,7 @@ def test_where_the_change_has_no_room_its_words_go_and_then_its_day_and_the_tool
 def test_the_goal_is_over_its_tick_on_the_scale(look: ThemeNotifier, tile: ValueTile) -> None:
     speed = four()[0]
     tile.show_tile(speed)
-    bar, (goal,) = tile._bar(speed), tile._goal(speed)
+    bar, (goal,) = tile.bar_of(speed), tile.goal_texts(speed)
     assert bar is not None
     assert goal.text == "goal 1.10 m/s"
     x = bar.left() + bar.width() * 1.1 / 2.0
@@ -160,7 +160,7 @@ def test_the_goal_is_over_its_tick_on_the_scale(look: ThemeNotifier, tile: Value
     ink = QColor(look.theme.colours.ink)
     assert abs(image.pixelColor(round(x) - 1, top).lightness() - ink.lightness()) < 60
     tile.show_tile(replace(speed, goals=(), goal=""))
-    assert tile._goal(replace(speed, goals=(), goal="")) == []
+    assert tile.goal_texts(replace(speed, goals=(), goal="")) == []
     assert tile.grab().toImage().pixelColor(round(x) - 1, top) == QColor(look.theme.colours.surface)
 
 
@@ -169,7 +169,7 @@ def test_what_is_not_reported_has_the_word_and_no_scale_or_change(tile: ValueTil
     tile.show_tile(Tile(SPEED, "Walking speed", "m/s", (nothing,), TileChange(""), (0.0, 2.0), why="not reported"))
     assert tile.tile is not None
     assert words(tile) == ["Walking speed", "Not reported"]
-    assert tile._bar(tile.tile) is None
+    assert tile.bar_of(tile.tile) is None
     assert tile.accessibleName() == "Walking speed: not reported"
 
 
