@@ -8,7 +8,6 @@ from uuid import UUID
 
 import numpy as np
 import pytest
-from app.results.beside_choice import Beside
 from PySide6.QtCore import Qt
 from PySide6.QtTest import QTest
 from PySide6.QtWidgets import QApplication, QFileDialog
