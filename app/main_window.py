@@ -301,6 +301,7 @@ class MainWindow(QWidget):
             self.screens.addWidget(self._home)
             self._home.session_requested.connect(self._on_session_requested)
             self._home.session_opened.connect(self._on_session_opened)
+            self._home.report_requested.connect(self._on_report_requested)
             self._home.demonstration_requested.connect(self.open_demonstration)
             self._home.own_library_requested.connect(self._on_own_library_requested)
             self._home.help_requested.connect(self._show_help)
@@ -324,6 +325,9 @@ class MainWindow(QWidget):
 
     def _on_session_opened(self, session_id: UUID) -> None:
         self._entered_wizard().show_session(session_id)
+
+    def _on_report_requested(self, session_id: UUID) -> None:
+        self._entered_wizard().show_session(session_id, is_for_report=True)
 
     def _entered_wizard(self) -> "Wizard":
         """The wizard, in sight: the one place where a session with a patient is entered."""

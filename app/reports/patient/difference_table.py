@@ -25,7 +25,7 @@ from core.verdicts.model import Verdict
 
 MOST_ROWS = 5
 HIP = "hip_range_deg"
-MARK, STRIP, STRIP_HEIGHT = 7.0, 22 * MM, 12.0
+MARK, STRIP, STRIP_HEIGHT = 7.0, 20 * MM, 12.0
 ZONES, HALVES = 2.3, 1.6  # half a drawing: so many times healthy people's difference, else half of the interval
 FILLED, HOLLOW = 2.4, 2.0  # radii
 
