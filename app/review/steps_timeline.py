@@ -30,7 +30,7 @@ def steps_of(recording: RecordingAnalysis) -> tuple[float, float] | None:
 def with_steps(
     entity: str, batch: pa.RecordBatch, steps: Mapping[str, tuple[float, float]]
 ) -> Iterator[pa.RecordBatch]:
-    """Yield rows of which those during the steps of their walk have their time twice; `steps` by the walk's timeline."""
+    """Yield rows, those during the steps of their walk with their time twice; `steps` by the walk's timeline."""
     timeline = next((name for name in batch.schema.names if name in steps), None)
     if timeline is None:
         yield batch

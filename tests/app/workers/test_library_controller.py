@@ -399,7 +399,8 @@ def test_after_the_demonstration_the_library_opens_without_its_passphrase_for_th
 ) -> None:
     opened(qtbot, controller, folder, "vi")
     begun_demonstration(qtbot, controller, monkeypatch)
-    assert controller.kept is not None
+    kept = controller.kept
+    assert kept is not None
     with qtbot.waitSignal(controller.opened, timeout=WAIT_MS) as reported:
         controller.open_kept()
     (state,) = reported.args or []
