@@ -81,6 +81,15 @@ class Settings(QObject):
         self._put("has_sound", "yes" if has_sound else "no")
 
     @property
+    def has_prompts(self) -> bool:
+        """Whether what is to be done is spoken."""
+        return self._kept.value("has_prompts", "") == "yes"
+
+    @has_prompts.setter
+    def has_prompts(self, has_prompts: bool) -> None:
+        self._put("has_prompts", "yes" if has_prompts else "no")
+
+    @property
     def has_less_motion(self) -> bool:
         """Whether nothing may move by itself; else that is as the system was asked for."""
         return self._kept.value("has_less_motion", "") == "yes"

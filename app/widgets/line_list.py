@@ -267,7 +267,7 @@ class VisitHead(TableCell):
         title.paint(painter, room, theme)
         if room.width() < WIDE_VISIT_FROM * theme.scale:
             return
-        end, *rights = self.columns.rights(int(room.width()) - theme.px(NEXT_ROOM), theme)
+        _, *rights = self.columns.rights(int(room.width()) - theme.px(NEXT_ROOM), theme)
         for head, right in zip(self.columns.heads, rights, strict=True):
             left = right - head.width(theme)
             if left > title.width(theme) + theme.px(GAP):

@@ -10,6 +10,7 @@ from PySide6.QtWidgets import QVBoxLayout, QWidget
 
 from app.editing.question import EditQuestion
 from app.system import sounds
+from app.system.prompts import prompter
 from app.system.settings import Settings
 from app.theme.notifier import ThemeNotifier
 from app.widgets.action_bar import BarAction, BarState
@@ -393,6 +394,7 @@ class Wizard(QWidget):
 
     def _on_settings_changed(self) -> None:
         sounds.set_on(self._settings.has_sound)
+        prompter.is_on = self._settings.has_prompts
         self.shell.strip.set_from_behind(self._settings.is_from_behind)
         if (page := self.shell.page) is not None:
             self._turn(page)

@@ -4,10 +4,21 @@ import datetime
 from typing import TYPE_CHECKING
 
 from app.wording.dates import date, short_date
-from app.wording.translation import tr
+from app.wording.translation import later, tr, within_sentence
 
 if TYPE_CHECKING:
     from core.samples import Patient
+
+
+AIDS = {  # as they stand in files
+    "shoes": later("Shoes"),
+    "barefoot": later("Barefoot"),
+    "stick": later("Stick"),
+    "crutches": later("Crutches"),
+    "walker": later("Walker"),
+    "parallel bars": later("Parallel bars"),
+    "AFO": later("AFO"),
+}
 
 
 def day_of_session(started: str, now: datetime.datetime) -> datetime.date | None:
@@ -36,6 +47,13 @@ def person(patient: "Patient") -> str:
         side = tr("{side} affected").format(side=sides[patient.affected_side])
     born = ", ".join(filter(None, [str(patient.birth_year or ""), sexes.get(patient.sex, patient.sex)]))
     return " · ".join(filter(None, [born, side]))
+
+
+def aids_in_words(aids: str) -> str:
+    """Say which aids were worn: those that we offer in the user's language, others as they were typed."""
+    known = {aid.lower(): within_sentence(tr(words)) for aid, words in AIDS.items()}
+    known["afo"] = tr(AIDS["AFO"])  # an abbreviation stays one
+    return ", ".join(known.get(aid.strip().lower(), aid.strip()) for aid in aids.split(","))
 
 
 def about_and_device(patient: "Patient") -> str:

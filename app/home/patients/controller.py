@@ -14,7 +14,7 @@ from app.home.patients.reading import PatientReading, read_patient
 from app.summary.course_lanes import CourseVisit
 from app.summary.progress_words import ProgressWords
 from app.widgets.line_list import PatientLine
-from app.wording.patients import person
+from app.wording.patients import aids_in_words, person
 from app.workers.library_controller import LibraryController
 
 if TYPE_CHECKING:
@@ -131,7 +131,7 @@ class PatientsAtHome(QObject):
             return
         reported = patient.details
         self._page.show_patient(
-            reported.code, " · ".join(filter(None, [person(reported), reported.device, reported.aids]))
+            reported.code, " · ".join(filter(None, [person(reported), reported.device, aids_in_words(reported.aids)]))
         )
         own = patient.id
         if own != self._sessions_of:  # what is there is another patient's

@@ -10,6 +10,7 @@ from app.summary.progress_words import ProgressWords
 from app.widgets.line_list import PatientLine, SessionLine
 from app.wording.dates import date
 from app.wording.patients import day_of_session, person, when, when_in_brief
+from app.wording.recordings import name_in_words
 from app.wording.translation import tr, tr_n
 
 if TYPE_CHECKING:
@@ -57,7 +58,7 @@ def session_line(
         state, written = tr("Report written") if is_reported else tr("Report pending"), is_reported
     day, stated = day_of_session(line.started, now), when(line.started, now)
     whole = date(day) if day is not None else stated
-    conditions = "; ".join(line.conditions)  # which may hold commas
+    conditions = "; ".join(map(name_in_words, line.conditions))  # which may hold commas
     return SessionLine(
         line.id,
         whole,

@@ -15,6 +15,7 @@ from app.wizard.patient.page import PatientDraft, PatientPage
 from app.wizard.step import Step, StepId
 from app.wording.body import name_of
 from app.wording.dates import date
+from app.wording.recordings import name_in_words
 from app.wording.translation import tr
 from core.body import LEG_JOINTS, Side
 from core.samples import Patient, RecordingKind, Session
@@ -243,8 +244,9 @@ def _last_visit(session: "StoredSession") -> LastVisit:
     except ValueError:
         day = reported.started
     walks = [one for one in reported.recordings if one.kind is RecordingKind.WALKING and one.is_kept]
+    called = dict.fromkeys(name_in_words(walk.condition or walk.name) for walk in walks)
     facts = [
-        (tr("Walks"), ", ".join(dict.fromkeys(walk.condition or walk.name for walk in walks)) or tr("none included")),
+        (tr("Walks"), ", ".join(called) or tr("none included")),
         (tr("Standing angle (goniometer)"), _zero_in_words(reported)),
     ]
     if session.placements:

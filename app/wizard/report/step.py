@@ -35,6 +35,7 @@ from app.wizard.report.printing import ReportPrinter, printed_pages
 from app.wizard.report.saving import OTHERS, Export, exporting, file_name, previews, saving_report
 from app.wizard.resuming import course_to, courses_before, read_analysed
 from app.wizard.step import Step, StepId
+from app.wording.recordings import name_in_words
 from app.wording.translation import tr
 from app.workers.background import Work
 from app.workers.library_controller import LibraryController
@@ -410,4 +411,4 @@ class ReportStep(Step):
 
 def _words_of(line: "SessionSummary") -> str:
     """A visit in a list: its day, and under which conditions the patient walked."""
-    return ", ".join([day(line.started), *filter(None, dict.fromkeys(line.conditions))])
+    return ", ".join([day(line.started), *filter(None, dict.fromkeys(map(name_in_words, line.conditions)))])

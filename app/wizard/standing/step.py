@@ -8,6 +8,7 @@ from PySide6.QtCore import QObject, QTimer
 
 from app.editing.session_recording import SessionRecording
 from app.system import sounds
+from app.system.prompts import prompter
 from app.system.sounds import Sound
 from app.theme.icons import Icon
 from app.theme.notifier import ThemeNotifier
@@ -97,6 +98,8 @@ class StandStillStep(Step):
     def enter(self) -> None:
         self._is_entered = True
         self._phase = self._settled_phase()
+        if self._phase is StandPhase.READY:
+            prompter.speak("stand-still")
         self._watch()
         self._show_zero()
         self._show()
@@ -108,6 +111,7 @@ class StandStillStep(Step):
 
     def leave(self) -> None:
         self._is_entered = False
+        prompter.end()
         self._shown.stop()
         if self._is_recording:  # not to its end
             self._visit.recordings.stop(is_kept=False)

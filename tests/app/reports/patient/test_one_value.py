@@ -101,7 +101,9 @@ def test_a_knee_has_one_value_on_screen_report_course_and_in_files(now: Analysed
     rows = openpyxl.load_workbook(tmp_path / "results.xlsx")["Conditions"].iter_rows(values_only=True)
     values += [float(str(row[4])) for row in rows if (row[0], row[2], row[3]) == (SHOES, "left", KNEE)]
     assert values == pytest.approx([52.4] * 8, abs=0.02)
-    assert "Left knee flexes 52°" in first_page(request, shown, comparison)["summary"]["first"]  # type: ignore[index]  # plain JSON
+    summary = first_page(request, shown, comparison)["summary"]
+    assert isinstance(summary, dict)
+    assert "Left knee flexes 52°" in summary["first"]
     letter = letter_data(request, "en")
     assert letter["number"] == "Your left knee now bends 52\N{NO-BREAK SPACE}degrees."
     assert letter["beside"][0] == "In July it was 34 degrees."  # type: ignore[index]  # it is a list of sentences
