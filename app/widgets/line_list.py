@@ -37,7 +37,7 @@ SPEED, KNEE = 140, 108  # least columns of a visit
 class PatientLine:
     """`searched` is what a search looks into, folded; `needs_look`: one of the sessions was recovered.
 
-    `change` is the last one with its arrow, where it is known: it then stands in place of `sessions`.
+    `change` is the last one with its arrow, where it is known: it is then shown in place of `sessions`.
     """
 
     id: UUID
@@ -339,7 +339,12 @@ class LineList(CellTable):
         return self.lines[max(first, 0) : last + 1 if last >= 0 else len(self.lines)] if first >= 0 else ()
 
     def show_lines(
-        self, lines: Sequence[Line], chosen: UUID | None = None, *, stays: bool = False, head: tuple[str, str] = ("", "")
+        self,
+        lines: Sequence[Line],
+        chosen: UUID | None = None,
+        *,
+        stays: bool = False,
+        head: tuple[str, str] = ("", ""),
     ) -> None:
         """Show other lines, with the one that has this id chosen, where it is among them.
 

@@ -5,7 +5,16 @@ from uuid import UUID
 
 from PySide6.QtCore import QEvent, QModelIndex, QObject, QRectF, QSize, Qt, Signal
 from PySide6.QtGui import QFontMetrics, QKeyEvent, QKeySequence, QPainter, QPaintEvent
-from PySide6.QtWidgets import QApplication, QFrame, QHBoxLayout, QLineEdit, QScrollArea, QSizePolicy, QVBoxLayout, QWidget
+from PySide6.QtWidgets import (
+    QApplication,
+    QFrame,
+    QHBoxLayout,
+    QLineEdit,
+    QScrollArea,
+    QSizePolicy,
+    QVBoxLayout,
+    QWidget,
+)
 
 from app.home.patients.home_empty import EmptyLibrary
 from app.home.patients.patient_panel import PatientPanel
@@ -96,7 +105,7 @@ class HomePage(Themed):
         self.forget_sessions()
 
     def change_patient(self, line: PatientLine) -> None:
-        """Show one patient's line as it is now, wherever it stands."""
+        """Show one patient's line as it is now, wherever it is."""
         self._patients = tuple(line if one.id == line.id else one for one in self._patients or ())
         self.patients.replace_line(line)
 

@@ -14,6 +14,7 @@ from PySide6.QtWidgets import QApplication, QFileDialog
 from pytestqt.qtbot import QtBot
 
 from app.results.result_page import STRIDES
+from app.results.thin_line import ThinLine
 from app.storage.exchange import import_session
 from app.storage.opened import OpenedLibrary
 from app.summary.comparison import Contrast
