@@ -5,7 +5,7 @@ so alike in both sensors of the joint. What one of them has turned against the o
 three degrees, and jumps when a strap slips.
 """
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -163,7 +163,7 @@ def slips_in_walks(
     tracks: SensorTracks,
     walks: Sequence[Recording],
     calibration: Mapping[Joint, JointCalibration],
-    lags_s: Mapping[tuple[str, Joint], float],
+    lag_s: Callable[[str, Joint], float],
 ) -> list[tuple[Recording, Slip]]:
     """Slips in walks that one calibration measures, each with the walk it happened in; times are that walk's own.
 
@@ -171,8 +171,8 @@ def slips_in_walks(
     ----------
     walks
         In order of time; what is usual in one holds in the next.
-    lags_s
-        What is added to the distal clock, by the recording's name and the joint.
+    lag_s
+        Tells, by the recording's name and the joint, what is added to the distal clock.
 
     Returns
     -------
@@ -188,7 +188,7 @@ def slips_in_walks(
                 continue
             offset_s = start_s - tracks.span_of(walk)[0]  # the walks are laid end to end
             for block in tracks.blocks(walk):
-                for pair in pairs_of(tracks, walk, joint, block, lags_s.get((walk.name, joint), 0.0)):
+                for pair in pairs_of(tracks, walk, joint, block, lag_s(walk.name, joint)):
                     part = turns_over(pair, found.axis_proximal, found.axis_distal)
                     is_mine = (part.time_s >= block.core_from_s) & (part.time_s < block.core_to_s)
                     parts.append(Turns(part.time_s[is_mine] + offset_s, part.turn_rad[is_mine]))
