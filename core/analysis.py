@@ -36,7 +36,8 @@ from core.results import (
     RecordingAnalysis,
     SideGait,
 )
-from core.samples import FloatArray, Patient, Recording, RecordingKind, Session
+from core.samples import FloatArray
+from core.session import Patient, Recording, RecordingKind, Session
 from core.signal.clock_drift import about_clocks, clock_drifts
 from core.signal.reception import receptions
 from core.signal.robust import robust_sd

@@ -14,7 +14,7 @@ from core.calibration.identified import Identified
 from core.calibration.validity import Basis
 from core.hip.analysis import NO_HIPS, HipsOfSpan
 from core.results import JointCalibration
-from core.samples import Recording, RecordingKind
+from core.session import Recording, RecordingKind
 from core.signal.sensors import SensorTracks
 
 

@@ -13,7 +13,7 @@ from app.summary.conditions import Part, conditions_of
 from app.wording.translation import tr
 from core.goals import NO_GOALS, AgreedGoals
 from core.results import Analysis
-from core.samples import Recording
+from core.session import Recording
 
 
 class WalkedVisit(NamedTuple):

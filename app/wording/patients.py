@@ -7,7 +7,7 @@ from app.wording.dates import date
 from app.wording.translation import tr
 
 if TYPE_CHECKING:
-    from core.samples import Patient
+    from core.session import Patient
 
 
 def day_of_session(started: str, now: datetime.datetime) -> datetime.date | None:

@@ -14,7 +14,7 @@ from itertools import accumulate
 
 from app.wording.translation import tr
 from core.findings import Finding
-from core.samples import Recording, RecordingKind
+from core.session import Recording, RecordingKind
 
 LETTERS = "ABCDEFGHIJKLMNOPQRSTUVWXYZ"
 OWN_NAMES = {  # in files, numbered by `SessionRecordings`

@@ -32,7 +32,8 @@ from core.gait.cycles import POINTS, cycles_of
 from core.gait.strides import Strides
 from core.gait.walking import joint_parameters
 from core.results import AxisHalves, SideGait
-from core.samples import FloatArray, Recording
+from core.samples import FloatArray
+from core.session import Recording
 from core.signal.datasets import Datasets
 from core.signal.pair import Pair
 from core.signal.rotations import angle_between

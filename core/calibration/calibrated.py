@@ -13,7 +13,8 @@ from core.calibration.validity import Basis
 from core.calibration.zero import standing_twist, within_half_a_turn
 from core.gait.walking import prosthetic_sides
 from core.results import JointCalibration, Method, ZeroKind
-from core.samples import FloatArray, Session
+from core.samples import FloatArray
+from core.session import Session
 from core.signal.rotations import wrap
 from core.signal.sensors import SensorTracks
 from core.span import JointAnalysis, SpanAnalysis

@@ -15,7 +15,8 @@ from core.body import Joint, Segment, Side, Site, ankle_of, knee_of
 from core.calibration.joint_axis import loss_and_weights, residuals
 from core.calibration.rest import rest_of
 from core.results import JointCalibration, Method
-from core.samples import FloatArray, ImuBlock, IntArray, Recording
+from core.samples import FloatArray, ImuBlock, IntArray
+from core.session import Recording
 from core.signal.datasets import Datasets, gather
 from core.signal.pair import Pair
 from core.signal.robust import robust_sd

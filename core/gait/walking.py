@@ -18,7 +18,8 @@ from core.gait.spatiotemporal import parameters_of
 from core.gait.strides import strides_of_feet
 from core.parameters import EXCURSIONS, PEAK_WINDOWS
 from core.results import JointAngle, SideGait
-from core.samples import BoolArray, FloatArray, Patient, Recording
+from core.samples import BoolArray, FloatArray
+from core.session import Patient, Recording
 from core.signal.sensors import SensorTracks
 from core.signal.tracks import Block
 

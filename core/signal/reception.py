@@ -6,7 +6,8 @@ from dataclasses import dataclass, field
 import numpy as np
 
 from core.body import Site
-from core.samples import FloatArray, ImuBlock, Recording
+from core.samples import FloatArray, ImuBlock
+from core.session import Recording
 from core.signal.clipping import clipped_forces, clipped_rates
 from core.signal.tracks import MAX_REPORTED_GAP_S, MIN_STRETCH_SAMPLES, is_received, nominal_step_s
 

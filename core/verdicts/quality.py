@@ -9,7 +9,8 @@ from core.body import LEG_JOINTS, Site
 from core.calibration.handedness import Turn, reversed_sites, turn_about_vertical
 from core.calibration.rest import rest_of
 from core.findings import Finding, Severity
-from core.samples import BoolArray, FloatArray, ImuBlock, IntArray, Recording, RecordingKind, Session
+from core.samples import BoolArray, FloatArray, ImuBlock, IntArray
+from core.session import Recording, RecordingKind, Session
 from core.signal.clipping import clipped_forces, clipped_rates
 from core.signal.clock_jumps import jump_of, spans_of
 from core.signal.pair import moving_mean

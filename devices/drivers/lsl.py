@@ -20,7 +20,8 @@ from typing import Any
 
 import numpy as np
 
-from core.samples import ImuBlock, RecordingKind
+from core.samples import ImuBlock
+from core.session import RecordingKind
 from devices.clocks.host_clock import host_time_ns
 from devices.clocks.live_clock import LiveClock
 from devices.live import Keep, SensorDetails, SourceLostError, SourceRefusedError

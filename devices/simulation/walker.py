@@ -10,7 +10,8 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from core.body import LEG_JOINTS, Joint, Segment, Side, Site
-from core.samples import FloatArray, ImuBlock, Patient, Recording, RecordingKind, SensorInfo, Session
+from core.samples import FloatArray, ImuBlock, SensorInfo
+from core.session import Patient, Recording, RecordingKind, Session
 from devices.simulation.walker_body import (
     COARSE,
     NO_CHANGE,

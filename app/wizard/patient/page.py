@@ -29,7 +29,7 @@ from app.widgets.themed import Themed
 from app.wizard.patient.cards import BandCard, LastVisit, LastVisitCard, TakenCard
 from app.wording.translation import tr
 from core.body import Side
-from core.samples import Patient
+from core.session import Patient
 
 AIDS = ("shoes", "barefoot", "stick", "crutches", "walker", "parallel bars", "AFO")  # as they stand in files
 ONE_COLUMN_BELOW = 620  # room for the form, where a row of three fields still reads well

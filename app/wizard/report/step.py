@@ -38,7 +38,7 @@ from app.wizard.step import Step, StepId
 from app.wording.translation import capitalised, filled, tr
 from app.workers.background import Work
 from app.workers.library_controller import LibraryController
-from core.samples import RecordingKind
+from core.session import RecordingKind
 from devices.decoders import DECODERS
 from devices.files.refusal import FileRefusedError
 

@@ -27,7 +27,7 @@ from app.wizard.walking.walk_rows import facts_of, ongoing_walk, rows_of
 from app.wizard.walking.walk_start import WalkStart
 from app.wizard.walking.walking_bar import WalkingBar
 from app.wording.translation import tr
-from core.samples import RecordingKind
+from core.session import RecordingKind
 from core.targets import TargetTally, with_tallies
 
 if TYPE_CHECKING:

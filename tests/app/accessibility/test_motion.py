@@ -5,6 +5,7 @@ from itertools import pairwise
 from pathlib import Path
 
 import pytest
+from app.plots.moving_legs import MovingLegs
 from PySide6.QtCore import QSettings, Qt
 from PySide6.QtTest import QTest
 from PySide6.QtWidgets import QApplication, QProgressBar, QWidget
@@ -14,7 +15,6 @@ from app.help.help_page import HelpPage
 from app.help.help_topics import Topic
 from app.home.settings.settings_page import SettingsPage
 from app.main_window import MainWindow
-from app.plots.moving_legs import MovingLegs
 from app.system.settings import Settings
 from app.theme import motion
 from app.theme.notifier import ThemeNotifier

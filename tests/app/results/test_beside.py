@@ -5,11 +5,11 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from app.results.beside_choice import Beside
+from app.results.beside_words import answer_beside, beside_columns, key_figures_beside
 from PySide6.QtWidgets import QApplication
 from pytestqt.qtbot import QtBot
 
-from app.results.beside_choice import Beside
-from app.results.beside_words import answer_beside, beside_columns, key_figures_beside
 from app.results.result_page import STRIDES, ResultPage
 from app.summary.beside import beside_last_visit, beside_walk, changes_on_curves, walks_alone
 from app.summary.comparison import Comparison
@@ -19,7 +19,7 @@ from app.theme.notifier import ThemeNotifier, load_fonts
 from core.analysis import analyse
 from core.body import Joint, Side
 from core.results import Analysis, ZeroKind
-from core.samples import Session
+from core.session import Session
 from core.verdicts.measurement_error import Judgement
 from core.verdicts.sigmas import ComparisonKind
 from devices.simulation.walker import DEMONSTRATION, FreeMotion, Standing, Walk, simulate

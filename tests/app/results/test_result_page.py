@@ -6,13 +6,13 @@ from functools import cache
 
 import numpy as np
 import pytest
+from app.results.beside_choice import Beside
 from PySide6.QtCore import Qt
 from PySide6.QtGui import QAccessible
 from PySide6.QtTest import QTest
 from PySide6.QtWidgets import QApplication, QLineEdit
 from pytestqt.qtbot import QtBot
 
-from app.results.beside_choice import Beside
 from app.results.cycle_page import NO_SIDE, NO_SPEED
 from app.results.result_page import ANSWER, COMPARE, STRIDES, WHOLE, ResultPage
 from app.summary.reference_bands import NOBODY, OTHER_AGES, WHY_NO_BAND
@@ -22,7 +22,7 @@ from app.widgets.table_cells import TextCell
 from core.analysis import analyse
 from core.body import LEG_JOINTS, Joint, Side
 from core.results import Analysis, SideGait, ZeroKind
-from core.samples import Session
+from core.session import Session
 from core.verdicts.model import Verdict
 from core.verdicts.norms import AgeAndHeight, NoBand
 from core.verdicts.quantities import raw_values

@@ -14,7 +14,7 @@ from app.wording.recordings import (
     with_shown_names,
 )
 from core.findings import Finding, Severity
-from core.samples import Recording, RecordingKind
+from core.session import Recording, RecordingKind
 
 
 def walk(number: int, condition: str = "", *, is_kept: bool = True, is_restrapped_before: bool = False) -> Recording:

@@ -8,12 +8,12 @@ from uuid import UUID
 
 import numpy as np
 import pytest
+from app.results.beside_words import answer_beside
 
 from app.reports.patient.comparison_page import comparison_of
 from app.reports.patient.document import facts_of
 from app.reports.patient.first_page import answer
 from app.reports.patient.time_page import time_distance_table
-from app.results.beside_words import answer_beside
 from app.summary import comparison
 from app.summary.answer import Outcome, answer_of
 from app.summary.comparison import Comparison, Contrast
@@ -37,7 +37,7 @@ from core.body import Joint, Side
 from core.goals import Goal, GoalOf, agreed_by
 from core.parameters import BETWEEN_LEGS, BY_COLUMN, ParameterFile, QuantityClass, columns_of
 from core.results import Analysis, ZeroKind
-from core.samples import Session
+from core.session import Session
 from core.verdicts.gates import judged
 from core.verdicts.measurement_error import Difference, Judgement
 from tests.app.changed_analysis import recalibrated, rewalked, walk_of, with_few_strides

@@ -16,7 +16,7 @@ from app.wizard.visit import Visit
 from app.wizard.wizard import Wizard
 from core.body import Site
 from core.placement.labels import groups_of
-from core.samples import RecordingKind
+from core.session import RecordingKind
 from tests.app.wizard.begun_visit import begin, record
 from tests.app.wizard.pressing import press
 

@@ -1,7 +1,7 @@
 """Labels of walks: the usual ones with their digits, one's own kept, letters in the order of walking."""
 
 from app.wizard.walking.walk_labels import MOST, label_after, labels_for
-from core.samples import Patient
+from core.session import Patient
 
 ANYBODY, PROSTHETIC = Patient(), Patient(prosthetic_side="left")
 
