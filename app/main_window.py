@@ -41,7 +41,7 @@ from app.wording.translation import PURPOSE, tr, use_language
 from app.workers.background import Background
 from app.workers.garbage import GarbageCollector
 from app.workers.library_controller import LibraryController
-from app.workers.library_state import OpenedState
+from app.workers.library_state import KeptLogIn, OpenedState
 from app.workers.preload import preload
 
 if TYPE_CHECKING:  # needed when a library is open; the window must not wait for them
@@ -89,6 +89,7 @@ class MainWindow(QWidget):
         self._help: HelpPage | None = None
         self._before_help: QWidget | None = None
         self._covered: QWidget | None = None
+        self._was_in_settings = False  # when the window before this one was closed for another language
         self._has_come_back = False  # the library, and nobody has read what was recorded meanwhile
         self._must_refresh = False  # another station did something under the cover
         self._is_dark: bool | None = None  # not yet known
@@ -138,6 +139,12 @@ class MainWindow(QWidget):
         else:
             self.entry.open_demonstration()
 
+    def go_on(self, kept: KeptLogIn) -> None:
+        """Go on where the window before this one was closed for another language: in the settings."""
+        if self.entry is not None:
+            self._was_in_settings = True
+            self.entry.go_on(kept)
+
     def closeEvent(self, event: QCloseEvent) -> None:
         if self._wizard is not None:
             self._wizard.close_visit()
@@ -145,15 +152,16 @@ class MainWindow(QWidget):
         self.session.stop()
         event.accept()
 
-    def finish(self) -> None:
-        """Wait for the threads of what was running when the window was closed."""
+    def finish(self, *, must_keep: bool = False) -> KeptLogIn | None:
+        """Wait for the threads of what was running when the window was closed; `must_keep`: see the controller's."""
         self.preparing.finish()
         self.session.finish()
         if self._home is not None:
             self._home.finish()
-        self.controller.finish()
+        kept = self.controller.finish(must_keep=must_keep)
         if self._wizard is not None:
             self._wizard.finish()
+        return kept
 
     def dragEnterEvent(self, event: QDragEnterEvent) -> None:
         if event.mimeData().hasUrls() and self._takes_folders:
@@ -294,7 +302,7 @@ class MainWindow(QWidget):
             self._home.session_requested.connect(self._on_session_requested)
             self._home.session_opened.connect(self._on_session_opened)
             self._home.demonstration_requested.connect(self.open_demonstration)
-            self._home.own_library_requested.connect(self._log_out)
+            self._home.own_library_requested.connect(self._on_own_library_requested)
             self._home.help_requested.connect(self._show_help)
             self._home.lock_requested.connect(self.idle.lock_now)
             self._home.settings_left.connect(self._on_settings_left)
@@ -304,6 +312,9 @@ class MainWindow(QWidget):
         home = self._made_home()
         self.idle.unlock()
         home.show_library(state)
+        if self._was_in_settings:
+            home.show_settings()
+        self._was_in_settings = False
         self._show(home)
         if self._wizard is None:
             self.prepare()
@@ -346,13 +357,24 @@ class MainWindow(QWidget):
         if self._wizard is not None and self._wizard.visit is not None:
             self._show(self._wizard)
 
-    def _log_out(self) -> None:
+    def _on_own_library_requested(self) -> None:
+        """From the demonstration, back into the library of whoever is still logged in."""
+        if self.entry is None or not self.controller.has_kept:
+            self._log_out()
+            return
+        self._clear()
+        self.entry.go_on()
+
+    def _clear(self) -> None:
         self._covered = self._before_help = None
         if self._wizard is not None:
             self._wizard.close_visit()
             self._wizard.asked.forget()
         if self._home is not None:
             self._home.clear()
+
+    def _log_out(self) -> None:
+        self._clear()
         self.controller.close()
         if self.entry is not None:
             self.entry.begin()
@@ -417,6 +439,8 @@ class MainWindow(QWidget):
         """Cover what the library shows; a recording goes on under it."""
         state = self.controller.state
         if self.entry is None or state is None or state.is_demonstration:
+            if state is not None:
+                self.controller.forget()  # the demonstration goes on; the library behind it asks for its passphrase
             self.idle.unlock()
             return
         self._covered = self.screens.currentWidget()
@@ -527,7 +551,7 @@ def open_window(argv: list[str], language: str = "") -> int:
         What stood behind the program's name.
     language
         What to speak from now on, as "de"; empty: what was chosen last. Another one chosen in the settings opens the
-        window again, which is locked then: every word of the old one was written in the language before.
+        window again, for every word of the old one was written in the language before; who is logged in stays so.
     """
     signal.signal(signal.SIGINT, signal.SIG_DFL)  # Ctrl-C in the terminal ends it; Python would wait for the event loop
     sys.setswitchinterval(SWITCH_S)
@@ -542,16 +566,22 @@ def open_window(argv: list[str], language: str = "") -> int:
     settings, folders = Settings(own_settings()), [word for word in app.arguments()[1:] if not word.startswith("-")]
     settings.language = language or settings.language
     settings.language_changed.connect(partial(app.exit, IN_ANOTHER_LANGUAGE))
-    while (code := _show_window(app, settings, folders)) == IN_ANOTHER_LANGUAGE:
-        folders = []
+    code, kept = _show_window(app, settings, folders, None)
+    while code == IN_ANOTHER_LANGUAGE:
+        code, kept = _show_window(app, settings, [], kept)
     keep_no_visited_folders()
     return code
 
 
-def _show_window(app: QApplication, settings: Settings, folders: list[str]) -> int:
+def _show_window(
+    app: QApplication, settings: Settings, folders: list[str], kept: KeptLogIn | None
+) -> tuple[int, KeptLogIn | None]:
+    """Give what the event loop ended with, and who is logged in where another window follows."""
     use_language(settings.language)
     library = default_folder()
     window = MainWindow(ThemeNotifier(app), settings, library, library.with_name("seen"))
+    if kept is not None:
+        window.go_on(kept)
     window.show()
     garbage = GarbageCollector(window, lambda: window.preparing.is_busy)
     window.preparing.done.connect(garbage.pass_over_imported)
@@ -561,9 +591,9 @@ def _show_window(app: QApplication, settings: Settings, folders: list[str]) -> i
     with qt_speaks(settings.language):
         code = app.exec()
     window.close()
-    window.finish()
+    kept = window.finish(must_keep=code == IN_ANOTHER_LANGUAGE)
     window.deleteLater()
-    return code
+    return code, kept
 
 
 def own_settings() -> QSettings:

@@ -59,8 +59,7 @@ class HiddenCurve:
 class Deviation:
     """A difference between two points: of two curves, or of the two extremes of an excursion on one.
 
-    `words` name it ("L 12° under R"), `more` goes on in grey; `size` is what paper writes beside its bracket ("45°"),
-    `number` that of the sentence that reports it, None where none does.
+    `words` name it ("L 53°"), `more` goes on in grey ("1 Jul: 35°").
 
     Raises
     ------
@@ -73,8 +72,6 @@ class Deviation:
     words: str
     more: str = ""
     is_larger_than_error: bool = False
-    size: str = ""
-    number: int | None = None
 
     def __post_init__(self) -> None:
         if self.first.joint.kind is not self.second.joint.kind:

@@ -1,6 +1,6 @@
 """Painting on paper: a chart of the stride as SVG, 4:3, one unit a point.
 
-Deviations are black brackets with the number of their sentence; gaps are the screen's alone, paper has words for them.
+The charts of page one are `joint_on_paper`'s; brackets and values are theirs alone.
 """
 
 from collections.abc import Sequence
@@ -26,8 +26,6 @@ from app.charts.drawing import (
     text,
 )
 from app.charts.frame import Frame
-from app.charts.marks import Deviation
-from app.charts.places import USUAL_EMPTY_PERCENT, Box, MarkPlace, ground_of, place_mark
 from app.charts.stride_chart import Axis, StrideChart, StrideCurve, toe_offs_in_order
 from app.theme.colours import PAPER
 from app.wording.translation import tr
@@ -43,8 +41,6 @@ PLAIN, FINE = 1.9, 1.4
 LONG_DASHES = "6 1.6"  # of the right leg's mean over its single strides
 STRIDE, ONLY_STRIDES = 0.32, 0.8
 
-
-BRACKET_WIDTH, BRACKET_CAP, NUMBER_RADIUS = 1.4, 2.5, 4.4
 LETTERS_FROM, LETTERS_APART = 24, 44  # percent of the stride
 NARROWEST = 27 * MM  # narrower, fewer labels fit below it
 NARROW, NARROW_FOOT = 60 * MM, 17.0  # narrower, the name of the axis has no room, and is above the charts
@@ -53,7 +49,7 @@ BELOW_MARK = 11.0  # of a plot's top, so that why it is not reported does not ru
 SIZE_OF_WORDS, PER_LETTER = 7.0, 0.6  # a letter's width on its height; an SVG cannot be asked
 
 
-class _Paper(Frame):
+class PaperFrame(Frame):
     """What lies beyond the axis is drawn at its edge."""
 
     def y(self, angle_deg: FloatArray | float) -> FloatArray:
@@ -62,7 +58,7 @@ class _Paper(Frame):
 
 def frame_of(chart: StrideChart, plot_width: float) -> Frame:
     """Where the chart's plot lies on its picture, points."""
-    return _Paper(LEFT_MARGIN, TOP + TOP_LABELS, plot_width, 0.75 * plot_width, chart.axis.low, chart.axis.high)
+    return PaperFrame(LEFT_MARGIN, TOP + TOP_LABELS, plot_width, 0.75 * plot_width, chart.axis.low, chart.axis.high)
 
 
 def compared_look(k: int, count: int, side: Side) -> tuple[str, float]:
@@ -90,11 +86,11 @@ def draw(chart: StrideChart, plot_width: float) -> Picture:
     foot = NARROW_FOOT if is_narrow else FOOT
     parts = [text(0, 8, chart.title, 7.6, weight=600)]
     if chart.not_reported:
-        parts += _hatches(frame) + _axes(frame, chart.axis, is_narrow=is_narrow) + _why_not_reported(frame, chart)
+        parts += hatches(frame) + _axes(frame, chart.axis, is_narrow=is_narrow) + _why_not_reported(frame, chart)
         alt = " ".join(filter(None, [chart.alt, f"{_not_reported_word()}. {chart.not_reported}"]))
         return picture(parts, frame.right + RIGHT_MARGIN, frame.bottom + foot, alt)
     if chart.band is not None:
-        parts += _band(frame, chart.band)
+        parts += band_on_paper(frame, chart.band)
     parts += _axes(frame, chart.axis, is_narrow=is_narrow)
     parts += _toe_offs(frame, [one for one in chart.curves if not one.is_bare], is_narrow=is_narrow)
     drawn = [one for one in chart.curves if not one.is_bare]
@@ -110,66 +106,12 @@ def draw(chart: StrideChart, plot_width: float) -> Picture:
         parts += [curve(x, y, PAPER.paper, width + casing), curve(x, y, colour, width, _dash(one))]
         parts += _beyond(frame, chart.axis, one)
     parts += _words(frame, chart) if drawn else _simulated(frame, chart)
-    places = places_of(frame, chart)
-    for deviation, place in zip(chart.deviations, places, strict=True):
-        parts += _bracket(frame, deviation, place)
-    parts += _badges(frame, drawn, _points_of(frame, chart, places))
-    alt = " ".join(filter(None, [chart.alt, *(deviation.in_words() for deviation in chart.deviations)]))
-    return picture(parts, frame.right + RIGHT_MARGIN, frame.bottom + foot, alt)
+    parts += _badges(frame, drawn)
+    return picture(parts, frame.right + RIGHT_MARGIN, frame.bottom + foot, chart.alt)
 
 
-def places_of(frame: Frame, chart: StrideChart) -> list[MarkPlace]:
-    """Where each deviation's bracket finds room, points."""
-    up, down = (PER_LETTER * 6.6 * len(f"↑ {word}") for word in (chart.axis.up, chart.axis.down))
-    simulated = PER_LETTER * 6.6 * len(tr("SIMULATED")) if chart.is_simulated else 0.0
-    top, bottom = frame.top + 12, frame.bottom - 12
-    words = [
-        Box(frame.left, frame.top, frame.left + 4 + up, top),
-        Box(frame.right - 4 - down, bottom, frame.right, frame.bottom),
-        Box(frame.right - 4 - simulated, frame.top, frame.right, top),
-    ]
-    ground, places = ground_of(frame, chart, words), []
-    for deviation in chart.deviations:
-        ends = [(float(frame.x(point.percent)), float(frame.y(point.angle_deg))) for point in deviation.points]
-        size = PER_LETTER * SIZE_OF_WORDS * len(deviation.size), 2 * NUMBER_RADIUS
-        places.append(place_mark(ground, ends, [size], USUAL_EMPTY_PERCENT[deviation.kind]))
-    return places
-
-
-def _bracket(frame: Frame, deviation: Deviation, place: MarkPlace) -> list[str]:
-    """A black bar with caps, dotted leaders to both points, the size beside it and the number of its sentence on it."""
-    x, middle = place.bar_x, (place.top + place.bottom) / 2
-    parts = []
-    for point in deviation.points:
-        y = float(frame.y(point.angle_deg))
-        parts.append(line(float(frame.x(point.percent)), y, x, y, PAPER.ink, 0.6, "0.8 1.6"))
-    parts.append(line(x, place.top, x, place.bottom, PAPER.ink, BRACKET_WIDTH))
-    parts += [line(x - BRACKET_CAP, y, x + BRACKET_CAP, y, PAPER.ink, BRACKET_WIDTH) for y in (place.top, place.bottom)]
-    if deviation.number is not None:
-        is_room = place.bottom - place.top > 3 * NUMBER_RADIUS  # else beside the bar, whose length would be hidden
-        at = x if is_room else x + (-1 if place.are_words_at_right else 1) * (NUMBER_RADIUS + BRACKET_CAP + 1)
-        parts.append(f'<circle cx="{at:.2f}" cy="{middle:.2f}" r="{NUMBER_RADIUS}" fill="{PAPER.ink}"/>')
-        number = str(deviation.number)
-        parts.append(text(at, middle + 2.3, number, 6.4, anchor="middle", weight=600, fill=PAPER.paper))
-    if place.words is not None:
-        at, anchor = (place.words.left, "start") if place.are_words_at_right else (place.words.right, "end")
-        y = (place.words.top + place.words.bottom) / 2 + 2.5
-        parts.append(text(at, y, deviation.size, SIZE_OF_WORDS, anchor=anchor, weight=600))
-    return parts
-
-
-def _points_of(frame: Frame, chart: StrideChart, places: Sequence[MarkPlace]) -> list[tuple[float, float]]:
-    """The ends and middles of what marks have taken, that letters keep away from."""
-    points = [point for deviation in chart.deviations for point in deviation.points]
-    taken = [(float(frame.x(point.percent)), float(frame.y(point.angle_deg))) for point in points]
-    for place in places:
-        taken += [(place.bar_x, float(y)) for y in np.linspace(place.top, place.bottom, 5)]
-        if (words := place.words) is not None:
-            taken.append(((words.left + words.right) / 2, (words.top + words.bottom) / 2))
-    return taken
-
-
-def _band(frame: Frame, band: Band) -> list[str]:
+def band_on_paper(frame: Frame, band: Band) -> list[str]:
+    """Mean, 1 and 2 SD, with edges that survive a photocopier."""
     x, mean, sd = frame.x(PERCENT), band.mean_deg, band.sd_deg
     return [
         area(x, frame.y(mean - 2 * sd), frame.y(mean + 2 * sd), PAPER.band_2sd, PAPER.band_2sd_edge, 0.35),
@@ -182,7 +124,7 @@ def _not_reported_word() -> str:
     return verdict_alone(Verdict.NOT_REPORTED)
 
 
-def _hatches(frame: Frame) -> list[str]:
+def hatches(frame: Frame) -> list[str]:
     """Hatching over the whole plot, so that nobody takes it for a curve."""
     parts = []
     for along in np.arange(-frame.height, frame.width, HATCH_APART):
@@ -297,12 +239,12 @@ def _simulated(frame: Frame, chart: StrideChart) -> list[str]:
     return [stated] if chart.is_simulated else []
 
 
-def _badges(frame: Frame, curves: Sequence[StrideCurve], marks: Sequence[tuple[float, float]]) -> list[str]:
-    """Two letters on every line, where it lies farthest from the others, from marks and the letters there already."""
+def _badges(frame: Frame, curves: Sequence[StrideCurve]) -> list[str]:
+    """Two letters on every line, where it lies farthest from the others and the letters there already."""
     drawn = [one for one in curves if one.is_known]
     x = frame.x(PERCENT)
     heights = [frame.y(one.angle_deg) for one in drawn]
-    taken = list(marks)
+    taken: list[tuple[float, float]] = []
     parts = []
     for half in (range(7, 49), range(52, 94)):
         for one, y in zip(drawn, heights, strict=True):

@@ -126,9 +126,10 @@ def curves_of_walk(
     return tuple(curves)
 
 
-def toe_off_labels(curves: Sequence[StrideCurve]) -> dict[Side, str]:
-    """Name each toe-off: the word at the earlier line, which has the room at its left."""
-    labels = tr("toe-off {side} {percent:.0f} %"), "{side} {percent:.0f} %"
+def toe_off_labels(curves: Sequence[StrideCurve], *, has_word: bool = True) -> dict[Side, str]:
+    """Name each toe-off: the word at the earlier line, which has the room at its left, if anywhere."""
+    bare = "{side} {percent:.0f} %"
+    labels = tr("toe-off {side} {percent:.0f} %") if has_word else bare, bare
     in_order = toe_offs_in_order(curves, 0)
     return {
         curve.side: label.format(side=curve.letter, percent=curve.toe_off_percent)

@@ -162,6 +162,7 @@ class Home(Themed):
         made.reported.connect(self.banner.show_message)
         made.again_requested.connect(self._begin_again)
         made.repeatability_requested.connect(self._begin_repeatability)
+        made.making_requested.connect(self._on_table_requested)
         self._fit()
         return made
 
@@ -454,8 +455,11 @@ class Home(Themed):
             self.goals.begin(self.patients.patient)
             self._go_to(self.goals.page)
 
+    def _on_table_requested(self) -> None:
+        self.again.make_table()
+
     def _on_analysed_again(self, what: str, then: str) -> None:
-        self._go_to(self.again.page)
+        self._go_to(self.questions.page if self.again.is_of_library else self.again.page)
         self.banner.show_message(what, then)
 
     def _on_table_made(self, path: Path) -> None:

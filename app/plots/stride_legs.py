@@ -1,13 +1,13 @@
 """The legs at one percent of the gait cycle, from the side: each leg at that percent of its own cycle, on one hip."""
 
 import math
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from itertools import pairwise
 
 import numpy as np
 from PySide6.QtCore import QPointF, QRectF, QSize, Qt, QTimer, Signal
-from PySide6.QtGui import QAccessible, QColor, QHideEvent, QKeyEvent, QMouseEvent, QPainter, QPaintEvent
+from PySide6.QtGui import QAccessible, QColor, QFontMetrics, QHideEvent, QKeyEvent, QMouseEvent, QPainter, QPaintEvent
 from PySide6.QtWidgets import QHBoxLayout, QSizePolicy
 
 from app.summary.drawn_legs import HALF_WIDTHS_M
@@ -24,7 +24,8 @@ from core.body import Side
 from core.samples import FloatArray
 
 LEAST_PICTURE = (112, 96)
-CHIP, ROW = 18, 26
+CHIP, ROW, CHIP_GAP = 18, 26, 8
+SMALL = 12
 FRAME_MS = 33
 PLAYED_CYCLE_S = 2.4  # half as fast as people walk
 STEP, LONG_STEP = 1.0, 10.0  # percent
@@ -78,11 +79,22 @@ class StrideLegs(Card):
         return self._timer.isActive()
 
     def show_legs(
-        self, legs: MeanLegs | None, knee_deg: Mapping[Side, FloatArray], thin: Mapping[Side, ThinBend] | None = None
+        self,
+        legs: MeanLegs | None,
+        knee_deg: Mapping[Side, FloatArray | None],
+        thin: Mapping[Side, ThinBend] | None = None,
     ) -> None:
-        """Show the legs of another walk, where the cursor was; `knee_deg` (101,) are read beside them."""
+        """Show the legs of another walk, where the cursor was.
+
+        Parameters
+        ----------
+        knee_deg
+            What is read beside each leg that was measured (101,); None where it is not reported.
+        """
         self.stop()
-        self.picture.legs, self.picture.knee_deg, self.picture.thin = legs, knee_deg, thin or {}
+        self.picture.legs, self.picture.thin = legs, thin or {}
+        self.picture.sides = [side for side in Side if side in knee_deg]
+        self.picture.knee_deg = {side: curve for side, curve in knee_deg.items() if curve is not None}
         self.note.setVisible(legs is None)
         self.picture.setVisible(legs is not None)
         notes = [tr(NO_LEGS)] if legs is None else [tr(DRAWN), *([tr(GHOST)] if thin else [])]
@@ -144,12 +156,14 @@ class _Picture(Themed):
         self.legs: MeanLegs | None = None
         self.knee_deg: Mapping[Side, FloatArray] = {}
         self.thin: Mapping[Side, ThinBend] = {}
+        self.sides: Sequence[Side] = ()
         self.percent = 0.0
         self.setSizePolicy(QSizePolicy.Policy.Expanding, QSizePolicy.Policy.Expanding)
 
     def sizeHint(self) -> QSize:
         px = self._look.theme.px
-        return QSize(px(LEAST_PICTURE[0]), px(LEAST_PICTURE[1]))
+        words = QFontMetrics(self._look.theme.font(SMALL)).horizontalAdvance(tr("not reported"))
+        return QSize(max(px(LEAST_PICTURE[0]), px(CHIP + CHIP_GAP) + words + 1), px(LEAST_PICTURE[1]))
 
     def minimumSizeHint(self) -> QSize:
         return self.sizeHint()
@@ -170,21 +184,31 @@ class _Picture(Themed):
             return
         painter = QPainter(self)
         painter.setRenderHint(QPainter.RenderHint.Antialiasing)
-        rows = self._look.theme.px(ROW) * len(Side)
+        rows = self._look.theme.px(ROW) * len(self.sides)
         self._paint_legs(painter, self.legs, QRectF(0, 0, self.width(), self.height() - rows))
-        readings = self.readings()
-        for number, side in enumerate(Side):
-            top = self.height() - rows + number * self._look.theme.px(ROW)
-            self._paint_reading(painter, side, readings.get(side, tr("not reported")), top)
+        for side, text in self._texts().items():
+            top = text.box.top() + self._look.theme.px((ROW - CHIP) / 2)
+            paint_chip(
+                painter, QRectF(0, top, self._look.theme.px(CHIP), self._look.theme.px(CHIP)), side, self._look.theme
+            )
+            text.paint(painter, self._look.theme.colours)
 
-    def _paint_reading(self, painter: QPainter, side: Side, words: str, top: float) -> None:
-        theme, px = self._look.theme, self._look.theme.px
-        paint_chip(painter, QRectF(0, top + px(4), px(CHIP), px(CHIP)), side, theme)
-        left = px(CHIP) + px(8)
-        font = theme.font(13, MEDIUM)
-        PaintedText(words, QRectF(left, top, self.width() - left, px(ROW)), font, "ink", LEFT).paint(
-            painter, theme.colours
-        )
+    def painted_texts(self) -> list[PaintedText]:
+        return list(self._texts().values())
+
+    def _texts(self) -> dict[Side, PaintedText]:
+        """What is beneath the legs: each measured knee at the cursor."""
+        if self.legs is None:
+            return {}
+        px, readings = self._look.theme.px, self.readings()
+        left, first = px(CHIP) + px(CHIP_GAP), self.height() - px(ROW) * len(self.sides)
+        found = {}
+        for number, side in enumerate(self.sides):
+            words = readings.get(side, tr("not reported"))
+            font = self._look.theme.font(13, MEDIUM) if side in readings else self._look.theme.font(SMALL)
+            box = QRectF(left, first + number * px(ROW), self.width() - left, px(ROW))
+            found[side] = PaintedText(words, box, font, "ink" if side in readings else "ink2", LEFT)
+        return found
 
     def _paint_legs(self, painter: QPainter, legs: MeanLegs, room: QRectF) -> None:
         theme, px = self._look.theme, self._look.theme.px

@@ -28,6 +28,7 @@ HALVES = 1.6  # or where that is not known half of the likely interval;
 REACH = 1.04  # at least so many times what the interval reaches
 HEAD, ROW = 34, 28
 EDGES = 4  # px: the card's padding above and below
+SIDE, COMPACT_SIDE = 16, 12
 LEAST, MOST = 3, 8  # rows
 
 
@@ -35,7 +36,8 @@ class DiffersCard(Card):
     """As many rows as there is room for, but at least three; those beyond healthy people's difference first."""
 
     def __init__(self, look: ThemeNotifier) -> None:
-        super().__init__(look, padding=16)
+        self._side = SIDE
+        super().__init__(look, padding=SIDE)
         self._columns: Sequence[TableColumn] = ()
         self._rows: Sequence[TableRow] = ()
         self._most = LEAST
@@ -52,8 +54,10 @@ class DiffersCard(Card):
     def has_rows(self) -> bool:
         return bool(self._rows)
 
-    def set_room(self, height: float) -> None:
-        """Show what fits into so many px of the design."""
+    def set_room(self, height: float, *, is_compact: bool) -> None:
+        """Show what fits into so many px of the design; nearer to the edge where the page is narrow."""
+        self._side = COMPACT_SIDE if is_compact else SIDE
+        self._on_look_changed()
         most = min(max(int((height - HEAD - EDGES) // ROW), LEAST), MOST)
         if most != self._most:
             self._most = most
@@ -65,7 +69,7 @@ class DiffersCard(Card):
 
     def _on_look_changed(self) -> None:
         px = self._look.theme.px
-        self.column.setContentsMargins(px(16), px(EDGES / 3), px(16), px(EDGES * 2 / 3))
+        self.column.setContentsMargins(px(self._side), px(EDGES / 3), px(self._side), px(EDGES * 2 / 3))
 
 
 def _columns(facts: Facts) -> list[TableColumn]:
@@ -88,15 +92,16 @@ def _row(row: LegsRow) -> TableRow:
     stated = tr("{measure}, difference: {difference}{unit}").format(
         measure=row.name, difference=signed(found.difference, row.decimals), unit=row.unit
     )
+    goals = " · ".join(map(goal_mark, row.goals))
     cells: tuple[TableCell, ...] = (
-        TextCell(row.name, " · ".join(map(goal_mark, row.goals)), weight=weight),
+        TextCell(row.name, goals, weight=weight, small_yields=True),
         *(_value(row, side, unit) for side in Side),
         TextCell(shown, align=RIGHT, weight=weight, spoken=stated if found.is_reported else ""),
         TextCell(interval_in_figures(row.column, found, unit), align=RIGHT, tone="ink2"),
         _strip(found),
         _mark(found),
     )
-    return TableRow(cells)
+    return TableRow(cells, hint=goals)
 
 
 def _value(row: LegsRow, side: Side, unit: str) -> TextCell:

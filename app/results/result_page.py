@@ -56,7 +56,8 @@ WALK, RECORDING = later("Whole walk"), later("Whole recording")
 
 RECORDINGS = (116, 240)  # px: the narrowest and the widest that their box becomes
 BOTTOM = 40  # px high: the row that closes the summary
-OTHERS = 298  # px high: all else of a summary than charts and table
+OTHERS, COMPACT_OTHERS = 298, 270  # px high: all else of a summary than charts and table
+SECOND_TOOLS = 56  # px high: where the tools take two rows
 CHART = 222  # px high: what the charts have before the table gets more rows
 TOOLS = 44  # px high
 LEGS, LEGS_SHARE = 144, 0.135  # px wide, or of the page
@@ -92,6 +93,7 @@ class ResultPage(Themed):
         self._has_choices = False  # views and what else is chosen in one row
         self._thin: Mapping[Side, ThinBend] = {}
         self._drawn: tuple[AnalysedVisit, RecordingAnalysis, MeanLegs | None] | None = None
+        self._mended_by_motion: Side | None = None  # whose free motion would mend the gravest cause
         self._has_band, self._has_chosen_legs = True, False
         self._behind = Behind.NOTHING
         self._required = ANSWER  # of a walk; kept while recordings without it are looked at
@@ -114,6 +116,8 @@ class ResultPage(Themed):
         self.tiles = TileRow(look)
         self.differs = DiffersCard(look)
         self.door = DetailButton(look, tr("Q"))
+        self.repeat = Button(look, tr("Repeat free motion"), ButtonKind.SECONDARY, Icon.REPEAT, height=BOTTOM)
+        self.repeat.hide()
         self.all_figures = Toggle(look, tr("All values"), tr("F"), is_on=False)
         self.show_legs = Toggle(look, tr("Legs"), tr("G"), is_on=True)
         self.cycles = parts.cycles
@@ -189,7 +193,8 @@ class ResultPage(Themed):
         if room != self._room or self._is_placed_otherwise():
             self._room = room
             self._place()
-        self.legs.setFixedWidth(self._look.theme.px(max(LEGS, LEGS_SHARE * width)))
+        legs = self._look.theme.px(max(LEGS, LEGS_SHARE * width))
+        self.legs.setFixedWidth(max(legs, _least_width(self.legs)))  # words may need more in another language
         self._fit_parts()
         self._fit_table()
 
@@ -200,7 +205,9 @@ class ResultPage(Themed):
 
     def _fit_table(self) -> None:
         """Show as many rows of what differs as leave the charts their room; alone it has all of the page."""
-        self.differs.set_room(self._height - (OTHERS if self._room.is_compact else OTHERS + CHART))
+        others = COMPACT_OTHERS if self._room.is_compact else OTHERS + CHART
+        others += 0 if self._has_choices else SECOND_TOOLS
+        self.differs.set_room(self._height - others, is_compact=self._room.is_compact)
 
     def focus(self) -> None:
         """Give the focus to the first choice of the page."""
@@ -252,7 +259,7 @@ class ResultPage(Themed):
             *self.cycles.tables,
             *self.compare.tab_order,
         ]
-        return [*choices, *shown, *self.quality.tab_order, self.door, self.all_figures]
+        return [*choices, *shown, *self.quality.tab_order, self.door, self.repeat, self.all_figures]
 
     def _build(self) -> None:
         self._controls = QGridLayout()
@@ -291,6 +298,7 @@ class ResultPage(Themed):
             self._columns.addWidget(widget, share)
         self._bottom = QHBoxLayout()
         self._bottom.addWidget(self.door, 1)
+        self._bottom.addWidget(self.repeat)
         self._bottom.addWidget(self.all_figures)
         self.all_figures.set_face(height=BOTTOM)
         self.show_legs.set_face(height=TOOLS)
@@ -315,6 +323,7 @@ class ResultPage(Themed):
         self.legs.moved.connect(self._on_cursor_moved)
         self.door.clicked.connect(self._on_door)
         self.to_answer.clicked.connect(self.leave_behind)
+        self.repeat.clicked.connect(lambda: self.quality.repeat_requested.emit(self._mended_by_motion))
         self.all_figures.toggled.connect(lambda is_on: self._show_behind(Behind.FIGURES if is_on else Behind.NOTHING))
         for key, button in (
             (tr("Q"), self.door),
@@ -469,6 +478,7 @@ class ResultPage(Themed):
         self._page.setStretchFactor(self._columns, 0 if is_table_alone else 1)
         self._page.setStretchFactor(self.differs, 1 if is_table_alone else 0)
         self.door.setVisible(has_door and not is_quality)
+        self.repeat.setVisible(is_answer and self._is_live and self._mended_by_motion is not None and not is_compact)
         self.all_figures.setVisible(view == ANSWER and not is_quality)
         self._page.activate()  # now, else the charts would be painted once too small and once right
         self.reported.emit()
@@ -545,8 +555,9 @@ class ResultPage(Themed):
         charts.show_beside(found, words, sides)
         charts.show_marks([bracket] if bracket is not None else [], gaps_of(facts))
         charts.show_labels([label for kind in facts.kinds for label in labels_of(facts, kind)])
-        if bracket is not None:
-            self.legs.percent = max(bracket.points, key=lambda one: one.angle_deg).percent
+        points = bracket.points if bracket is not None else [label.point for label in labels_of(facts, JointKind.KNEE)]
+        if points:  # of the headline, else where the knee is bent most
+            self.legs.percent = max(points, key=lambda one: one.angle_deg).percent
         self._thin = _bent(found) if found is not None else {}
         self._show_moving_legs()
 
@@ -566,6 +577,7 @@ class ResultPage(Themed):
         of_walk = recording if recording is not None and recording.kind is RecordingKind.WALKING else None
         line = quality_sentence(Facts(visit, of_walk), found) if of_walk is not None else None
         self.door.show_message(door_words(found, line))
+        self._mended_by_motion = line.line.side if line is not None and line.line is not None else None
         self.quality.show_quality(found, joints, sites, strides, can_repeat=self._is_live)
         names = visit.shown_names
         self.quality.show_engineering(
@@ -599,9 +611,13 @@ class ResultPage(Themed):
             return
         if self._drawn is None or self._drawn[0] is not visit or self._drawn[1] is not recording:
             self._drawn = visit, recording, mean_legs(visit.session, visit.analysis, recording)
-        knees = {side: facts.measured_curve_deg(side, JointKind.KNEE) for side in facts.gait}
-        reported = {side: knee for side, knee in knees.items() if facts.verdicts.joint(knee_of(side)).shape.is_reported}
-        self.legs.show_legs(self._drawn[2], reported, self._thin)
+        knees = {
+            side: facts.measured_curve_deg(side, JointKind.KNEE)
+            if facts.verdicts.joint(knee_of(side)).shape.is_reported
+            else None
+            for side in facts.gait
+        }
+        self.legs.show_legs(self._drawn[2], knees, self._thin)
 
     def _on_cursor_moved(self, percent: float) -> None:
         self.cycles.charts.show_cursor(dict.fromkeys(Side, percent) if not self.legs.isHidden() else {})

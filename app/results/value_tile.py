@@ -83,7 +83,7 @@ class ValueTile(Themed):
     def minimumSizeHint(self) -> QSize:
         return self.sizeHint()
 
-    def texts(self) -> list[PaintedText]:
+    def painted_texts(self) -> list[PaintedText]:
         """What is painted, and where."""
         if self.tile is None:
             return []
@@ -98,7 +98,7 @@ class ValueTile(Themed):
         theme.paint_box(painter, box, theme.colours.surface, theme.colours.line, 1, CARD_RADIUS)
         if tile is None:
             return
-        for text in self.texts():
+        for text in self.painted_texts():
             text.paint(painter, theme.colours)
         for text, side in self._values(tile):
             if side is not None:
@@ -113,7 +113,9 @@ class ValueTile(Themed):
         theme, px = self._look.theme, self._look.theme.px
         font = theme.font(NAME - self._is_brief, MEDIUM)
         box = QRectF(px(SIDE), px(7 if self._is_brief else 9), self.width() - 2 * px(SIDE), px(20))
-        text = QFontMetrics(font).elidedText(tile.name, Qt.TextElideMode.ElideRight, int(box.width()))
+        metrics = QFontMetrics(font)
+        name = tile.name if metrics.horizontalAdvance(tile.name) <= box.width() else tile.brief or tile.name
+        text = metrics.elidedText(name, Qt.TextElideMode.ElideRight, int(box.width()))
         return PaintedText(text, box, font, "ink2")
 
     def _values(self, tile: Tile) -> list[tuple[PaintedText, Side | None]]:

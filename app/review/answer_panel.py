@@ -2,8 +2,8 @@
 
 from collections.abc import Collection, Iterator
 
-from app.summary.answer import answer_of
 from app.summary.facts import Facts
+from app.summary.headline import headline_of
 from app.summary.interval_words import interval_in_figures
 from app.summary.numbers_in_words import in_words, signed
 from app.summary.request import AnalysedVisit
@@ -19,10 +19,11 @@ from core.session import RecordingKind, Session
 
 MOST_DIFFERENCES = 5
 KEY = later(
-    "Thick line in the leg's colour: result. Thin lines around it: uncertainty, 2 SD. Thin light "
+    "Thick line in the leg's colour: result. Band around it: uncertainty, 2 SD. Thin light "
     "line: published method. Thin grey line: orientation. Bars below show phases. Full colour: "
     "loading response. Pale: foot flat. Narrow: pre-swing. Thin grey: swing."
 )
+NOTHING = later("This recording has no joint angles. Choose a walk below.")
 
 
 def panel(session: Session, analysis: Analysis, recording: RecordingAnalysis, drawn: Collection[Side]) -> str:
@@ -30,13 +31,13 @@ def panel(session: Session, analysis: Analysis, recording: RecordingAnalysis, dr
     lines: list[str] = []
     if recording.kind is RecordingKind.WALKING:
         facts = Facts(AnalysedVisit(session, analysis), recording)
-        answer = answer_of(facts)
-        lines += [f"### {answer.first}", "", answer.then, "", *_largest(facts), ""]
+        headline = headline_of(facts)
+        lines += [f"### {headline.first}", "", headline.then, "", *_largest(facts), ""]
     joints = [joint for joint in Joint if joint in recording.measured]
     lines += [_line(recording, joint, is_drawn=joint.side in drawn) for joint in joints]
     for side in Side:
         lines += [f"- {stated}" for stated in _slipped(recording, side)]
-    return "\n".join([*lines, "", *([tr(KEY)] if joints else [])])
+    return "\n".join([*lines, "", tr(KEY)] if joints else lines or [tr(NOTHING)])
 
 
 def _largest(facts: Facts) -> Iterator[str]:

@@ -1,10 +1,10 @@
 """Log for looking at a session again, sample by sample. One Rerun log of what was measured and what was computed.
 
 Every recording is a timeline of its own, named by its kind and number (`walking_1`); choosing another timeline shows
-another recording in the same views. Nothing is left out between samples, and nobody's words are inside. Above the
-curves two legs walk, which are drawn and say so, and beside them is the answer with a verdict for each joint
-(`answer_panel`). Every verdict is in a view of its own, and what may not be read is not shown until it is looked
-for (`may_be_read`).
+another recording in the same views. The steps of a walk are one beside it, where the log opens (`steps_timeline`).
+Nothing is left out between samples, and nobody's words are inside. Above the curves two legs walk, which are drawn and
+say so, and beside them is the answer with a verdict for each joint (`answer_panel`). Every verdict is in a view of its
+own, and what may not be read is not shown until it is looked for (`may_be_read`).
 
 The same session gives the same bytes: Rerun numbers its chunks and rows by the clock and by chance, so they are
 numbered here, and `rrd_file` does the rest.
@@ -24,10 +24,12 @@ from rerun import ComponentColumnList
 from rerun.chunk import Chunk, RrdReader
 from rerun_bindings import PyMemorySinkStorage, new_blueprint, save
 
-from app.review.answer_panel import panel
+from app.review.answer_panel import NOTHING, panel
 from app.review.data_quality_panel import Place, document, is_pose, name_of_view, pieces_of, places
 from app.review.phase_lane import lanes_of
 from app.review.rrd_file import remove_chance
+from app.review.same_axes import BAND_SD, range_of
+from app.review.steps_timeline import steps_name, steps_of, with_steps
 from app.summary.drawn_legs import (
     HALF_WIDTHS_M,
     HIPS,
@@ -41,6 +43,7 @@ from app.summary.drawn_legs import (
 )
 from app.summary.events import events_of
 from app.theme.colours import DARK
+from app.wording.translation import tr
 from core.body import Joint, JointKind, Side, Site, ankle_of, knee_of
 from core.gait.phases import PHASES, Phase
 from core.hip.results import PelvisAngles
@@ -52,7 +55,7 @@ APPLICATION = "gaitwright"
 RECORDING = "session"
 BLUEPRINT = b"rec_" + b"0" * 32  # as long as the name that Rerun draws by chance, so it can take its place
 ROWS_PER_CHUNK = 100_000  # 4 MB of three axes with their times
-BAND_SD = 2.0
+BAND_PX = 3.0  # of the stroke that goes to and fro between its edges, once a sample
 LEGS_HEIGHT, CURVES_HEIGHT = 2, 3  # shares of the layout
 LEGS_WIDTH, PANEL_WIDTH = 2, 3
 COLOURS = DARK  # the viewer is dark unless its user turns that
@@ -74,11 +77,14 @@ def write_log(session: Session, analysis: Analysis, path: Path) -> None:
     """
     path.touch()  # Rerun reports an unwritable file in its own words, and not always
     timelines = _timelines(session)
-    layout, layout_name = _layout(session, analysis, next(iter(timelines.values()), None))
+    steps = {timelines[r.name]: found for r in analysis.recordings if (found := steps_of(r)) is not None}
+    first = next(iter(timelines.values()), None)
+    layout, layout_name = _layout(session, analysis, steps_name(first) if first in steps else first)
     log = rr.RecordingStream(APPLICATION, recording_id=RECORDING, send_properties=False)
     save(str(path), layout, log.to_native())
     waiting_rows = 0
-    for number, chunk in enumerate(_chunks(session, analysis, timelines), start=1):
+    chunks = (part for whole in _chunks(session, analysis, timelines) for part in with_steps(whole, steps))
+    for number, chunk in enumerate(chunks, start=1):
         rr.send_chunks(_numbered(chunk, number), recording=log)
         waiting_rows += chunk.num_rows
         if waiting_rows >= ROWS_PER_CHUNK:  # or the chunks would pile up in memory
@@ -102,10 +108,16 @@ def _chunks(session: Session, analysis: Analysis, timelines: dict[str, str]) -> 
     for recording in session.recordings:
         for site in recording.imu if recording.is_kept else ():
             yield from _raw_chunks(timelines[recording.name], site, recording.imu[site])
+    for recording in session.recordings:
+        if recording.is_kept and recording.name not in {analysed.name for analysed in analysis.recordings}:
+            starts_s = [block.time_s[0] for block in recording.imu.values() if len(block.time_s)]
+            yield from _panel_chunk(timelines[recording.name], starts_s, tr(NOTHING))
     for analysed in analysis.recordings:
         legs = draw_legs(session, analysis, analysed)
         text = panel(session, analysis, analysed, legs)
-        yield from _panel_chunk(timelines[analysed.name], session, analysed, text)
+        raw = [block.time_s for r in session.recordings if r.name == analysed.name for block in r.imu.values()]
+        starts_s = [time_s[0] for time_s in (analysed.time_s, *raw) if len(time_s)]
+        yield from _panel_chunk(timelines[analysed.name], starts_s, text)
         for joint in analysed.measured:
             yield from _angle_chunks(timelines[analysed.name], joint, analysed)
             yield from _lane_chunks(timelines[analysed.name], joint, analysed)
@@ -130,6 +142,7 @@ def _labels(session: Session, analysis: Analysis) -> Iterator[Chunk]:
                 yield _label(place.entity(joint, curve), [f"{curve}{place} °"], grey or colour, width)
             names = [f"2 sd below{place} °", f"2 sd above{place} °"]
             yield _label(place.entity(joint, "certainty"), names, grey or PALE_COLOUR[joint.side])
+            yield _band_label(place.entity(joint, "band"), f"within 2 sd{place} °", grey or PALE_COLOUR[joint.side])
         for phase, width in LANE_PX.items():
             yield _label(_lane(joint, phase), [phase.replace("_", " ")], _phase_colour(joint.side, phase), width)
     if _has_pelvis(analysis):
@@ -160,6 +173,17 @@ def _label(entity: str, names: list[str], colour: str | None = None, width: floa
         widths=None if colour is None else [width] * n,
     )
     return Chunk.from_columns(entity, indexes=[], columns=columns.partition([n]))
+
+
+def _band_label(entity: str, name: str, colour: str) -> Chunk:
+    """Give the looks of a band: where a pixel is of several samples, it keeps the lowest and the highest."""
+    columns = rr.SeriesLines.columns(
+        names=[name],
+        colors=[_rgba(colour)],
+        widths=[BAND_PX],
+        aggregation_policy=rr.components.AggregationPolicy.MinMax,
+    )
+    return Chunk.from_columns(entity, indexes=[], columns=columns)
 
 
 def _rgba(colour: str) -> int:
@@ -264,6 +288,9 @@ def _angle_chunks(timeline: str, joint: Joint, recording: RecordingAnalysis) -> 
                 if place is Place.SHAPE and np.isfinite(values_deg).any():
                     values_deg = values_deg - np.nanmean(values_deg)
                 yield from _series(place.entity(joint, curve), timeline, time_s[rows], values_deg)
+                if curve == "certainty":  # Rerun fills nothing: a stroke from edge to edge at each sample does
+                    to_and_fro = np.repeat(time_s[rows], 2), values_deg.ravel()
+                    yield from _series(place.entity(joint, "band"), timeline, *to_and_fro)
 
 
 def _lane_chunks(timeline: str, joint: Joint, recording: RecordingAnalysis) -> Iterator[Chunk]:
@@ -283,10 +310,8 @@ def _phase_colour(side: Side, phase: Phase) -> str:
     return PALE_COLOUR[side] if phase is Phase.FOOT_FLAT else SIDE_COLOUR[side]
 
 
-def _panel_chunk(timeline: str, session: Session, recording: RecordingAnalysis, text: str) -> Iterator[Chunk]:
-    """Yield the answer to a walk from its first sample on, raw or computed."""
-    raw = [block for r in session.recordings if r.name == recording.name for block in r.imu.values()]
-    starts_s = [time_s[0] for time_s in (recording.time_s, *(block.time_s for block in raw)) if len(time_s)]
+def _panel_chunk(timeline: str, starts_s: list[float], text: str) -> Iterator[Chunk]:
+    """Yield the answer to a recording from its first sample on, raw or computed."""
     if starts_s:
         columns = rr.TextDocument.columns(text=[text], media_type=[rr.MediaType.MARKDOWN])
         index = rr.TimeColumn(timeline, duration=[min(starts_s)])
@@ -359,8 +384,12 @@ def _blueprint(session: Session, analysis: Analysis, timeline: str | None) -> rr
         tabs += [rrb.TextDocumentView(origin="/may_be_read", name="Data quality")]
     if sides := _sides_with_gait(analysis):
         axis = rrb.archetypes.TimeAxis(link=rrb.components.LinkAxis.LinkToGlobal)
-        lanes = [rrb.StateTimelineView(origin=f"/phases/{s}", name=f"{s} phases", time_view=axis) for s in sides]
-        tabs += [rrb.Vertical(*lanes, rrb.TextLogView(origin="/events", name="events"), name="Phases and events")]
+        lanes: list[rrb.View] = [
+            rrb.StateTimelineView(origin=f"/phases/{s}", name=f"{s} phases", time_view=axis) for s in sides
+        ]
+        if any(events_of(recording) for recording in analysis.recordings):
+            lanes += [rrb.TextLogView(origin="/events", name="events")]
+        tabs += [rrb.Vertical(*lanes, name="Phases and events")]
     if _has_pelvis(analysis):
         tabs += [rrb.TimeSeriesView(origin="/pelvis", name="Pelvis: tilt, obliquity, rotation, °")]
     for signal in ("angular_rate", "specific_force"):
@@ -371,7 +400,9 @@ def _blueprint(session: Session, analysis: Analysis, timeline: str | None) -> rr
     layout = rrb.Tabs(*tabs)
     for number, part in enumerate(_parts(layout)):
         part.id = uuid.UUID(int=number + 1)
-    return rrb.Blueprint(layout, rrb.TimePanel(timeline=timeline, state="collapsed"), collapse_panels=True)
+    # the legs walk as soon as it is open, and again when the last step is done
+    time = rrb.TimePanel(timeline=timeline, state="collapsed", play_state="Playing", loop_mode="All")
+    return rrb.Blueprint(layout, time, collapse_panels=True)
 
 
 def _leg_view(session: Session, analysis: Analysis) -> rrb.Spatial3DView:
@@ -398,6 +429,7 @@ def side_views(analysis: Analysis, side: Side) -> rrb.Vertical | None:
             origin=f"/angles/{joint}",
             name=name_of_view(analysis, joint),
             axis_x=axis,
+            axis_y=rrb.ScalarAxis(range=range_of(analysis, joint.kind)),
             plot_legend=rrb.PlotLegend(visible=False),
         )
         for joint in (kind.of(side) for kind in JointKind)

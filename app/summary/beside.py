@@ -73,7 +73,6 @@ def changes_on_curves(found: Comparison) -> list[Deviation]:
                 words=f"{row.side[0].upper()} {size}",
                 more=pattern.format(size=apart, other=row.against.name),
                 is_larger_than_error=True,
-                size=size,
             )
         )
     return marked

@@ -220,15 +220,17 @@ def _between_legs(facts: Facts) -> Headline | None:
             unit = unit_and_decimals(column)[0]
             clause = clause_of(column, first, now + unit)
             points = tr("{size} points").format(size=size) if unit_of(column) is Unit.PERCENT else size + unit
-            stated = _legs_pattern(is_less=found.difference < 0, is_healthy=mark is Mark.HEALTHY)
+            is_usual = mark is Mark.ERROR and math.isfinite(found.healthy)
+            stated = _legs_pattern(is_less=found.difference < 0, is_usual=is_usual)
             sentence = stated.format(clause=clause, size=points, other=side_name(second))
             beside = evidence_in_sentences(column, found)[: None if mark is Mark.HEALTHY else 1]
             return Headline(rule, sentence, (*beside, *_unsure(facts)), column, first)
     return None
 
 
-def _legs_pattern(*, is_less: bool, is_healthy: bool) -> str:
-    if is_healthy:
+def _legs_pattern(*, is_less: bool, is_usual: bool) -> str:
+    """`is_usual`: many healthy people differ as much; of some measures nobody knows."""
+    if not is_usual:
         return (
             tr("{clause}, {size} less than the {other}.") if is_less else tr("{clause}, {size} more than the {other}.")
         )

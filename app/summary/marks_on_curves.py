@@ -1,25 +1,13 @@
 """Places of a walk's curves that the answer refers to. What differs most, and where a curve leaves the band."""
 
-from collections.abc import Mapping
-
 import numpy as np
 
 from app.charts.cycles import Band, is_mean_enough
-from app.charts.marks import BAND_SDS, CurveLabel, Deviation, Gap, Point, extreme_of, gaps_outside, laid_at_height_of
-from app.summary.comparison import Comparison
+from app.charts.marks import BAND_SDS, CurveLabel, Deviation, Gap, extreme_of, gaps_outside, laid_at_height_of
 from app.summary.facts import KINDS, Facts, joint_of
 from app.summary.headline import Headline, Rule, rounded
 from app.summary.measure_sentences import unit_and_decimals
 from app.summary.numbers_in_words import fixed
-from app.summary.what_differs import LegsRow, what_differs
-from app.summary.what_stands_out import (
-    BANDS_ON_PAPER,
-    BANDS_ON_SCREEN,
-    Candidate,
-    Since,
-    printed_findings,
-    ranked_findings,
-)
 from app.wording.dates import short_date
 from app.wording.translation import tr
 from core.body import Joint, JointKind, Side
@@ -92,83 +80,6 @@ def _numbers_of(facts: Facts, headline: Headline, now: float) -> tuple[str, str]
         return fixed(now, 0), ""
     then, value, _ = rounded(column, (figure.found.mean, now, abs(now - figure.found.mean)))
     return value, f"{short_date(since.day)}: {then}{unit}"
-
-
-def deviations_of(facts: Facts) -> list[Deviation]:
-    """Of each kind of joint the excursion between the legs that the findings report first, on the first leg.
-
-    Degrees as measured: the screen takes away the height of a curve without a zero, and of its marks with it.
-    """
-    rows = {row.column: row for row in what_differs(facts)}
-    reported = [rows[one.column] for one in ranked_findings(facts, None, BANDS_ON_SCREEN) if _is_between(one, rows)]
-    found: list[Deviation] = []
-    for kind in facts.kinds:
-        row = next((row for row in reported if _has_extremes(row, kind)), None)
-        if row is not None:
-            found.append(_on_leg(facts, row, kind))
-    return found
-
-
-def brackets_of(facts: Facts, comparison: Comparison | None) -> dict[Joint, Deviation]:
-    """The same for paper, which has a panel for each leg: the first leg's has the number of its sentence.
-
-    The other leg's bracket shows the same movement, without a number.
-    """
-    printed = [one.stated for one in printed_findings(facts, comparison)]
-    found: dict[Joint, Deviation] = {}
-    for candidate, row in _reported_between_legs(facts):
-        kind = next((kind for kind in facts.kinds if _has_extremes(row, kind)), None)
-        if kind is None or joint_of(kind, Side.LEFT) in found or joint_of(kind, Side.RIGHT) in found:
-            continue
-        number = printed.index(candidate.stated) + 1 if candidate.stated in printed else None
-        for side in facts.first_and_second:
-            if np.isfinite(facts.mean_curve_deg(side, kind)).all():
-                size = fixed(row.values[side].mean, row.decimals) + row.unit
-                low, high = _extremes(row, joint_of(kind, side), facts.mean_curve_deg(side, kind))
-                is_first = side is facts.first_and_second[0]
-                words = f"{side[0].upper()} {size}"
-                found[joint_of(kind, side)] = Deviation(
-                    low, high, words=words, size=size, number=number if is_first else None
-                )
-    return found
-
-
-def _reported_between_legs(facts: Facts) -> list[tuple[Candidate, LegsRow]]:
-    """The findings between the legs, each with its figures."""
-    rows = {row.column: row for row in what_differs(facts)}
-    return [(one, rows[one.column]) for one in ranked_findings(facts, None, BANDS_ON_PAPER) if _is_between(one, rows)]
-
-
-def _is_between(one: Candidate, rows: Mapping[str, LegsRow]) -> bool:
-    """Whether a finding is between the legs, and no change since a visit."""
-    return one.since is Since.NOTHING and one.column in rows
-
-
-def _has_extremes(row: LegsRow, kind: str) -> bool:
-    return row.column.startswith(kind) and BY_COLUMN[row.column].rests_on in MARKED
-
-
-def _on_leg(facts: Facts, row: LegsRow, kind: str) -> Deviation:
-    """The extremes of the first leg's mean curve; the sizes are means of the strides, as everywhere."""
-    first, second = facts.first_and_second
-    low, high = _extremes(row, joint_of(kind, first), facts.measured_curve_deg(first, kind))
-    size = fixed(row.values[first].mean, row.decimals) + row.unit
-    pattern = tr("{size} less than {other}") if row.difference.difference < 0 else tr("{size} more than {other}")
-    apart = fixed(abs(row.difference.difference), row.decimals) + row.unit
-    return Deviation(
-        low,
-        high,
-        words=f"{first[0].upper()} {size}",
-        more=pattern.format(size=apart, other=second[0].upper()),
-        is_larger_than_error=True,
-        size=size,
-    )
-
-
-def _extremes(row: LegsRow, joint: Joint, curve: FloatArray) -> tuple[Point, Point]:
-    """The lowest and the highest point of a leg's mean curve (101,), degrees, that a movement goes between."""
-    high, low = windows_of(row.column)
-    return extreme_of(joint, curve, *low, is_maximum=False), extreme_of(joint, curve, *high, is_maximum=True)
 
 
 def windows_of(column: str) -> tuple[tuple[float, float], tuple[float, float]]:

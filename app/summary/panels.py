@@ -2,16 +2,14 @@
 
 import math
 from collections.abc import Sequence
-from dataclasses import replace
 
 import numpy as np
 
 from app.charts.axes import title_in_words
 from app.charts.cycles import Band, is_mean_enough, is_spread_enough
 from app.charts.drawing import COLOURS, DASHES, Picture, box, line, picture, text
-from app.charts.marks import Deviation, laid_at_height_of
 from app.charts.on_paper import PLAIN
-from app.charts.stride_chart import NO_STRIDES, Axis, StrideChart, StrideCurve, usual_range_deg
+from app.charts.stride_chart import NO_STRIDES, Axis, StrideCurve, usual_range_deg
 from app.summary import quality
 from app.summary.facts import KINDS, Facts, joint_of
 from app.summary.numbers_in_words import fixed
@@ -123,30 +121,6 @@ def curve_of(facts: Facts, side: Side, kind: str) -> StrideCurve:
     )
 
 
-def leg_chart(facts: Facts, joint: Joint, bracket: Deviation | None) -> StrideChart:
-    """One leg's joint with the band laid at its curve's height, so that the picture judges its shape alone."""
-    side, kind = joint.side, joint.kind
-    own = curve_of(facts, side, kind)
-    band, stated = None, [curve_alt(facts, kind, [side])]
-    group = facts.curves_group
-    if group is not None and own.is_known and side in facts.sides_with_band:
-        band = laid_at_height_of(own.angle_deg, Band(*group.mean_and_sd_deg(kind)))
-    return StrideChart(
-        title=joint_title(facts, side, kind),
-        axis=axis_of(facts, kind),
-        curves=(replace(own, toe_off_label=toe_off_in_words(own.toe_off_percent)),),
-        band=band,
-        is_simulated=facts.is_simulated,
-        alt=" ".join(stated),
-        not_reported=why_not_reported(facts, joint),
-        deviations=(bracket,) if bracket is not None and own.is_known else (),
-    )
-
-
-def toe_off_in_words(percent: float) -> str:
-    return tr("toe\u2011off {percent} %").format(percent=fixed(percent, 0)) if math.isfinite(percent) else ""
-
-
 def joint_title(facts: Facts, side: Side, kind: str) -> str:
     """Of a narrow panel."""
     name = capitalised(name_of(joint_of(kind, side)))
@@ -170,18 +144,6 @@ def why_not_reported(facts: Facts, joint: Joint) -> str:
     return tr("No usable stride for this joint.")
 
 
-def why_missing(facts: Facts, joint: Joint) -> str:
-    """What is shown in a joint's place beside those that were measured."""
-    if joint.side not in facts.gait:
-        return tr("{joint}: not measured.").format(joint=capitalised(name_of(joint)))
-    worn = facts.visit.recording(facts.walk.name).imu
-    missing = [name_of(site) for site in (joint.proximal, joint.distal) if site not in worn]
-    if missing:
-        stated = tr("{joint}: not measured, no sensor on {sites}.")
-        return stated.format(joint=capitalised(name_of(joint)), sites=joined(missing))
-    return tr("{joint}: not measured.").format(joint=capitalised(name_of(joint)))
-
-
 def why_no_joint(facts: Facts, kind: str) -> str:
     """Why neither leg has a kind of joint."""
     worn = facts.visit.recording(facts.walk.name).imu
@@ -200,27 +162,20 @@ def why_no_band(facts: Facts, why: NoBand | None) -> str:
     return tr(WHY_NO_BAND[why]) if why is not None else ""
 
 
-def band_in_words(facts: Facts, *, is_at_height: bool) -> str:
-    """Whose band is drawn and how it is laid, or why there is none."""
+def band_in_words(facts: Facts, *, has_hips: bool = False) -> str:
+    """Whose band is drawn, or why there is none; `has_hips`: hips are drawn as well, which have none."""
     group = facts.curves_group
     if group is None:
         return why_no_band(facts, facts.bands.why_no_curves)
-    if not is_at_height and all(facts.has_no_zero(kind) for kind in KINDS if facts.has_joint(kind)):
+    if all(facts.has_no_zero(kind) for kind in KINDS if facts.has_joint(kind)):
         return tr("No reference band: without a standing reference there are no absolute angles to compare.")
     stated = [
         tr("Grey: reference (mean, ±1 and ±2 SD of {n} young adults, barefoot, treadmill, {speed} m/s) [1].").format(
             n=group.n, speed=fixed(group.speed_m_s, 2)
         )
     ]
-    if is_at_height:
-        stated.append(
-            tr(
-                "The reference is shifted to the level of each curve to compare shape. The absolute angle is "
-                "shown beside it."
-            )
-        )
-    elif JointKind.HIP in facts.kinds:
-        stated.append(tr("At the hip, the reference has another zero and is shown on page 1 only."))
+    if has_hips:
+        stated.append(tr("At the hip, the reference has another zero and is not shown."))
     if facts.bands.are_curves_of_other_ages:
         stated.append(tr(OTHER_AGES))
     if not facts.sides_with_band.issuperset(facts.gait):

@@ -12,7 +12,7 @@ from app.summary.facts import Facts
 from app.summary.numbers_in_words import NOTHING, fixed
 from app.wording.body import name_of, side_name
 from app.wording.findings import NAMES
-from app.wording.translation import capitalised, joined, tr, tr_n, within_sentence
+from app.wording.translation import capitalised, joined, tr, within_sentence
 from app.wording.verdicts import GateWords, gate_words
 from core.body import Joint, Side, Site, hip_of
 from core.findings import Finding
@@ -22,7 +22,6 @@ from core.verdicts.model import GateReason, Verdict, Verdicts, worst
 from core.verdicts.quality import MIN_LOSS_PERCENT
 
 MAX_SENTENCES = 3  # more would push a page over its foot
-MAX_TO_DO = 2  # beside a panel
 HEIGHT_GATES = ("zero", "plausible_height")  # these leave the shape alone
 ABDUCTION_GATES = ("hip_heading",)  # and these all but abduction
 Place = Joint | Side | None
@@ -120,22 +119,6 @@ def _where(facts: Facts, places: Sequence[Place]) -> str:
         return tr("All joints")
     legs = [tr("{side} leg").format(side=side_name(side)) for side in sides]
     return capitalised(joined([*legs, *(name_of(joint) for joint in joints)]))
-
-
-def gravest(facts: Facts) -> list[str]:
-    """What weighs most against reading something, in one sentence; how many more there are."""
-    sentences = caveats(facts)
-    if len(sentences) < 2:
-        return sentences
-    more = len(sentences) - 1
-    stated = tr_n("{count} more finding on page 4.", "{count} more findings on page 4.", more)
-    return [f"{sentences[0]} {stated.format(count=more)}"]
-
-
-def to_do(facts: Facts, joint: Joint) -> list[str]:
-    """What to do so that a joint that is not reported can be read the next time."""
-    found = [one.words.to_do for one in causes(facts, (Verdict.NOT_REPORTED,)) if {joint, joint.side} & set(one.places)]
-    return list(dict.fromkeys(filter(None, found)))[:MAX_TO_DO]
 
 
 def cells(facts: Facts) -> list[tuple[str, str]]:

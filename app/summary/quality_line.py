@@ -40,7 +40,7 @@ def quality_sentence(facts: Facts, found: DataQuality | None = None) -> QualityS
     if not known.lines:
         if not facts.gait:
             return QualitySentence(known.first, known.then)
-        return QualitySentence(tr("Data quality: good."), _in_order(facts))
+        return QualitySentence(tr("Data quality: good."), in_order(facts))
     line = known.lines[0]
     pattern = tr("{where}: {verdict}.") if line.where else tr("Data quality: {verdict}.")
     first = pattern.format(where=line.where, verdict=_in_sentence(line.verdict))
@@ -54,7 +54,7 @@ def _in_sentence(verdict: Verdict) -> str:
     return word[:1].lower() + word[1:]
 
 
-def _in_order(facts: Facts) -> str:
+def in_order(facts: Facts) -> str:
     """Strides of each leg, and what was looked at without finding anything."""
     counts = [str(facts.strides(side)) for side in Side if side in facts.gait]
     parts = [tr("{counts} strides").format(counts=joined(counts))]

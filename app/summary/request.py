@@ -3,6 +3,7 @@
 from dataclasses import dataclass
 from datetime import datetime
 
+from app.summary.conditions import Part
 from app.summary.course_lanes import CourseVisit
 from app.summary.visits import by_condition
 from app.wording.recordings import ShownName, shown_names
@@ -65,6 +66,8 @@ class ReportRequest:
         The clinical comment that was confirmed, and who confirmed it; empty: none is printed.
     earlier
         A visit before this one to compare with, in place of the conditions.
+    thin
+        The condition at the earlier visit whose curves page one draws thin; None: none is.
     course
         The patient's visits in order of time, this one the last; from two on, a page shows the course.
     patient_language
@@ -83,6 +86,7 @@ class ReportRequest:
     course: tuple[CourseVisit, ...] = ()
     patient_language: str = ""
     comment_by: str = ""
+    thin: Part | None = None
 
     def __post_init__(self) -> None:
         if self.made_at.tzinfo is None:

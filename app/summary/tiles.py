@@ -39,6 +39,7 @@ class TileChange:
     brief: str = ""
     """Without what the arrow states, where room is short; `size` alone where it is shorter."""
     size: str = ""
+    day: str = ""
 
 
 @dataclass(frozen=True, slots=True)
@@ -82,10 +83,23 @@ class Tile:
     goal: str = ""
     why: str = ""
     goal_words: str = ""
+    brief: str = ""
+    """The name where room is short; empty: the same."""
+
+    @property
+    def last(self) -> str:
+        """The values at the visit that the change is since: "23 Sep 48°"; empty without one."""
+        known = [value for value in self.values if math.isfinite(value.last)]
+        if not known or not self.change.day:
+            return ""
+        letters = [f"{one.side.letter}\u00a0" if one.side is not None and len(self.values) > 1 else "" for one in known]
+        write, unit = signed if self.column == STANCE else fixed, "°" if self.column == KNEE else ""
+        values = (write(value.last, DECIMALS[self.column]) + unit for value in known)
+        return " ".join([self.change.day, *map("".join, zip(letters, values, strict=True))])
 
     @property
     def in_words(self) -> str:
-        """The tile read out."""
+        """The tile read out, by its whole name."""
         values = ", ".join(
             " ".join(filter(None, [one.side.letter if one.side is not None else "", one.text])) for one in self.values
         )
@@ -137,11 +151,22 @@ def _knee(facts: Facts, walked: list[CourseVisit]) -> Tile:
     each = [_knee_of(facts, walked, side) for side in sides]
     values, changes = [value for value, _ in each], [one for _, one in each]
     missing = [value for value in values if not math.isfinite(value.value)]
-    why = " ".join([*(one.side.letter for one in missing if one.side and len(values) > 1), tr(NOT_REPORTED)])
+    is_worn = any(facts.is_worn(side, KNEE) for side in sides)
+    letters = [one.side.letter for one in missing if one.side is not None and len(missing) < len(values)]
+    why = " ".join([*letters, tr(NOT_REPORTED) if is_worn else tr("not measured")])
     stated = changes[0] if len(changes) == 1 else _of_both(values, changes)
     if len(values) == 1 and len(walked) < 2 and not missing:
         stated = _beside_other(facts, sides[0]) or stated
-    tile = Tile(KNEE, name, "", tuple(values), stated, SCALES[KNEE], why=why if missing else "")
+    tile = Tile(
+        KNEE,
+        name,
+        "",
+        tuple(values),
+        stated,
+        SCALES[KNEE],
+        why=why if missing else "",
+        brief=tr("Knee, stance to swing"),
+    )
     return _with_goals(facts, tile, GoalOf.LEFT, GoalOf.RIGHT)
 
 
@@ -199,7 +224,7 @@ def _stance(facts: Facts, walked: list[CourseVisit]) -> Tile:
     zone = (-found.healthy, found.healthy) if math.isfinite(found.healthy) else None
     if not found.is_reported:
         return Tile(STANCE, name, "", (value,), TileChange(""), SCALES[STANCE], why=tr(NOT_REPORTED))
-    tile = Tile(STANCE, name, tr("points"), (value,), stated, SCALES[STANCE], zone)
+    tile = Tile(STANCE, name, tr("points"), (value,), stated, SCALES[STANCE], zone, brief=tr("Stance, L − R"))
     return _with_goals(facts, tile, GoalOf.BETWEEN)
 
 
@@ -240,9 +265,10 @@ def _change(column: str, found: Difference, day: str) -> TileChange:
     size = signed(found.difference, DECIMALS[column]) + ("°" if column == KNEE else "")
     brief = tr("{change} since {day}").format(change=size, day=day)
     if not found.is_judged:
-        return TileChange(brief, brief=brief, size=size)
+        return TileChange(brief, brief=brief, size=size, day=day)
     words = brief if found.exceeds else tr("{change} since {day}, within error").format(change=size, day=day)
-    return TileChange(words, found.difference > 0, found.exceeds, brief, size)
+    is_none = not round(found.difference, DECIMALS[column])  # what is shown as no change has no arrow
+    return TileChange(words, None if is_none else found.difference > 0, found.exceeds, brief, size, day)
 
 
 def _with_goals(facts: Facts, tile: Tile, *kinds: GoalOf) -> Tile:

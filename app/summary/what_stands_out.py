@@ -8,13 +8,11 @@ from collections.abc import Iterable, Iterator
 from dataclasses import dataclass
 from enum import IntEnum
 
-from app.charts.cycles import is_mean_enough
 from app.summary import quality
 from app.summary.comparison import Compared, Comparison, Contrast, compare_legs
 from app.summary.facts import KINDS, Facts, joint_of, role
 from app.summary.interval_words import evidence, interval_words
 from app.summary.measure_sentences import (
-    CLAUSES,
     Reported,
     change_sentence,
     leg_beside_leg,
@@ -43,7 +41,7 @@ from core.parameters import (
 )
 from core.results import ZeroKind
 from core.timed.measures import COLUMNS, PROTOCOLS
-from core.verdicts.measurement_error import Difference, Mark, least_error
+from core.verdicts.measurement_error import Difference, least_error
 from core.verdicts.model import Verdict
 from core.verdicts.quantities import joint_of as joint_of_column
 from core.verdicts.sigmas import ComparisonKind
@@ -154,107 +152,12 @@ def _without_family(candidates: list[Candidate]) -> list[Candidate]:
     return [one for one in candidates if not (one.column in FAMILIES and movements.intersection(one.topics))]
 
 
-def nothing_found(facts: Facts, comparison: Comparison | None) -> list[str]:
-    """Stated where no finding is reported: the legs' values and what they differ by, or those of the one leg."""
-    judged = judged_differences(facts, comparison)
-    away = [abs(sd) for side, column in _peaks(facts) if math.isfinite(sd := facts.away_sd(side, column))]
-    stated = [*_legs_alike(facts), *_since_last(facts)] or _one_leg(facts)
-    has_angles = any(joint_of_column(column, Side.LEFT) is not None for column in judged)
-    if judged and not has_angles and any(map(facts.is_measured, Joint)):
-        stated.append(tr("No angle can be compared."))
-    if away and max(away) <= MAX_AWAY_SD:
-        stated.append(
-            tr(
-                "All judged peaks are within 2\N{NO-BREAK SPACE}SD of the reference. For this, the reference "
-                "is shifted to the level of each curve."
-            )
-        )
-    return stated or [tr("Nothing could be judged.")]
-
-
-def _legs_alike(facts: Facts) -> list[str]:
-    """The legs' values, and what their largest difference may be: beyond error, it is named as such."""
-    if len(facts.gait) < len(Side):
-        return []
-    found = {column: compare_legs(facts.part, column, facts.first_and_second) for column in BETWEEN_LEGS}
-    judged = [column for column in STATED_BETWEEN_LEGS if found[column].is_judged]
-    unsure = [unsure_sentence(column, found[column]) for column in LEAST_CERTAIN if found[column].exceeds]
-    beyond = [column for column in judged if found[column].mark is Mark.ERROR]
-    if beyond:
-        column = max(beyond, key=lambda one: (not found[one].is_unverified, found[one].ratio))
-        return [leg_beside_leg(facts, column, found[column]), evidence(column, found[column]), *unsure]
-    shown = [column for column in (KNEE, STANCE) if column in judged] or judged[:1]
-    if not shown:
-        return unsure
-    values = [_both_values(facts, column) for column in shown]
-    stated = tr("Left and right are similar: {values}.").format(values=", ".join(values))
-    return [stated, evidence(shown[0], found[shown[0]]), *unsure]
-
-
 def unsure_sentence(column: str, found: Difference) -> str:
     """What tables mark and no finding reports: named, so that legs are not called similar above its mark."""
     unit, decimals = unit_and_decimals(column)
     stated = tr("{measure} differs by {size}, {likely}; it is the least certain measure.")
     size, likely = fixed(abs(found.difference), decimals) + unit, interval_words(column, found)
     return stated.format(measure=capitalised(name_in_sentence(column)), size=size, likely=likely)
-
-
-def _both_values(facts: Facts, column: str) -> str:
-    """A measure of both legs: "knee flexion, stance to swing 53.1° and 58.0°"."""
-    unit, decimals = unit_and_decimals(column)
-    left, right = (fixed(facts.value(side, column).mean, decimals) + unit for side in Side)
-    return tr("{measure} {left} and {right}").format(measure=name_in_sentence(column), left=left, right=right)
-
-
-def _since_last(facts: Facts) -> list[str]:
-    """What the knee, else stance, has changed by since the visit before, which no finding reports."""
-    lines = [line for line in _course(facts) if line.since_last is not None and line.since_last.is_judged]
-    walked, first = walked_visits(facts.course, facts.condition), facts.first_and_second[0]
-    for column in (KNEE, STANCE, SPEED):
-        for line in lines:
-            if line.column == column and line.side in (None, first) and (found := line.since_last) is not None:
-                unit, decimals = unit_and_decimals(column)
-                stated = tr("Since {day}: {measure} {change}.")
-                if line.side is not None:
-                    stated = tr("Since {day}: {measure}, {side}, {change}.")
-                words = stated.format(
-                    day=date(walked[line.before].day),
-                    measure=name_in_sentence(column),
-                    side="" if line.side is None else role(facts, line.side),
-                    change=signed(found.difference, decimals) + unit,
-                )
-                return [words, evidence(column, found)]
-    return []
-
-
-def _one_leg(facts: Facts) -> list[str]:
-    """What one leg alone has of the knee, else of stance."""
-    for side in facts.first_and_second:
-        for column in (KNEE, STANCE):
-            value = facts.value(side, column)
-            if is_mean_enough(value.n) and math.isfinite(value.mean):
-                unit, decimals = unit_and_decimals(column)
-                pattern, size = tr(CLAUSES[column]), fixed(value.mean, decimals) + unit
-                return [f"{capitalised(pattern.format(who=who_of_role(facts, side, column), value=size))}."]
-    return []
-
-
-def judged_differences(facts: Facts, comparison: Comparison | None) -> dict[str, Difference]:
-    """Those that are reported and have an error, whether they exceed it or not: of each column the largest."""
-    found: dict[str, Difference] = {}
-    for column, one in _differences(facts, comparison):
-        if one.is_judged and (column not in found or one.ratio > found[column].ratio):
-            found[column] = one
-    return found
-
-
-def _differences(facts: Facts, comparison: Comparison | None) -> Iterator[tuple[str, Difference]]:
-    if comparison is not None:
-        yield from ((row.measure.column, row.difference) for row in comparison.rows if row.is_reported)
-    for line in _course(facts):
-        yield from ((line.column, found) for found in (line.since_last, line.since_first) if found is not None)
-    if len(facts.gait) == len(Side):
-        yield from ((column, compare_legs(facts.part, column, facts.first_and_second)) for column in BETWEEN_LEGS)
 
 
 def _changes(facts: Facts, comparison: Comparison | None) -> Iterator[Candidate]:

@@ -66,7 +66,7 @@ LIGHT = Colours(
     right_soft="#A3CCE5",
     band_1sd="#C3CBD3",
     band_2sd="#E3E8EC",
-    disabled="#9AA6B1",
+    disabled="#7B8792",
 )
 
 DARK = Colours(
@@ -97,7 +97,7 @@ DARK = Colours(
     right_soft="#1D5275",
     band_1sd="#414D58",
     band_2sd="#29333C",
-    disabled="#5F6D79",
+    disabled="#738290",
 )
 
 

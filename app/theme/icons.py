@@ -42,6 +42,7 @@ class Icon(StrEnum):
     SILENT = "silent"
     RECORDING = "recording"
     BEND = "bend"
+    SWAP = "swap"
     NEXT = "next"
     ARROW = "arrow"
     SEARCH = "search"

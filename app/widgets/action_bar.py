@@ -69,7 +69,10 @@ class RecordingNote:
 
 @dataclass(frozen=True, slots=True)
 class BarState:
-    """`others` stand left of the primary verb, `quiet` ones after Back; without Back the first takes its place."""
+    """`others` stand left of the primary verb, `quiet` ones after Back; without Back the first takes its place.
+
+    `on_page`: whose buttons are on the page itself; their keys are the bar's, and go before those of its own buttons.
+    """
 
     primary: BarAction | None = None
     others: tuple[BarAction, ...] = ()
@@ -77,6 +80,7 @@ class BarState:
     note: str = ""
     recording: RecordingNote | None = None
     has_back: bool = True
+    on_page: tuple[BarAction, ...] = ()
 
 
 class ActionBar(Themed):
@@ -138,11 +142,15 @@ class ActionBar(Themed):
 
     @property
     def keys(self) -> list[str]:
-        """The keys that its buttons show."""
-        return [button.verb.key for button in self.buttons if not button.isHidden() and button.verb.key]
+        """The keys that its buttons show, and those of the page that it presses."""
+        shown = [button.verb.key for button in self.buttons if not button.isHidden() and button.verb.key]
+        return list(dict.fromkeys([*(action.key for action in self._state.on_page), *shown]))
 
     def press(self, key: str) -> None:
         """Press the button that shows this key, if it can be pressed."""
+        if (on_page := next((one for one in self._state.on_page if one.key == key), None)) is not None:
+            self.pressed.emit(on_page)
+            return
         next(button for button in self.buttons if not button.isHidden() and button.verb.key == key).click()
 
     def show_state(self, state: BarState) -> None:

@@ -3,11 +3,12 @@
 It is a drawn person who faces you, like an X-ray: right is at the left.
 """
 
+import math
 from collections.abc import Mapping
 from enum import Enum, auto
 
 from PySide6.QtCore import QPointF, QRectF, QSize, Qt
-from PySide6.QtGui import QAccessible, QColor, QFontMetrics, QPainter, QPaintEvent, QTransform
+from PySide6.QtGui import QAccessible, QColor, QFontMetrics, QPainter, QPainterPath, QPaintEvent, QPolygonF, QTransform
 from PySide6.QtWidgets import QSizePolicy, QWidget
 
 from app.theme.notifier import ThemeNotifier
@@ -27,6 +28,8 @@ LETTER_AT = QPointF(108, 36)  # from the middle and the top, units of the drawin
 LEG_LETTER_AT = QPointF(74, 214)
 ABOVE_TILES = 196  # from the top, where something is beside the legs: a tile that is high begins at the pelvis
 WORDS_FROM = 0.8  # px to a unit of the drawing; a smaller person has no room for words at the shoulders
+SWAPPED_FREE = 22  # px from the middle of a sensor to the tip of an arrow
+HEAD = 13  # px
 SEGMENT_SLACK = 6  # units of the drawing: a finger hits beside the outline
 
 
@@ -36,6 +39,7 @@ class SensorMark(Enum):
     WORN = auto()
     LOOK = auto()  # it sends, but something about it needs a look: battery, loss
     SILENT = auto()
+    SWAPPED = auto()  # it moves like the sensor of another place
     GAP = auto()  # a sensor is still to come here
 
 
@@ -45,6 +49,7 @@ def mark_words(mark: SensorMark) -> str:
         SensorMark.WORN: tr("worn"),
         SensorMark.LOOK: tr("needs checking"),
         SensorMark.SILENT: tr("no signal"),
+        SensorMark.SWAPPED: tr("looks swapped"),
         SensorMark.GAP: tr("no sensor yet"),
     }[mark]
 
@@ -87,6 +92,7 @@ class BodyFigure(QWidget):
         self._is_from_behind = False
         self._beside = 0
         self._worn: dict[Site, SensorMark] = {}
+        self._moves_to: dict[Site, Site] = {}
         self._emphasised: Site | None = None
         self.setSizePolicy(QSizePolicy.Policy.Expanding, QSizePolicy.Policy.Expanding)
         self._name()
@@ -100,6 +106,12 @@ class BodyFigure(QWidget):
         if dict(worn) != self._worn:
             self._worn = dict(worn)
             self._name()
+            self.update()
+
+    def show_moves(self, moves_to: Mapping[Site, Site]) -> None:
+        """Lead an arrow from each place to the one whose sensor its own moves like."""
+        if dict(moves_to) != self._moves_to:
+            self._moves_to = dict(moves_to)
             self.update()
 
     def emphasise(self, site: Site | None) -> None:
@@ -170,6 +182,7 @@ class BodyFigure(QWidget):
                 _paint_plain(painter, theme, place, "pelvis", is_emphasised=True)
             _paint_segments(painter, theme, place, self._emphasised, is_small=False)
             _paint_sensors(painter, theme, place, self._worn)
+        _paint_moves(painter, theme, place, self._moves_to)
         self._paint_letters(painter, place)
         painter.setPen(QColor(theme.colours.ink2))
         painter.setFont(theme.font(14))
@@ -276,6 +289,40 @@ def _paint_joints(painter: QPainter, theme: Theme, place: QTransform) -> None:
         painter.drawEllipse(place.map(body_shapes().points[joint]), 5 * theme.scale, 5 * theme.scale)
 
 
+def _paint_moves(painter: QPainter, theme: Theme, place: QTransform, moves_to: Mapping[Site, Site]) -> None:
+    """Arrows between places; two that change places share one, with a head at either end."""
+    points = body_shapes().points
+    painter.setPen(theme.pen(theme.colours.ink, 2))
+    painter.setBrush(Qt.BrushStyle.NoBrush)
+    for site, goal in moves_to.items():
+        is_exchange = moves_to.get(goal) is site
+        if is_exchange and list(Site).index(goal) < list(Site).index(site):
+            continue
+        start, end = place.map(points[f"{site}_sensor"]), place.map(points[f"{goal}_sensor"])
+        way = end - start
+        length = math.hypot(way.x(), way.y())
+        if length < 1.0:
+            continue
+        free = min(SWAPPED_FREE * theme.scale, length / 4)  # beside the sensors' boxes
+        start, end = start + way * (free / length), end - way * (free / length)
+        bow = QPointF(-way.y(), way.x()) * 0.16
+        first, second = start + (end - start) * 0.3 + bow, start + (end - start) * 0.7 + bow
+        line = QPainterPath(start)
+        line.cubicTo(first, second, end)
+        painter.drawPath(line)
+        _paint_head(painter, theme, second, end)
+        if is_exchange:
+            _paint_head(painter, theme, first, start)
+
+
+def _paint_head(painter: QPainter, theme: Theme, before: QPointF, tip: QPointF) -> None:
+    """The head of an arrow that comes from `before` and ends at `tip`."""
+    towards = math.atan2(before.y() - tip.y(), before.x() - tip.x())
+    sides = [QPointF(math.cos(towards + turn), math.sin(towards + turn)) for turn in (-0.5, 0.5)]
+    head = [tip + side * (HEAD * theme.scale) for side in sides]
+    painter.drawPolyline(QPolygonF([head[0], tip, head[1]]))
+
+
 def _paint_sensors(painter: QPainter, theme: Theme, place: QTransform, worn: Mapping[Site, SensorMark]) -> None:
     """A dark box where a sensor is worn; yellow where it wants a look, with a bar where it is silent; else a gap."""
     c = theme.colours
@@ -290,7 +337,7 @@ def _paint_sensors(painter: QPainter, theme: Theme, place: QTransform, worn: Map
             painter.setBrush(QColor(c.ink))
             painter.drawRoundedRect(box, radius, radius)
             continue
-        grown = width / 20
+        grown = width / 4 if mark is SensorMark.SWAPPED and not is_small else width / 20
         box.adjust(-grown, -grown, grown, grown)
         pen = theme.pen(c.ink if mark is SensorMark.GAP else c.caution_mark_ink, 1 if is_small else 1.5)
         if mark is SensorMark.GAP:

@@ -56,7 +56,8 @@ class Choice(QComboBox):
         least = self._look.theme.px(self._least)
         if self.currentText() in self._whole:
             least = max(least, self._width_for(self.currentText()))
-        return QSize(min(self._width_for(self.currentText()), least), hint.height())
+        height = min(hint.height(), self.maximumHeight())  # where it was made lower
+        return QSize(min(self._width_for(self.currentText()), least), height)
 
     def event(self, event: QEvent) -> bool:
         if event.type() is QEvent.Type.ToolTip and self._least is not None:

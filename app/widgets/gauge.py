@@ -28,14 +28,17 @@ STEPS = 360  # of a ring: finer ones nobody sees
 DASHES, DASH = 40, 0.62  # of the right leg's rings
 CARD = QSize(400, 210)
 COMPACT_CARD = QSize(340, 130)
-RING, CLOSED_RING = 172, 164
+RING, CLOSED_RING = 174, 166
 OUTER, INNER, CLOSED_OUTER, CLOSED_INNER = 14.0, 6.0, 7.0, 3.0
 RING_GAP = 5.0
 VALUE, LARGEST_VALUE = 56, 72
 CHIP = 28
-PADDING = 20
-ROWS_FROM, ROW = CHIP + 10, 26
-ROWS_TO = ROWS_FROM + 2 * ROW
+PADDING, MARGIN = 22, 18  # beside the words; round the ring
+MIDDLE = 108  # of the ring, from the edge of its side
+# of the words: name, two rows, a rule, the state, from the top of the block, which is as high as all of them
+ROWS_FROM, ROW, ROW_EVERY, RULE, STATE_FROM, BLOCK = 46, 26, 28, 110, 120, 166
+LEAST_ROUND = 6  # above and below the block
+STATE_SIZES = (15, 14, 13, 12)
 STATE_FLAGS = int(Qt.AlignmentFlag.AlignVCenter) | int(Qt.TextFlag.TextWordWrap)
 WIDEST = 240  # of the words: a figure and the one required are read together
 
@@ -47,6 +50,7 @@ class GaugeState(Enum):
     CENTRE = auto()  # motion for the centre of an ankle, whose axis is found while walking
     PLATEAU = auto()  # as good as this motion gives
     LOOSE = auto()  # of a prosthesis, and turns as no hinge does
+    NEEDS = auto()  # a sensor that moves like another place's
     ABSENT = auto()  # nothing to find, or nothing to find it with
 
 
@@ -66,7 +70,7 @@ class GaugeMeasure:
 
 @dataclass(frozen=True, slots=True)
 class GaugeFace:
-    """`axis` is None where it is not asked for: walking finds an ankle's. `note` states why there is no gauge."""
+    """`axis` is None where it is not asked for: walking finds an ankle's. `note` states why there is no figure."""
 
     state: GaugeState = GaugeState.OPEN
     axis: GaugeMeasure | None = None
@@ -177,9 +181,12 @@ class Gauge(QWidget):
         """Whether it is compact, or too low for all of its words under each other, as below a banner."""
         if self._is_compact:
             return True
-        words = self._words_box(self._ring())
-        room = words.height() - self._look.theme.px(ROWS_TO)
-        return any(self._state_height(state, words.width()) > room for state in GaugeState)
+        px = self._look.theme.px
+        if self.height() < px(BLOCK + 2 * LEAST_ROUND):
+            return True
+        width = self._words_box(self._ring()).width()
+        words = {self._state_words, *map(state_word, GaugeState)}
+        return any(self._lines(one, self._state_font(one, width), width) > px(BLOCK - STATE_FROM) for one in words)
 
     def paintEvent(self, event: QPaintEvent) -> None:
         theme, face = self._look.theme, self._face
@@ -208,8 +215,8 @@ class Gauge(QWidget):
         """The square of the ring on a full card."""
         px = self._look.theme.px
         grow = min(self.width() / px(CARD.width()), self.height() / px(CARD.height()))
-        middle = px(110) * min(max(grow, 0.8), 1.3)
-        room = min(self.height() - 2 * px(PADDING), 2 * middle - 2 * px(PADDING) + px(4))
+        middle = px(MIDDLE) * min(max(grow, 0.8), 1.3)
+        room = min(self.height() - 2 * px(MARGIN), 2 * middle - 2 * px(MARGIN))
         ring = QRectF(0, 0, room, room)
         ring.moveCenter(QPointF(self.width() - middle if self._joint.side is Side.RIGHT else middle, self.height() / 2))
         return ring
@@ -217,25 +224,30 @@ class Gauge(QWidget):
     def _words_box(self, ring: QRectF) -> QRectF:
         """Where the words of a full card are, beside its ring."""
         px = self._look.theme.px
-        words = QRectF(self.rect()).adjusted(px(22), px(PADDING), -px(22), -px(PADDING))
+        words = QRectF(px(PADDING), (self.height() - px(BLOCK - 4)) / 2, self.width() - 2 * px(PADDING), px(BLOCK))
         if self._joint.side is Side.RIGHT:
             words.setRight(min(ring.left() - px(16), words.left() + px(WIDEST)))
         else:
             words.setLeft(ring.right() + px(16))
             words.setRight(min(words.right(), words.left() + px(WIDEST)))
-        return words.adjusted(0, 0, 0, px(4))
+        return words
 
-    def _state_font(self, state: GaugeState) -> QFont:
-        is_short = state in (GaugeState.NOW, GaugeState.OPEN)
-        weight = REGULAR if state is GaugeState.OPEN else SEMIBOLD
-        return self._look.theme.font(20 if is_short else 16 if state in CLOSED else 14, weight)
+    @property
+    def _state_words(self) -> str:
+        return self._face.note if self._face.state is GaugeState.NEEDS else state_word(self._face.state)
 
-    def _state_height(self, state: GaugeState, width: float) -> int:
-        """How high the words of a state are in their lines."""
-        px = self._look.theme.px
-        room = QRect(0, 0, round(width) - px(38 if state in CLOSED else 26), 1000)
-        words = QFontMetrics(self._state_font(state)).boundingRect(room, STATE_FLAGS, state_word(state))
-        return max(px(28), words.height())
+    def _state_font(self, words: str, width: float) -> QFont:
+        """The largest in which the words have two lines' room; every state in semibold but the quiet ones."""
+        theme = self._look.theme
+        is_quiet = self._face.state in (GaugeState.OPEN, GaugeState.NEEDS)
+        fonts = [theme.font(size, REGULAR if is_quiet else SEMIBOLD) for size in STATE_SIZES]
+        room = theme.px(BLOCK - STATE_FROM)
+        return next((font for font in fonts if self._lines(words, font, width) <= room), fonts[-1])
+
+    def _lines(self, words: str, font: QFont, width: float) -> int:
+        """How high the words are in their lines, beside the largest mark of a state."""
+        room = QRect(0, 0, round(width) - self._look.theme.px(38), 1000)
+        return QFontMetrics(font).boundingRect(room, STATE_FLAGS, words).height()
 
     def _paint_full(self, painter: QPainter, part: QRect) -> None:
         ring = self._ring()
@@ -281,7 +293,7 @@ class Gauge(QWidget):
     def _paint_absent(self, painter: QPainter) -> None:
         theme = self._look.theme
         px = theme.px
-        words = QRectF(self.rect()).adjusted(px(22), px(PADDING), -px(22), -px(PADDING / 2))
+        words = QRectF(self.rect()).adjusted(px(PADDING), px(24), -px(PADDING), -px(10))
         if self.is_brief:
             words.adjust(0, -px(8), 0, 0)
         self._paint_name(painter, words)
@@ -374,14 +386,16 @@ class Gauge(QWidget):
                 required = short
                 painter.setFont(self._fitting(short, 14, room, REGULAR))
             painter.drawText(line, Qt.AlignmentFlag.AlignVCenter | Qt.AlignmentFlag.AlignRight, required)
-            top += px(ROW)
+            top += px(ROW_EVERY)
+        painter.setPen(theme.pen(c.line, 1))
+        rule = words.top() + px(RULE)
+        painter.drawLine(QPointF(words.left(), rule), QPointF(words.right(), rule))
 
     def _paint_state(self, painter: QPainter, words: QRectF) -> None:
         theme, face = self._look.theme, self._face
         c, px = theme.colours, theme.px
-        word, icon = state_word(face.state), _ICONS[face.state]
-        height = self._state_height(face.state, words.width())
-        line = QRectF(words.left(), words.bottom() - height, words.width(), height)
+        word, icon = self._state_words, _ICONS[face.state]
+        line = words.adjusted(0, px(STATE_FROM), 0, 0)
         x = line.left()
         if icon is not None:
             side = px(28) if face.state in CLOSED else px(20)
@@ -395,13 +409,13 @@ class Gauge(QWidget):
             else:
                 paint_icon(painter, icon, mark.translated(-px(4) if face.state is GaugeState.NOW else 0, 0), c.ink)
             x += side + (px(10) if face.state in CLOSED else px(6))
-        painter.setPen(QColor(c.ink2 if face.state is GaugeState.OPEN else c.ink))
-        painter.setFont(self._state_font(face.state))
+        painter.setPen(QColor(c.ink2 if face.state in (GaugeState.OPEN, GaugeState.NEEDS) else c.ink))
+        painter.setFont(self._state_font(word, words.width()))
         painter.drawText(QRectF(x, line.top(), line.right() - x + 1, line.height()), STATE_FLAGS, word)
 
     def _paint_state_word(self, painter: QPainter, place: QRectF) -> None:
         theme, state = self._look.theme, self._face.state
-        word, is_open = state_word(state), state is GaugeState.OPEN
+        word, is_open = self._state_words, state in (GaugeState.OPEN, GaugeState.NEEDS)
         is_short = state in (GaugeState.NOW, GaugeState.OPEN)
         painter.setPen(QColor(theme.colours.ink2 if is_open else theme.colours.ink))
         longest = word if is_short else max(word.split(), key=len, default="")
@@ -453,6 +467,7 @@ _ICONS: dict[GaugeState, Icon | None] = {
     GaugeState.CENTRE: Icon.CHECK,
     GaugeState.PLATEAU: Icon.INFO,
     GaugeState.LOOSE: Icon.WARNING,
+    GaugeState.NEEDS: Icon.INFO,
     GaugeState.ABSENT: None,
 }
 
@@ -466,5 +481,6 @@ def state_word(state: GaugeState) -> str:
         GaugeState.CENTRE: tr("Enough movement for the centre"),
         GaugeState.PLATEAU: tr("uncertainty no longer falls"),
         GaugeState.LOOSE: tr("not a hinge"),
+        GaugeState.NEEDS: "",
         GaugeState.ABSENT: "",
     }[state]

@@ -18,6 +18,7 @@ SILENT_FROM_S = 1.0  # shorter is the radio's hiccup, and counts as loss
 class TileState(Enum):
     FINE = auto()
     LOW_BATTERY = auto()
+    MISPLACED = auto()
     LOSS = auto()
     SILENT = auto()
     QUIET = auto()
@@ -29,7 +30,8 @@ class SensorTile:
     """What is known of the sensor at one site. `name` is the sensor's own; `battery` and `lost_share` 0 to 1.
 
     `is_awaited`: none is known to be worn here, the free motion is still to show it. `quiet`: why it is to send
-    nothing; not `is_loss_seen`: nobody can see what is lost of it.
+    nothing; not `is_loss_seen`: nobody can see what is lost of it. `moves_like`: the place whose sensor it moves like,
+    where that is another one's.
     """
 
     site: Site
@@ -43,6 +45,7 @@ class SensorTile:
     is_awaited: bool = False
     quiet: Quiet | None = None
     is_loss_seen: bool = True
+    moves_like: Site | None = None
 
     @property
     def state(self) -> TileState:
@@ -53,6 +56,8 @@ class SensorTile:
             return TileState.SILENT
         if self.quiet is not None:
             return TileState.QUIET
+        if self.moves_like is not None:
+            return TileState.MISPLACED
         if self.lost_share > LOST_SHARE:
             return TileState.LOSS
         if self.battery is not None and self.battery < LOW:
@@ -73,6 +78,8 @@ class SensorTile:
                 return tr("no signal {seconds} s").format(seconds=int(self.silent_s))
             case TileState.QUIET:
                 return quiet_words(self.quiet)
+            case TileState.MISPLACED if self.moves_like is not None:
+                return tr("moves like {site}").format(site=name_of(self.moves_like))
             case TileState.LOSS:
                 return _loss(self.lost_share)
             case TileState.LOW_BATTERY:
@@ -98,13 +105,16 @@ def sentence(tiles: Mapping[Site, SensorTile]) -> str:
     return tr("{count} sensors, all connected").format(count=len(worn))
 
 
+_MARKS = {TileState.SILENT: SensorMark.SILENT, TileState.MISPLACED: SensorMark.SWAPPED}
+
+
 def marks(tiles: Mapping[Site, SensorTile]) -> dict[Site, SensorMark]:
     """Give how the sensors look on the legs."""
     found = {}
     for site, tile in tiles.items():
         if tile.is_worn:
             look = SensorMark.LOOK if tile.is_bad else SensorMark.WORN
-            found[site] = SensorMark.SILENT if tile.state is TileState.SILENT else look
+            found[site] = _MARKS.get(tile.state, look)
     return found
 
 

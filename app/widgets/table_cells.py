@@ -68,7 +68,8 @@ class TextCell(TableCell):
     r"""A text in one or several lines ("\n"), with a mark or the chip of a leg before and smaller words behind it.
 
     `align` is LEFT, RIGHT or CENTRE, `tone` the token of the text's colour. `wraps`: it asks for the room of its
-    longest word only. `spoken` represents its words where these alone would not be understood.
+    longest word only. `small_yields`: it asks for no room for its small words, which are cut where there is none.
+    `spoken` represents its words where these alone would not be understood.
     """
 
     text: str = ""
@@ -81,6 +82,7 @@ class TextCell(TableCell):
     side: Side | None = None
     span: int = 1
     wraps: bool = False
+    small_yields: bool = False
     spoken: str = ""
 
     @property
@@ -93,8 +95,8 @@ class TextCell(TableCell):
         return self.spoken or self.words
 
     def width(self, theme: Theme) -> int:
-        parts = (self._mark_width(theme), self._chip_width(theme), self._text_width(theme), self._small_width(theme))
-        return sum(parts)
+        small = 0 if self.small_yields else self._small_width(theme)
+        return self._mark_width(theme) + self._chip_width(theme) + self._text_width(theme) + small
 
     def height(self, theme: Theme) -> int:
         return theme.px(ONE_LINE) + self.text.count("\n") * theme.px(LINE)
@@ -134,7 +136,10 @@ class TextCell(TableCell):
     def _paint_small(self, painter: QPainter, room: QRectF, theme: Theme) -> None:
         painter.setFont(theme.font(SMALL))
         painter.setPen(QColor(theme.colours.ink2))
-        painter.drawText(room, int(self._way | MIDDLE), self.small)
+        small = self.small
+        if self.small_yields:
+            small = QFontMetrics(theme.font(SMALL)).elidedText(small, Qt.TextElideMode.ElideRight, int(room.width()))
+        painter.drawText(room, int(self._way | MIDDLE), small)
 
     @property
     def _way(self) -> Qt.AlignmentFlag:

@@ -142,6 +142,8 @@ class TileWidget(QWidget):
         icon = Icon.WAVE if self._tile.is_moving else Icon.STILL
         if state is TileState.SILENT:
             icon = Icon.SILENT
+        elif state is TileState.MISPLACED:
+            icon = Icon.SWAP
         if state is TileState.NOT_WORN or (self._is_compact and state is not TileState.FINE):
             return
         middle = self.height() / 2 if self._is_compact else self._chip().center().y()
@@ -152,7 +154,11 @@ class TileWidget(QWidget):
         side = px(18)
         if state is not TileState.QUIET:
             paint_icon(painter, icon, QRectF(self.width() - px(9) - side, middle - side / 2, side, side), ink)
-        if not self._is_compact and state is not TileState.SILENT and self._tile.battery is not None:
+        if (
+            not self._is_compact
+            and state not in (TileState.SILENT, TileState.MISPLACED)
+            and self._tile.battery is not None
+        ):
             cell = QRectF(self._marks_left(), middle - px(7), px(BATTERY_WIDTH), px(14))
             paint_battery(painter, cell, self._tile.battery, self._look.theme, ink)
 
@@ -186,6 +192,8 @@ class TileWidget(QWidget):
             return words
         if self._tile.state is TileState.LOW_BATTERY and self._tile.battery is not None:
             return f"{self._tile.battery * 100:.0f} %"
+        if self._tile.moves_like is not None:
+            return name_of(self._tile.moves_like)
         return words
 
     def _name_font(self) -> QFont:

@@ -67,7 +67,7 @@ class Wizard(QWidget):
         self._demonstration: Visit | None = None  # that waits for its patient
         self._closing: list[Visit] = []  # their threads end by themselves
         self._steps: dict[StepId, Step] = {}
-        self._current = StepId.PATIENT
+        self._current = self._offering = StepId.PATIENT  # `_offering`: whose offer to undo the toast shows
         self._ticks = 0
         self._to_resume: UUID | None = None  # a session that waits for what visits before still save
         self._deaf_until_s = 0.0
@@ -177,7 +177,7 @@ class Wizard(QWidget):
         shell.bar.back_pressed.connect(self._on_back)
         shell.bar.pressed.connect(self._on_bar_pressed)
         shell.bar.sound_pressed.connect(self._on_sound_pressed)
-        shell.toast.undone.connect(self._on_undo)
+        shell.toast.undone.connect(self._on_offer_undone)
         shell.banner.acted.connect(self._on_new_state_requested)
         shell.room_changed.connect(self._on_room_changed)
         self._keys.pressed.connect(self.act_on)
@@ -410,11 +410,21 @@ class Wizard(QWidget):
         self.left.emit()
 
     def _on_undo(self) -> None:
-        self.shell.toast.hide()
-        if self._steps:
+        """Take back what the toast offers, else what the current step can."""
+        if self.shell.toast.isVisible():
+            self.shell.toast.undo()
+        elif self._steps:
             self._steps[self._current].undo()
 
+    def _on_offer_undone(self) -> None:
+        """Let the step that offered it take it back, though it may be out of sight by now."""
+        if self._offering in self._steps:
+            self._steps[self._offering].undo()
+
     def _on_offered(self, what: str) -> None:
+        step = self.sender()
+        assert isinstance(step, Step)
+        self._offering = step.id
         self.shell.toast.offer(what)
 
     def _on_demonstration_required(self) -> None:

@@ -13,7 +13,7 @@ from app.storage.stored import PlacedSensor
 from app.system.progress import Report
 from app.widgets.sensor_tile import SILENT_FROM_S
 from app.wizard.sensor_sync import SensorSync
-from app.wording.body import name_of
+from app.wording.body import name_of, spelled_out
 from app.wording.translation import capitalised, filled, joined, later, tr
 from app.workers.background import Background, Work
 from core.body import LEG_JOINTS, LEG_SITES, Joint, Side, Site, hip_of
@@ -244,7 +244,7 @@ class WornSensors(QObject):
     def doubt_in_words(self) -> tuple[str, str]:
         """Which positions the motion contradicts, and which angles that costs, in two sentences."""
         doubted = [site for site in Site if site in self.detected]
-        names = [name_of(site) for site in doubted]
+        names = [spelled_out(site) for site in doubted]
         what = tr("{first} and {last} look swapped.") if len(names) == 2 else tr("{sites} look mixed up.")
         what = what.format(sites=joined(names), first=names[0], last=names[-1])
         wrong = [name_of(joint) for joint in self.joints if not self.detected.keys().isdisjoint(_ends(joint))]

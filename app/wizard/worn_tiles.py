@@ -20,10 +20,12 @@ def worn_tiles(sensors: WornSensors) -> dict[Site, SensorTile]:
     is_awaited = sensors.is_left_to_motion and not worn
     has_pelvis = Site.PELVIS in worn or (is_awaited and Site.PELVIS in sensors.places)
     sites = tuple(Site) if has_pelvis else LEG_SITES
-    return {site: _tile(site, worn.get(site), status, is_awaited) for site in sites}
+    return {site: _tile(site, worn.get(site), status, is_awaited, sensors.detected.get(site)) for site in sites}
 
 
-def _tile(site: Site, sensor: str | None, status: "Mapping[str, SensorStatus]", is_awaited: bool) -> SensorTile:
+def _tile(
+    site: Site, sensor: str | None, status: "Mapping[str, SensorStatus]", is_awaited: bool, moves_like: Site | None
+) -> SensorTile:
     if sensor is None or sensor not in status:
         nothing = SensorTile(site, sensor or "", None, 0.0, 0.0, 0.0, is_moving=False, is_worn=False)
         return replace(nothing, is_awaited=is_awaited)
@@ -39,4 +41,5 @@ def _tile(site: Site, sensor: str | None, status: "Mapping[str, SensorStatus]", 
         is_worn=True,
         quiet=received.details.quiet,
         is_loss_seen=received.details.is_loss_seen,
+        moves_like=moves_like,
     )

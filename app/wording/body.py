@@ -35,6 +35,19 @@ def name_of(part: Site | Joint) -> str:
     return names[part]
 
 
+def spelled_out(site: Site) -> str:
+    """Name a site where there is room: "left thigh"."""
+    return {
+        Site.LEFT_THIGH: tr("left thigh"),
+        Site.LEFT_SHANK: tr("left shank"),
+        Site.LEFT_FOOT: tr("left foot"),
+        Site.RIGHT_THIGH: tr("right thigh"),
+        Site.RIGHT_SHANK: tr("right shank"),
+        Site.RIGHT_FOOT: tr("right foot"),
+        Site.PELVIS: tr("pelvis"),
+    }[site]
+
+
 def side_name(side: Side) -> str:
     """Name a side inside a sentence: "left"."""
     return tr("left") if side is Side.LEFT else tr("right")

@@ -22,7 +22,16 @@ from app.system.progress import Report
 from app.wording.translation import tr, tr_n
 from app.workers.background import Background
 from app.workers.jobs import Failed, Job, JobThread, nothing, weak
-from app.workers.library_state import Closed, Joined, LibraryPlace, NotOpened, OpenedState, Reopened, Unlocked
+from app.workers.library_state import (
+    Closed,
+    Joined,
+    KeptLogIn,
+    LibraryPlace,
+    NotOpened,
+    OpenedState,
+    Reopened,
+    Unlocked,
+)
 from app.workers.refusals import Refusal, nothing_open, refusal_of
 
 if TYPE_CHECKING:
@@ -57,10 +66,11 @@ class LibraryController(QObject):
     def __init__(self, parent: QObject | None = None, seen: Path | None = None) -> None:
         super().__init__(parent)
         self._seen = seen
-        self._calls = JobThread(self, lambda: self._holder.do_left_over(), lambda: self._holder.close())
+        self._calls = JobThread(self, lambda: self._holder.do_left_over(), self._end_holder)
         self._recordings = JobThread(self)
         for lane in (self._calls, self._recordings):
             lane.reported.connect(self._on_reported)
+        self._must_keep = False  # who is logged in, for the next window
         self._state: OpenedState | None = None
         self._watch: LibraryWatch | None = None
         self.gone_words: Refusal | None = None  # for whoever comes later; None: the library is where it was opened
@@ -317,21 +327,51 @@ class LibraryController(QObject):
         self._open(lambda: self._holder.create(folder, code, name, passphrase))
 
     def open_demonstration(self) -> None:
-        """Open a library of its own, gone when it is closed, with simulated patients who have no visits yet."""
-        self._open(lambda: self._holder.open_demonstration())
+        """Open a library of its own, gone when it is closed, with simulated patients who have no visits yet.
+
+        Whoever is logged in to another library stays so until `forget`: `open_kept` leads back.
+        """
+        must_keep = not self._is_locked
+        self._open(lambda: self._holder.open_demonstration(must_keep))
+
+    def open_kept(self, kept: KeptLogIn | None = None) -> None:
+        """Open the library again that the demonstration closed, or the window before this one, which `kept` it."""
+        self._open(lambda: self._holder.open_kept(kept))
+
+    @property
+    def has_kept(self) -> bool:
+        """Whether somebody is still logged in to the library that was open before the demonstration."""
+        return self._holder.kept is not None
+
+    def forget(self) -> None:
+        """Log out who is logged in behind the demonstration."""
+        self._calls.ask(Job(self._holder.forget, None, None, ref(self)))
 
     def close(self) -> None:
         """Close the library that is open; what is asked later is refused until another is."""
         self._end_library()
-        self._calls.ask(Job(lambda: self._holder.close(), None, None, ref(self)))
+        self._calls.ask(Job(lambda: self._holder.end(), None, None, ref(self)))
 
-    def finish(self) -> None:
-        """Close, and wait for all threads: for the end of the program."""
+    def finish(self, *, must_keep: bool = False) -> KeptLogIn | None:
+        """Close, and wait for all threads: for the end of the program.
+
+        `must_keep`: or of a window that another one follows. Gives what opens the library again there, unless it is
+        locked.
+        """
+        self._must_keep = must_keep and not self._is_locked
         self._ask_held()  # a recording is ended under a lock too; its row follows at the next start
         self._end_library()
         self._long.finish()
         self._calls.finish()
         self._recordings.finish()
+        return self._holder.kept if self._must_keep else None
+
+    def _end_holder(self) -> None:
+        """Close at the end of the thread."""
+        if self._must_keep:
+            self._holder.keep()
+        else:
+            self._holder.end()
 
     def _open(self, opening: Callable[[], OpenedState | NotOpened]) -> None:
         self._end_library()

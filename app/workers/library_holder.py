@@ -17,7 +17,7 @@ from app.storage.clinic.joining import is_station, join, new_station
 from app.storage.clinic.journal_store import PlaceMissingError, PlaceUnconfirmedError
 from app.storage.clinic.moving import Moved, bring_back_here, give_up_early, move_to_server
 from app.storage.clinic.station import server_name, station_of, with_password
-from app.storage.data_key import DataKey
+from app.storage.data_key import DataKey, LibraryLockedError
 from app.storage.error_figures import figures_of
 from app.storage.key_change import ChangedKey, change_data_key, refuse_change
 from app.storage.keyring_slot import is_there_a_keyring, open_remembered
@@ -32,7 +32,16 @@ from app.storage.stored import LibraryError, Operator, Role, ServerSilentError
 from app.system.progress import Report
 from app.wording.translation import tr
 from app.workers.library_opening import demonstration, let_keyring_remember, tidy
-from app.workers.library_state import Closed, Joined, LibraryPlace, NotOpened, OpenedState, Reopened, Unlocked
+from app.workers.library_state import (
+    Closed,
+    Joined,
+    KeptLogIn,
+    LibraryPlace,
+    NotOpened,
+    OpenedState,
+    Reopened,
+    Unlocked,
+)
 from app.workers.refusals import NothingOpenError, Refusal, nothing_open, refusal_of
 from core.verdicts.sigmas import PUBLISHED, use
 
@@ -47,6 +56,7 @@ class LibraryHolder:
     def __init__(self, seen: Path | None) -> None:
         self.long_work, self._seen_folder = Lock(), seen
         self.seen: SeenLibraries | None = None
+        self.kept: KeptLogIn | None = None
         self._library: OpenedLibrary | None = None
         self._ends = ExitStack()
         self._is_to_be_tidied = False
@@ -60,6 +70,7 @@ class LibraryHolder:
     def _open(self, opening: Callable[[], Opening], station: Path | None = None) -> OpenedState | NotOpened:
         """Open a library; `station`: the folder in which one may be, to work in without its server."""
         self.close()
+        self.forget()
         try:
             with ExitStack() as ends:
                 library, recovery_key = opening()
@@ -110,6 +121,19 @@ class LibraryHolder:
             return logged_in(folder, data_key, code), ""
 
         return self._open(opening)
+
+    def open_kept(self, kept: KeptLogIn | None) -> OpenedState | NotOpened:
+        """Open the library that was closed for a moment; `kept`: by the window before this one."""
+        kept, self.kept = kept or self.kept, None
+
+        def opening() -> Opening:
+            if kept is None:
+                raise LibraryLockedError("The library is locked", "Type the passphrase, then try again")
+            again = open_away if kept.is_away else logged_in
+            return again(kept.folder, kept.data_key, kept.code), ""
+
+        state = self._open(opening)
+        return replace(state, is_continued=True) if isinstance(state, OpenedState) else state
 
     def open_recovered(self, folder: Path, recovery_key: str, code: str, passphrase: str) -> OpenedState | NotOpened:
         def opening() -> Opening:
@@ -216,8 +240,12 @@ class LibraryHolder:
             before.data_key.wipe()
         return library
 
-    def open_demonstration(self) -> OpenedState | NotOpened:
-        self.close()
+    def open_demonstration(self, must_keep: bool) -> OpenedState | NotOpened:
+        """Open the demonstration; `must_keep`: and keep who is logged in, for the time after it."""
+        if must_keep:
+            self.keep()
+        else:
+            self.end()
         try:
             with ExitStack() as ends:
                 folder = Path(ends.enter_context(tempfile.TemporaryDirectory(prefix="gaitwright-demo-")))
@@ -233,6 +261,27 @@ class LibraryHolder:
             self._library, self._is_to_be_tidied = None, False
             self._ends.close()
         return Closed()
+
+    def keep(self) -> None:
+        """Close the library, and move its key to what opens it again; of a demonstration, what was kept stays."""
+        library = self._library
+        operator = library.library.operator if library is not None else None
+        self.close()
+        if library is not None and operator is not None and library.data_key:
+            data_key = DataKey()
+            data_key.refill(library.data_key)
+            self.kept = KeptLogIn(library.keys_folder, operator.code, data_key, library.away_from is not None)
+
+    def forget(self) -> None:
+        """Wipe the key of whoever is logged in behind the demonstration."""
+        kept, self.kept = self.kept, None
+        if kept is not None:
+            kept.data_key.wipe()
+
+    def end(self) -> Closed:
+        """Close the library, and keep nothing that opens it."""
+        self.forget()
+        return self.close()
 
     def _look_back(self, library: OpenedLibrary) -> Rollback | None:
         if self._seen_folder is None:

@@ -9,6 +9,7 @@ from uuid import UUID
 from app.workers.refusals import Refusal
 
 if TYPE_CHECKING:
+    from app.storage.data_key import DataKey
     from app.storage.login_delay import LoginDelay
     from app.storage.opened import OpenedLibrary
     from app.storage.recovery import Interrupted
@@ -42,6 +43,8 @@ class OpenedState:
         Why sessions that were made without the clinic's server are still on this computer alone.
     is_passphrase_given
         Whether somebody else chose the operator's passphrase: an own one comes before anything else.
+    is_continued
+        It was opened again for whoever was logged in: all that is asked first was asked before.
     """
 
     library: "OpenedLibrary"
@@ -56,6 +59,7 @@ class OpenedState:
     brought_from_away: int = 0
     still_away: Refusal | None = None
     is_passphrase_given: bool = False
+    is_continued: bool = False
 
     @property
     def is_demonstration(self) -> bool:
@@ -77,6 +81,19 @@ class LibraryPlace:
     has_keyring: bool
     delay: "LoginDelay"
     server: str | None = None
+
+
+@dataclass(frozen=True, slots=True)
+class KeptLogIn:
+    """What opens a library again that was closed for a moment: in memory only, for whoever was logged in.
+
+    `is_away`: without the clinic's server, whose station is in `folder`.
+    """
+
+    folder: Path
+    code: str
+    data_key: "DataKey" = field(repr=False)
+    is_away: bool
 
 
 class NotOpened(NamedTuple):

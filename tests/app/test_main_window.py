@@ -21,6 +21,7 @@ from app.home.login.controller import SHORTEST
 from app.home.settings.settings_page import SettingsPage
 from app.main_window import MainWindow
 from app.storage import keys
+from app.storage.data_key import DataKey
 from app.storage.database.ids import uuid7
 from app.storage.journal.disk import Room
 from app.storage.journal.payloads import Belonging
@@ -30,7 +31,7 @@ from app.storage.layout import DATABASE_VARIABLE, KEYS, STATION, default_folder
 from app.storage.library import Library
 from app.storage.login_delay import LoginDelay
 from app.storage.slots import Cost
-from app.storage.stored import Operator, Role
+from app.storage.stored import LibraryError, Operator, Role
 from app.system.progress import Report
 from app.system.settings import Scheme, Settings
 from app.theme.colours import DARK, LIGHT
@@ -221,6 +222,122 @@ def test_who_asks_for_the_demonstration_while_a_library_opens_gets_it_and_no_que
     assert window.controller.state is not None
     assert window.controller.state.is_demonstration
     assert shown == [window.entry.waiting]
+
+
+def in_demonstration(qtbot: QtBot, window: MainWindow) -> None:
+    """Open it from home, as by its button."""
+    window.open_demonstration()
+    qtbot.waitUntil(
+        lambda: window.screens.currentWidget() is window.home and window.controller.state is not None, timeout=WAIT_MS
+    )
+    assert window.controller.state is not None
+    assert window.controller.state.is_demonstration
+
+
+def test_who_leaves_the_demonstration_is_in_the_own_library_without_a_passphrase(
+    qtbot: QtBot, open_window: Open, folder: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr("app.demonstration.patients.simulated_patients", lambda _now: ())  # nobody waits for visits
+    window = open_window(folder)
+    logged_in(qtbot, window)
+    assert window.home is not None
+    assert window.entry is not None
+    in_demonstration(qtbot, window)
+    shown: list[QWidget] = []
+    window.entry.shown.connect(shown.append)
+    window.home.own_library_requested.emit()
+    assert window.home.state is None  # nothing of the demonstration is left in sight
+    qtbot.waitUntil(lambda: window.home is not None and window.home.page.patients.line is not None, timeout=WAIT_MS)
+    assert window.screens.currentWidget() is window.home
+    assert SECRET_CODE in words_in_sight(window)
+    assert shown == [window.entry.waiting]  # and no log-in
+
+
+def test_five_minutes_without_anybody_log_out_behind_the_demonstration(
+    qtbot: QtBot, open_window: Open, folder: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr("app.demonstration.patients.simulated_patients", lambda _now: ())
+    window = open_window(folder)
+    logged_in(qtbot, window)
+    in_demonstration(qtbot, window)
+    assert window.home is not None
+    assert window.entry is not None
+    window.lock()  # as `idle` asks for it
+    qtbot.waitUntil(lambda: not window.controller.has_kept, timeout=WAIT_MS)
+    assert window.screens.currentWidget() is window.home  # simulated patients are shown on
+    window.home.own_library_requested.emit()
+    assert window.screens.currentWidget() is window.entry.log_in
+
+
+def test_a_demonstration_that_does_not_open_leaves_the_library_open_and_is_reported(
+    qtbot: QtBot, open_window: Open, folder: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    def refuse(_folder: Path) -> None:
+        raise LibraryError("There is no room", "Make some")
+
+    monkeypatch.setattr("app.workers.library_holder.demonstration", refuse)
+    window = open_window(folder)
+    logged_in(qtbot, window)
+    assert window.home is not None
+    with qtbot.waitSignal(window.controller.opened, timeout=WAIT_MS):
+        window.open_demonstration()
+    assert window.screens.currentWidget() is window.home
+    assert "There is no room." in words_in_sight(window)
+
+
+def test_another_language_opens_the_window_again_where_it_was_and_without_a_passphrase(
+    qtbot: QtBot, open_window: Open, folder: Path
+) -> None:
+    window = open_window(folder)
+    logged_in(qtbot, window)
+    window.close()
+    kept = window.finish(must_keep=True)
+    assert kept is not None
+    following = open_window(folder)
+    following.go_on(kept)
+    qtbot.waitUntil(lambda: following.controller.state is not None, timeout=WAIT_MS)
+    assert following.home is not None
+    assert following.screens.currentWidget() is following.home
+    assert isinstance(following.home.current, SettingsPage)
+    following.idle.lock_now()  # which asks for the passphrase as ever
+    assert following.is_covered
+    qtbot.waitUntil(lambda: not _key_of(following), timeout=WAIT_MS)
+
+
+def test_whoever_changes_the_language_stays_logged_in(
+    qtbot: QtBot, qapp: QApplication, folder: Path, settings: Settings, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(main_window, "default_folder", lambda: folder)
+    seen: list[str] = []
+
+    def window() -> MainWindow:
+        (shown,) = [one for one in qapp.topLevelWidgets() if isinstance(one, MainWindow) and one.isVisible()]
+        return shown
+
+    def first() -> int:
+        logged_in(qtbot, window())
+        settings.language = "de"
+        return main_window.IN_ANOTHER_LANGUAGE
+
+    def second() -> int:
+        qtbot.waitUntil(lambda: window().controller.state is not None, timeout=WAIT_MS)
+        seen.append(words_in_sight(window()))
+        return 0
+
+    turns = iter((first, second))
+    monkeypatch.setattr(QApplication, "exec", lambda *_: next(turns)())
+    try:
+        code, kept = main_window._show_window(qapp, settings, [], None)
+        assert (code, kept is not None) == (main_window.IN_ANOTHER_LANGUAGE, True)
+        assert main_window._show_window(qapp, settings, [], kept) == (0, None)
+    finally:
+        use_language("en")
+    assert "Einstellungen" in seen[0]
+
+
+def _key_of(window: MainWindow) -> DataKey | None:
+    assert window.controller.state is not None
+    return window.controller.state.library.data_key
 
 
 def test_a_recovery_key_that_is_lost_is_made_again(qtbot: QtBot, open_window: Open, folder: Path) -> None:

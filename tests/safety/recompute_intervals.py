@@ -77,7 +77,7 @@ STRAPPED_AGAIN: Mapping[str, Spread] = {
     "foot pitch": _always(2.0),
     "heel rise": _always(3.2),
     "foot flat": _always(4.8),
-    "knee shape": _always(1.2, 4.0),
+    "knee shape": _always(1.2, 4.3),
     "knee straightening": _always(2.4),
     "knee height": _always(2.2, 4.0),
     "segment height": _always(2.2, 4.0),

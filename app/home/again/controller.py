@@ -1,7 +1,7 @@
 """What leads to the page on which sessions are analysed again, and what is done with those that are ticked."""
 
 import datetime
-from collections.abc import Sequence
+from collections.abc import Collection, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING
 from uuid import UUID
@@ -61,6 +61,7 @@ class AnalysingAgain(QObject):
         self._required: UUID | None = None
         self._out = Path()
         self.is_working = False
+        self.is_of_library = False  # what was asked for last: a table over all sessions, from the page that asks it
         self.page = AnalyseAgainPage(look)
         self.page.changed.connect(self.changed)
 
@@ -75,7 +76,7 @@ class AnalysingAgain(QObject):
 
     def begin(self, patient_id: UUID | None) -> None:
         """Show all sessions, with those of this patient ticked, else those that this version has not analysed."""
-        self._required, self._failures = patient_id, {}
+        self._required, self._failures, self.is_of_library = patient_id, {}, False
         self.page.forget()
         self._read()
 
@@ -97,9 +98,15 @@ class AnalysingAgain(QObject):
             self.page.window(), tr("Choose a folder for results and table"), _proposed, self._on_folder
         )
 
-    def write(self, out: Path) -> None:
-        """Analyse those that are ticked into a folder of their own each, with a table over all of them."""
-        ids, self._out = frozenset(self.page.ticked), out
+    def make_table(self) -> None:
+        """Ask for a folder, then analyse all sessions of the library into it, with a table over them."""
+        self._dialog = ask_for_new_folder(
+            self.page.window(), tr("Choose a folder for results and table"), _proposed, self._on_table_folder
+        )
+
+    def write(self, out: Path, ids: Collection[UUID] | None) -> None:
+        """Analyse these sessions, or all, into a folder of their own each, with a table over all of them."""
+        self._out, self.is_of_library = out, ids is None
 
         def work(opened: "OpenedLibrary", report: Report) -> "BatchResult":
             from app.cohort.batch.analysed_folder import AnalysisChoices
@@ -122,7 +129,8 @@ class AnalysingAgain(QObject):
         """End it; what was done until now is kept."""
         self._controller.stop_long()
         self._end(tr("Stopped."), tr("Sessions analysed so far are kept."))
-        self._read()
+        if not self.is_of_library:
+            self._read()
 
     def _begin(self, title: str) -> None:
         self.is_working = True
@@ -187,7 +195,10 @@ class AnalysingAgain(QObject):
         self._end(what, remedy)
 
     def _on_folder(self, folder: str) -> None:
-        self.write(Path(folder))
+        self.write(Path(folder), frozenset(self.page.ticked))
+
+    def _on_table_folder(self, folder: str) -> None:
+        self.write(Path(folder), None)
 
 
 def _proposed(place: Path) -> str:

@@ -35,11 +35,14 @@ class QuestionsPage(Themed):
     -------
     table_requested
         Another table is to be chosen.
+    making_requested
+        A table is to be made from the library.
     question_changed
         What is asked now, a `GroupQuestion`.
     """
 
     table_requested = Signal()
+    making_requested = Signal()
     question_changed = Signal(object)
 
     def __init__(self, look: ThemeNotifier) -> None:
@@ -51,7 +54,8 @@ class QuestionsPage(Themed):
         self.choose_table = Button(look, tr("Choose a table"), ButtonKind.SECONDARY, Icon.FOLDER)
         self.refusal = Notice(look, size=16)
         self._empty = Card(look, padding=20, spacing=16)
-        self.first_table = Button(look, tr("Choose a table"), ButtonKind.PRIMARY, Icon.FOLDER, height=56)
+        self.make_table = Button(look, tr("Create a table from this library"), ButtonKind.PRIMARY, Icon.PLAY, height=56)
+        self.first_table = Button(look, tr("Choose a table"), ButtonKind.SECONDARY, Icon.FOLDER, height=56)
         self._controls = QWidget()
         self.measure = Choice(look, tr("Measure"))
         self.grouping = Choice(look, tr("Group by"))
@@ -96,7 +100,7 @@ class QuestionsPage(Themed):
         )
 
     def focus(self) -> None:
-        (self.first_table if not self._empty.isHidden() else self.measure).setFocus()
+        (self.make_table if not self._empty.isHidden() else self.measure).setFocus()
 
     def set_room(self, width: float) -> None:
         """Lay out for a page of this width, in px of the design."""
@@ -195,12 +199,16 @@ class QuestionsPage(Themed):
         head.addWidget(self._title)
         head.addWidget(self._name, 1)
         head.addWidget(self.choose_table)
-        how = tr(
-            "To combine many sessions into one table without names, run gaitwright batch FOLDER --out "
-            "OUT. It writes parameters.parquet into OUT. Choose that file here."
+        how = (
+            tr("A table combines many sessions without names."),
+            tr("All sessions of this library are analysed into a folder. Their results there are not encrypted."),
+            tr("For session folders run gaitwright batch FOLDER --out OUT, then choose OUT/parameters.parquet here."),
         )
         self._empty.column.addWidget(Text(look, tr("No table yet"), size=26, weight=SEMIBOLD, wraps=True))
-        self._empty.column.addWidget(Text(look, how, size=16, tone="ink2", wraps=True))
+        for words in how[:2]:
+            self._empty.column.addWidget(Text(look, words, size=16, tone="ink2", wraps=True))
+        self._empty.column.addWidget(self.make_table, 0, Qt.AlignmentFlag.AlignLeft)
+        self._empty.column.addWidget(Text(look, how[2], size=16, tone="ink2", wraps=True))
         self._empty.column.addWidget(self.first_table, 0, Qt.AlignmentFlag.AlignLeft)
         self._first_half, self._second_half = (
             QBoxLayout(QBoxLayout.Direction.LeftToRight),
@@ -239,6 +247,7 @@ class QuestionsPage(Themed):
         self._column.addStretch(1)
 
     def _connect(self) -> None:
+        self.make_table.clicked.connect(self.making_requested)
         self.choose_table.clicked.connect(self.table_requested)
         self.first_table.clicked.connect(self.table_requested)
         self.measure.currentIndexChanged.connect(self._on_changed)

@@ -51,11 +51,14 @@ class Questions(QObject):
         Sessions are to be analysed again.
     repeatability_requested
         The clinic's own error figures are asked for.
+    making_requested
+        A table is to be made from this library.
     """
 
     changed = Signal()
     again_requested = Signal()
     repeatability_requested = Signal()
+    making_requested = Signal()
     reported = Signal(str, str)
 
     def __init__(self, look: ThemeNotifier, settings: Settings, parent: QObject) -> None:
@@ -71,6 +74,7 @@ class Questions(QObject):
         self._writing.done.connect(self._on_written)
         self._writing.failed.connect(self._on_write_failed)
         self.page.table_requested.connect(self.choose_table)
+        self.page.making_requested.connect(self.making_requested)
         self.page.question_changed.connect(self._on_question_changed)
 
     @property

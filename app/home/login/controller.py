@@ -18,7 +18,7 @@ from app.theme.notifier import ThemeNotifier
 from app.widgets.start_pages import WorkingPage
 from app.wording.translation import tr
 from app.workers.library_controller import LibraryController
-from app.workers.library_state import Joined, LibraryPlace, OpenedState
+from app.workers.library_state import Joined, KeptLogIn, LibraryPlace, OpenedState
 
 if TYPE_CHECKING:
     from app.home.login.recovery_key_sheet import KeySheet
@@ -47,6 +47,7 @@ class Entry(QObject):
         self._given: OpenedState | None = None  # whose operator has to choose an own passphrase first
         self._key = ""  # as long as it is shown
         self._cover_of = self._tried = ""
+        self._refusal: tuple[str, str] | None = None  # of the demonstration, to be shown at home
         self._delay: LoginDelay | None = None
         self._sheet: KeySheet | None = None
         self.first_start = FirstStartPage(look, SHORTEST, _is_end_of_key)
@@ -126,6 +127,13 @@ class Entry(QObject):
         self.waiting.begin(tr("Opening the demonstration"))
         self._show(self.waiting)
         self._controller.open_demonstration()
+
+    def go_on(self, kept: KeptLogIn | None = None) -> None:
+        """Open the library again for whoever was logged in before the demonstration, or in the window before."""
+        self._tried = ""
+        self.waiting.begin(tr("Opening the library"))
+        self._show(self.waiting)
+        self._controller.open_kept(kept)
 
     def focus(self, page: QWidget) -> None:
         if isinstance(page, FirstStartPage | LogInPage | JoinPage):
@@ -266,12 +274,21 @@ class Entry(QObject):
         if not state.is_demonstration:
             self._settings.latest_operator = state.operator.code
             self._settings.latest_library = str(self._folder)
+        if state.is_continued:
+            self._go_in_again(state)
+            return
         if state.is_passphrase_given:
             self._given = state
             self.log_in.ask_for_own(state.operator.code)
             self._show(self.log_in)
             return
         self._go_on(state)
+
+    def _go_in_again(self, state: OpenedState) -> None:
+        refusal, self._refusal = self._refusal, None
+        self.entered.emit(state)
+        if refusal is not None:
+            self._controller.refused.emit(*refusal)
 
     def _on_own_chosen(self, passphrase: str) -> None:
         def change(opened: "OpenedLibrary") -> None:
@@ -310,7 +327,11 @@ class Entry(QObject):
     def _on_not_opened(self, what: str, remedy: str, _is_key: bool) -> None:
         if self._tried:
             self.log_in.refuse(f"{what} {remedy}", self._left_s(self._tried))
+        elif self._controller.has_kept:  # it was the demonstration that did not open
+            self._refusal = what, remedy
+            self.go_on()
         elif (self._folder / KEYS).exists():
+            self._refusal = None
             self.begin()
             self.show_message(what, remedy)
         else:

@@ -23,7 +23,7 @@ def curves_page(facts: Facts) -> list[Block]:
                 "As measured, with absolute angles; each leg over its own gait cycle. Axes are the same in "
                 "every report."
             ),
-            panels.band_in_words(facts, is_at_height=False),
+            panels.band_in_words(facts, has_hips=JointKind.HIP in facts.kinds),
             *(words for kind in kinds for words in panels.not_drawn(facts, kind)),
         ]
     )

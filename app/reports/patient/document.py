@@ -94,15 +94,30 @@ class ReportPreview:
         if self._known is None or not _differ_in_words_only(self._known[0], request):
             self._known = request, facts_of(request), report_data(request)
         _, facts, data = self._known
+        comparison = comparison_of(request)
         pages, at = data["pages"], data["pages_of_walk"]
-        return data | {"pages": [*pages[:at], words_page(request, facts), *pages[at + 1 :]]}
+        first = first_page(request, facts, comparison)
+        return data | {
+            "first_page": first,
+            "pages": [*pages[:at], words_page(request, facts, comparison), *pages[at + 1 :]],
+        }
 
 
 def _differ_in_words_only(one: ReportRequest, other: ReportRequest) -> bool:
     are_same = one.visit.session is other.visit.session and one.visit.analysis is other.visit.analysis
     if not (are_same and one.earlier is other.earlier and one.made_at.date() == other.made_at.date()):
         return False
-    named = ("walks", "software_version", "operator", "clinic", "paper", "course", "patient_language")
+    named = (
+        "walks",
+        "software_version",
+        "operator",
+        "clinic",
+        "paper",
+        "course",
+        "patient_language",
+        "comment_by",
+        "thin",
+    )
     return all(getattr(one, name) == getattr(other, name) for name in named)
 
 
@@ -121,7 +136,7 @@ def report_data(request: ReportRequest) -> dict[str, Any]:
     of_walk, condition = pages_of_walk(facts), request.visit.recording(request.shown).condition
     pages: list[list[Block]] = [
         *of_walk,
-        words_page(request, facts),
+        words_page(request, facts, comparison),
         *([tests] if (tests := timed_page(request, facts)) else []),
         *([comparison_page(comparison, facts)] if comparison is not None else []),
         *([alone] if (alone := not_compared_page(request)) else []),

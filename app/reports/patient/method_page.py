@@ -1,4 +1,4 @@
-"""The clinician's words, how it was measured, and where every band comes from."""
+"""The data quality in detail, how it was measured, and where every band comes from."""
 
 from collections.abc import Sequence
 from dataclasses import replace
@@ -6,21 +6,25 @@ from datetime import datetime
 
 from app.reports.blocks import Block, bullets, heading, note
 from app.reports.patient.evidence import evidence
+from app.reports.patient.first_page import is_comment_cut
 from app.reports.patient.how_measured import how_measured
+from app.reports.patient.quality_matrix import quality_matrix
 from app.reports.patient.time_page import is_evidence_beside_time, speed_class_in_words
+from app.reports.patient.what_measured import what
 from app.summary import quality
+from app.summary.comparison import Comparison
 from app.summary.facts import Facts
 from app.summary.numbers_in_words import fixed
 from app.summary.panels import why_no_band
 from app.summary.plain_text import plain, plain_lines
 from app.summary.request import ReportRequest
+from app.summary.what_stands_out import caveat, printed_findings
 from app.wording.findings import sentence
 from app.wording.recordings import with_shown_names
 from app.wording.translation import tr
 from core.findings import Finding, Severity
 from core.verdicts.norms import PUBLISHED
 
-LONG = 14  # lines of words that may not fit into what is left of the page
 # what was corrected by hand, and what changes how a number is read: reported, however mild
 REPORTED = {
     "sign_turned",
@@ -33,24 +37,33 @@ REPORTED = {
 }
 
 
-def words_page(request: ReportRequest, facts: Facts) -> list[Block]:
-    """How sure, how measured, and what the clinician states, whose box takes what is left of the page."""
-    comment = plain_lines(request.comment)
+def words_page(request: ReportRequest, facts: Facts, comparison: Comparison | None) -> list[Block]:
+    """What may be read and why, how it was measured; a comment that page one has no room for; the signature."""
+    comment = plain_lines(request.comment) if is_comment_cut(request) else []
+    words: list[Block] = (
+        [{**heading(tr("Clinical comment")), "label": "comment"}, {"kind": "comment", "lines": comment}]
+        if comment
+        else []
+    )
     return [
+        *_findings(facts, comparison),
+        *quality_matrix(facts),
         heading(tr("Method and accuracy")),
+        note(what(request, facts, comparison)),
         *([] if is_evidence_beside_time(facts) else evidence(facts)),
         *_remarks(request, facts),
         {"kind": "two_columns", "columns": list(how_measured(facts, request.software_version))},
         note(" ".join([*_sources(facts), _made(request.made_at)])),
-        heading(tr("Clinical comment")),
-        {
-            "kind": "comment",
-            "lines": comment or [tr("No comment was entered.")],
-            "is_empty": not comment,
-            "is_long": len(comment) > LONG,
-        },
+        *words,
         {"kind": "signature", "said": [tr("Name"), tr("Signature"), tr("Date")]},
     ]
+
+
+def _findings(facts: Facts, comparison: Comparison | None) -> list[Block]:
+    """What exceeds its error or a band by enough for a sentence, at most three, and one caution."""
+    found = [" ".join(filter(None, [one.stated, one.evidence])) for one in printed_findings(facts, comparison)]
+    stated = [*found, *caveat(facts, comparison)]
+    return [heading(tr("Findings")), bullets(stated)] if stated else []
 
 
 def _remarks(request: ReportRequest, facts: Facts) -> list[Block]:

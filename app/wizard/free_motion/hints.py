@@ -1,13 +1,13 @@
 """Wording that asks for the motion that is missing, and what stopping now costs."""
 
 import math
-from collections.abc import Collection
+from collections.abc import Collection, Mapping
 from dataclasses import dataclass, replace
 
 from app.theme.icons import Icon
 from app.widgets.gauge import AXIS_FROM_DEG, CENTRE_FROM_MM, CLOSED, GaugeState, gauge_face, two_digits
 from app.widgets.hint import Hint
-from app.wording.body import name_of
+from app.wording.body import name_of, spelled_out
 from app.wording.translation import capitalised, tr, tr_n
 from core.body import Joint, Segment, Side, Site
 from core.live.excitation import HUMAN, PROSTHESIS, ExcitationState, Missing, Movement, Required
@@ -154,6 +154,14 @@ def absent_note(joint: Joint, worn: Collection[Site], without_ankle: Collection[
     sites = [name_of(site) for site in missing]
     both = tr("{first} and {last}").format(first=sites[0], last=sites[-1]) if len(sites) == 2 else sites[0]
     return reported.format(sites=both, joint=name_of(joint))
+
+
+def needed_note(joint: Joint, detected: Mapping[Site, Site]) -> str:
+    """Say which sensor a joint lacks while places look swapped; empty where both of its ends are as stated."""
+    swapped = [site for site in (joint.proximal, joint.distal) if site in detected]
+    if len(swapped) > 1:
+        return tr("Needs both sensors")
+    return tr("Needs the {site} sensor").format(site=spelled_out(swapped[0])) if swapped else ""
 
 
 @dataclass(frozen=True, slots=True)

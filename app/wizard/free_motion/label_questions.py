@@ -49,12 +49,12 @@ class LabelQuestions(QObject):
     @property
     def is_understood(self) -> bool:
         """Whether `words` say what was understood, which can be undone by the answer 1."""
-        return self._side.reported is not None and not self.is_in_doubt
+        return self._side.reported is not None
 
     @property
     def words(self) -> Words:
-        """What is asked and what can be answered, or what was understood; empty while there is nothing."""
-        return (*self._visit.sensors.doubt_in_words(), ()) if self.is_in_doubt else self._side.words
+        """What is asked of the sides and what can be answered, or what was understood; empty while there is nothing."""
+        return self._side.words
 
     def begin(self) -> None:
         """Another recording begins: nothing is asked yet. What was kept or stated about sensors holds for the visit."""

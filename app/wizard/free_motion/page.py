@@ -14,6 +14,7 @@ from PySide6.QtWidgets import QGridLayout, QHBoxLayout, QVBoxLayout, QWidget
 
 from app.theme.icons import Icon
 from app.theme.notifier import ThemeNotifier
+from app.widgets.action_bar import BarAction
 from app.widgets.body_figure import BodyFigure, SensorMark
 from app.widgets.button import Button, ButtonKind
 from app.widgets.gauge import Gauge, GaugeFace
@@ -21,18 +22,30 @@ from app.widgets.hint import Hint, HintBand
 from app.widgets.hip_gauge import HipFace, HipGauge
 from app.widgets.notice import Notice
 from app.widgets.themed import Themed
+from app.wizard.free_motion.swap_banner import SwapBanner
 from core.body import LEG_JOINTS, Joint, Side, Site, hip_of
 
 USUAL_S = 10.0
 FACING = (Joint.RIGHT_KNEE, Joint.LEFT_KNEE, Joint.RIGHT_ANKLE, Joint.LEFT_ANKLE)  # the patient faces you
-FIGURE_WIDTH = 232
+FIGURE_WIDTH = 216
+
+
+@dataclass(frozen=True, slots=True)
+class Swapped:
+    """Which places look swapped, what that costs, and the two ways on."""
+
+    what: str
+    then: str
+    use: BarAction
+    check: BarAction
 
 
 @dataclass(frozen=True, slots=True)
 class FreeMotionFace:
     """What the motion looks like now. `emphasised` is the limb to move; `elapsed_s` None before it is recorded.
 
-    `hips` is empty without a sensor on the pelvis.
+    `hips` is empty without a sensor on the pelvis. `swapped` takes the hint's place; `moves_to`: by a sensor's site, the
+    one that it moves like.
     """
 
     gauges: Mapping[Joint, GaugeFace] = field(default_factory=dict)
@@ -41,6 +54,8 @@ class FreeMotionFace:
     emphasised: Site | None = None
     worn: Mapping[Site, SensorMark] = field(default_factory=dict)
     hips: Mapping[Joint, HipFace] = field(default_factory=dict)
+    swapped: Swapped | None = None
+    moves_to: Mapping[Site, Site] = field(default_factory=dict)
 
 
 class FreeMotionPage(Themed):
@@ -50,9 +65,12 @@ class FreeMotionPage(Themed):
     -------
     answered
         Number of the answer to what was asked.
+    pressed
+        The BarAction of the banner's button that was pressed.
     """
 
     answered = Signal(int)
+    pressed = Signal(object)
 
     def __init__(self, look: ThemeNotifier) -> None:
         super().__init__()
@@ -60,6 +78,7 @@ class FreeMotionPage(Themed):
         self._is_compact = False
         self.question = _Question(look)
         self.band = HintBand(look)
+        self.swapped = SwapBanner(look)
         self.gauges = {joint: Gauge(look, joint) for joint in LEG_JOINTS}
         self.hips = {hip_of(side): HipGauge(look, hip_of(side)) for side in Side}
         self.figure = BodyFigure(look, legs_only=True)
@@ -75,20 +94,24 @@ class FreeMotionPage(Themed):
         self._column = QVBoxLayout(self)
         self._column.addWidget(self.question)
         self._column.addWidget(self.band)
+        self._column.addWidget(self.swapped)
         self._column.addLayout(self._hips)
         self._column.addLayout(self._grid, 1)
         self.question.answered.connect(self.answered)
+        self.swapped.pressed.connect(self.pressed)
         self._on_look_changed()
 
     @property
     def tab_order(self) -> list[QWidget]:
-        return list(self.question.buttons)
+        return [*self.question.buttons, *self.swapped.buttons]
 
     def focus(self) -> None:
         """Give the focus to the choice there is; without one the bar has it."""
-        shown = [button for button in self.question.buttons if not button.isHidden()]
-        if not self.question.isHidden() and shown:
-            shown[0].setFocus()
+        for part in (self.swapped, self.question):
+            shown = [button for button in part.buttons if not button.isHidden()]
+            if not part.isHidden() and shown:
+                shown[0].setFocus()
+                return
 
     def set_from_behind(self, is_from_behind: bool) -> None:
         """Turn figure and gauges: from behind, the patient's left is at the left."""
@@ -99,6 +122,7 @@ class FreeMotionPage(Themed):
     def set_compact(self, is_compact: bool) -> None:
         self._is_compact = is_compact
         self.band.set_compact(is_compact)
+        self.swapped.set_compact(is_compact)
         for gauge in self.gauges.values():
             gauge.set_compact(is_compact)
         for hip in self.hips.values():
@@ -115,6 +139,7 @@ class FreeMotionPage(Themed):
 
     def show_state(self, view: FreeMotionFace) -> None:
         """Show how far the motion has come; only what reads otherwise is painted again."""
+        self._show_swapped(view.swapped)
         self.band.show_hint(view.hint)
         self.band.show_elapsed(view.elapsed_s, USUAL_S)
         for joint, gauge in self.gauges.items():
@@ -124,6 +149,18 @@ class FreeMotionPage(Themed):
             hip.show_face(view.hips.get(joint, HipFace()))
         self.figure.emphasise(view.emphasised)
         self.figure.show_worn(view.worn)
+        self.figure.show_moves(view.moves_to)
+
+    def _show_swapped(self, swapped: Swapped | None) -> None:
+        """Show the banner in the hint's place; the focus goes to its first way on."""
+        was_shown = not self.swapped.isHidden()
+        if swapped is not None:
+            self.swapped.show_message(swapped.what, swapped.then, swapped.use, swapped.check)
+        if was_shown is (swapped is None):
+            self.band.setVisible(swapped is None)
+            self.swapped.setVisible(swapped is not None)
+            if swapped is not None and self.isVisible():
+                self.focus()
 
     def paintEvent(self, event: QPaintEvent) -> None:
         """Lead a line from each card to its joint."""
@@ -153,7 +190,7 @@ class FreeMotionPage(Themed):
 
     def _on_look_changed(self) -> None:
         px = self._look.theme.px
-        across, down = (16, 12) if self._is_compact else (24, 20)
+        across, down = (16, 12) if self._is_compact else (24, 16)
         self._column.setContentsMargins(px(across), px(down), px(across), px(down))
         self._column.setSpacing(px(12 if self._is_compact else 16))
         self._hips.setSpacing(px(12))

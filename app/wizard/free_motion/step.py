@@ -31,7 +31,7 @@ from app.wizard.free_motion.hints import (
 )
 from app.wizard.free_motion.label_questions import LabelQuestions
 from app.wizard.free_motion.motion_shown import gauge_faces, hip_faces, sensor_marks
-from app.wizard.free_motion.page import FreeMotionFace, FreeMotionPage
+from app.wizard.free_motion.page import FreeMotionFace, FreeMotionPage, Swapped
 from app.wizard.free_motion.side_question import SILENT
 from app.wizard.keys import Intent, KeyAction
 from app.wizard.step import Step, StepId
@@ -75,7 +75,8 @@ class FreeMotionStep(Step):
         self._before = FreeMotionState()  # of the leg that is not repeated
         self._repeated: Side | None = None
         self._again_side: Side | None = None  # that was being repeated when it was to begin again
-        self._worn_before: dict[str, Site] = {}  # what undoing brings back
+        self._worn_before: dict[str, Site] = {}  # what undoing brings back, and what was in doubt then
+        self._doubt_before: dict[Site, Site] = {}
         self._seen_at: dict[str, Site] = {}  # where sensors were when the motion was seen
         self._elapsed_s: float | None = None
         self._enough: frozenset[Joint] = frozenset()  # joints with enough motion, as their gauges say
@@ -104,6 +105,7 @@ class FreeMotionStep(Step):
         if self._page is None:
             self._page = FreeMotionPage(self._look)
             self._page.answered.connect(self.labels.answer)
+            self._page.pressed.connect(self._on_pressed)
         return self._page
 
     @property
@@ -175,16 +177,19 @@ class FreeMotionStep(Step):
         enter, space = tr("Enter"), tr("Space")
         again = BarAction(tr("Record again"), self._begin, space, Icon.REPEAT, is_requested=False)
         stop = BarAction(tr("Stop early"), self._stop, space, Icon.STOP, is_requested=False)
-        check = BarAction(tr("Check positions"), self._check_positions, "P")
         left = BarAction(tr("Repeat left"), self._repeat_left, "L", Icon.REPEAT)
         right = BarAction(tr("Repeat right"), self._repeat_right, "R", Icon.REPEAT)
         repeat = tuple(left if side is Side.LEFT else right for side in self._repeatable)
         if self.labels.is_in_doubt:
-            use = BarAction(tr("Use detected positions"), self._use_detected, enter, Icon.CHECK)
-            return BarState(primary=use, others=(stop if self._is_recording else again,), quiet=(check,))
+            return BarState(
+                primary=BarAction(tr("Continue to walking"), self.done.emit, icon=Icon.NEXT, is_enabled=False),
+                quiet=(stop if self._is_recording else again,),
+                note=tr("Correct the sensor positions first."),
+                on_page=(self._use_action, self._check_action),
+            )
         if not self._is_recording and not self._has_moved:
             begin = BarAction(tr("Start free motion"), self._begin, space, Icon.PLAY)
-            return BarState(primary=begin, quiet=(check,) if self._is_unplaced else ())
+            return BarState(primary=begin, quiet=(self._check_action,) if self._is_unplaced else ())
         leave = self._stop if self._is_recording else self.done.emit
         go_on = BarAction(tr("Continue to walking"), leave, enter, Icon.NEXT)
         if not self._is_recording:
@@ -203,7 +208,12 @@ class FreeMotionStep(Step):
         if self._worn_before:
             self._visit.sensors.assign_all(self._worn_before)
             self._worn_before = {}
-            self._on_relabelled()
+            if self._is_recording:
+                self._on_relabelled()
+                return
+            worn, is_walking = self._visit.worn, self._visit.recordings.is_recording
+            (worn.place_once_ended if is_walking else worn.place_as_stated_now)()
+            self._visit.sensors.doubt(self._doubt_before)
         elif self._is_recording and self.labels.is_understood:
             self.labels.answer(1)
 
@@ -427,7 +437,7 @@ class FreeMotionStep(Step):
     @Slot()
     def _show_question(self) -> None:
         """Show what is to be answered, or what was understood; the page is left alone where that is shown already."""
-        words = self.labels.words if self._is_recording or self.labels.is_in_doubt else SILENT
+        words = self.labels.words if self._is_recording and not self.labels.is_in_doubt else SILENT
         if words != self._asked_words:
             self._asked_words = words
             self.page.ask(*words, is_understood=self.labels.is_understood)
@@ -448,7 +458,7 @@ class FreeMotionStep(Step):
     def _use_detected(self) -> None:
         """Wear the sensors where the motion puts them: what was recorded is derived again, and the step goes on."""
         sensors = self._visit.sensors
-        before = dict(sensors.site_of)
+        before, self._doubt_before = dict(sensors.site_of), dict(sensors.detected)
         sensors.use_detected()
         if self._is_recording and not self._is_played:
             self._worn_before = before
@@ -461,9 +471,8 @@ class FreeMotionStep(Step):
             self._motion = FreeMotionState()
             self._visit.worn.place_as_stated_now()
             self.done.emit()
-            self.reported.emit(
-                tr("Sensor positions changed. Standing reference and calibration are calculated again."), ""
-            )
+            self._worn_before = before
+            self.offered.emit(tr("Sensor positions changed. Standing reference and calibration are calculated again."))
 
     # the page
 
@@ -471,7 +480,7 @@ class FreeMotionStep(Step):
         if self._page is None:
             return
         self._show_question()
-        asked = self._asked()
+        asked, sensors = self._asked(), self._visit.sensors
         self._page.show_state(
             FreeMotionFace(
                 gauges=gauge_faces(self._visit, self._motion, asked.joint),
@@ -479,15 +488,33 @@ class FreeMotionStep(Step):
                 hint=asked.hint,
                 elapsed_s=self._elapsed_s if self._is_recording else None,
                 emphasised=asked.site,
-                worn=sensor_marks(self._visit.sensors),
+                worn=sensor_marks(sensors),
+                swapped=self._swapped,
+                moves_to=sensors.detected,
             )
         )
+
+    @property
+    def _use_action(self) -> BarAction:
+        return BarAction(tr("Use detected positions"), self._use_detected, tr("Enter"), Icon.CHECK)
+
+    @property
+    def _check_action(self) -> BarAction:
+        return BarAction(tr("Check positions"), self._check_positions, "P")
+
+    @property
+    def _swapped(self) -> Swapped | None:
+        if not self.labels.is_in_doubt:
+            return None
+        return Swapped(*self._visit.sensors.doubt_in_words(), self._use_action, self._check_action)
+
+    def _on_pressed(self, action: BarAction) -> None:
+        action.run()
 
     def _asked(self) -> Asked:
         acquisition, sensors = self._visit.sensors.acquisition, self._visit.sensors
         if self.labels.is_in_doubt:
-            how = tr("Use the positions detected from the movement, or check them.")
-            return Asked(Hint(tr("Positions look swapped"), how, how, Icon.WARNING))
+            return Asked(Hint(""))  # the banner is in its place
         if not self._is_recording:
             prosthetic = self._visit.prosthetic_sides
             return Asked(recorded_hint(self._motion, prosthetic) if self._has_moved else first_hint())

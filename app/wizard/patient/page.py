@@ -154,15 +154,15 @@ class PatientPage(Themed):
     def tab_order(self) -> list[QWidget]:
         return [
             self.code.line_edit,
+            *self.side.segments,
+            *self.limb.segments,
+            self.device.line_edit,
             *self.sex.segments,
             self.birth_year.line_edit,
             self.height_cm.line_edit,
             self.mass_kg.line_edit,
-            *self.side.segments,
-            *self.limb.segments,
-            self.device.line_edit,
-            *(chip for chips in self.ankles.values() for chip in chips.buttons),
             *self.aids.buttons,
+            *(chip for chips in self.ankles.values() for chip in chips.buttons),
             self._taken.open,
             self._last.same,
         ]
@@ -244,10 +244,10 @@ class PatientPage(Themed):
         aids = _Captioned(self._look, self.aids, tr("Aids and footwear"), tr("choose all that apply"))
         self._form = Card(self._look, padding=24, spacing=16)
         self._rows = [
-            self._row(self.code, sex),
-            self._row(self.birth_year, self.height_cm, self.mass_kg),
-            self._row(side),
+            self._row(self.code, side),  # the side decides what results, report and bands are about
             self._row(self._limb_box, self.device),
+            self._row(sex, self.birth_year),
+            self._row(self.height_cm, self.mass_kg),
             self._row(aids),
             self._row(self._ankle_box),  # last: where it comes and goes, nothing under the pointer moves
         ]
@@ -386,7 +386,7 @@ class _Captioned(Themed):
 
 
 class _FieldLine(QWidget):
-    """A hairline between who it is and what it is about."""
+    """A hairline between what the session is about and what chooses the reference."""
 
     def __init__(self, look: ThemeNotifier) -> None:
         super().__init__()

@@ -4,7 +4,7 @@ from collections.abc import Collection, Mapping, Sequence
 
 from app.theme.icons import Icon
 from app.wizard.sensors.sensor_row import SensorRow
-from app.wording.body import name_of
+from app.wording.body import name_of, spelled_out
 from app.wording.translation import capitalised, figure_text, tr
 from core.body import LEG_SITES, Segment, Side, Site
 
@@ -95,7 +95,7 @@ def stated_of_sensors(
     if sensors and len(worn) == len(sensors):
         return Icon.INFO, tr("All sensors have a position."), "", False
     if next_place is not None:
-        what = tr("Shake the {site} sensor.").format(site=_in_sentence(next_place))
+        what = tr("Shake the {site} sensor.").format(site=spelled_out(next_place))
         return Icon.NEXT, what, tr("Its position turns dark once the sensor is detected."), False
     return (
         Icon.NEXT,
@@ -122,18 +122,6 @@ def _missing_foot(
 def _called(sensor: SensorRow) -> str:
     """A sensor by its place, or by its name while it has none."""
     return capitalised(name_of(sensor.site)) if sensor.site is not None else sensor.name
-
-
-def _in_sentence(site: Site) -> str:
-    return {
-        Site.LEFT_THIGH: tr("left thigh"),
-        Site.LEFT_SHANK: tr("left shank"),
-        Site.LEFT_FOOT: tr("left foot"),
-        Site.RIGHT_THIGH: tr("right thigh"),
-        Site.RIGHT_SHANK: tr("right shank"),
-        Site.RIGHT_FOOT: tr("right foot"),
-        Site.PELVIS: tr("pelvis"),
-    }[site]
 
 
 def _stated_of_silent(sensor: SensorRow, has_hips: bool) -> tuple[str, str]:

@@ -126,6 +126,8 @@ class WalkingStep(Step):
             return tr("Enter the patient's code first.")
         if self._visit.recordings.walks:
             return ""  # they can be kept or discarded whatever is missing for the next
+        if self._visit.sensors.detected:
+            return tr("Correct the sensor positions first.")
         return self._next.missing
 
     @property

@@ -1,4 +1,4 @@
-"""Contrast by WCAG 2.2 AA: 4.5 for text, 3 for the edges of controls, icons, focus and curves, light and dark.
+"""Contrast by WCAG 2.2 AA: 4.5 for text, 3 for edges of controls, icons, focus, curves and what cannot be used.
 
 The pairs are those that the application paints. What lies under a token is read off the code that paints it; a token
 that no pair names must be named with its reason in `FREE`.
@@ -45,10 +45,11 @@ GRAPHICS: dict[str, tuple[str, ...]] = {
     "right": ("surface", "ground", "left_pale", "right_pale", "track", "band_2sd"),
     "left_text": PAGES,  # the frame of the leg's letter
     "right_text": PAGES,
+    # WCAG leaves out what cannot be used; its words are to be read all the same
+    "disabled": (*PAGES, "track", "inv", "caution"),
 }
 FREE = {
     "line": "hairlines between rows and round cards: no control is known by them alone",
-    "disabled": "of what cannot be used, which WCAG leaves out; the reason stands beside it in ink2",
     "band_1sd": "the reference group: every figure of it stands in a table, and a curve over it wears a casing",
     "band_2sd": "likewise, and the zone of measurement error, which filled and hollow marks tell as well",
     "left_soft": "a fill that an edge of 3 or the next phase bounds",
@@ -89,6 +90,7 @@ def test_a_pair_that_is_too_faint_is_named() -> None:
         "caution_edge on caution: 2.81",
     ]
     assert too_faint(replace(DARK, ink3="#6A7883"), TEXTS, TEXT) != []
+    assert "disabled on track: 2.07" in too_faint(replace(LIGHT, disabled="#9AA6B1"), GRAPHICS, GRAPHIC)
 
 
 def test_every_colour_has_a_pair_or_a_reason() -> None:

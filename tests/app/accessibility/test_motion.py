@@ -5,7 +5,6 @@ from itertools import pairwise
 from pathlib import Path
 
 import pytest
-from app.plots.moving_legs import MovingLegs
 from PySide6.QtCore import QSettings, Qt
 from PySide6.QtTest import QTest
 from PySide6.QtWidgets import QApplication, QProgressBar, QWidget
@@ -15,6 +14,7 @@ from app.help.help_page import HelpPage
 from app.help.help_topics import Topic
 from app.home.settings.settings_page import SettingsPage
 from app.main_window import MainWindow
+from app.plots.stride_legs import StrideLegs
 from app.system.settings import Settings
 from app.theme import motion
 from app.theme.notifier import ThemeNotifier
@@ -111,7 +111,7 @@ def test_pages_of_a_visit_fade_into_each_other_unless_less_motion_is_asked_for(
 
 
 def test_legs_move_only_when_somebody_plays_them(qtbot: QtBot, look: ThemeNotifier) -> None:
-    legs = MovingLegs(look)
+    legs = StrideLegs(look)
     qtbot.addWidget(legs)
     legs.show()
     assert not legs.is_playing

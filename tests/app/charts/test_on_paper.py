@@ -1,6 +1,5 @@
-"""A deviation on paper: a bracket over its whole height, its size, and the number of its sentence."""
+"""A chart on paper: which leg is which without colour, what is not reported, and what has no room."""
 
-import math
 import re
 from dataclasses import replace
 
@@ -9,21 +8,13 @@ import pytest
 
 from app.charts.cycles import PERCENT
 from app.charts.drawing import COLOURS
-from app.charts.marks import Deviation, extreme_of
-from app.charts.on_paper import BRACKET_WIDTH, draw, frame_of, places_of
+from app.charts.on_paper import draw, frame_of
 from app.charts.stride_chart import Axis, StrideChart, StrideCurve
-from core.body import Joint, Side
+from core.body import Side
 from core.samples import FloatArray
 
 WIDTH = 150.0
 KNEE: FloatArray = 10 * np.exp(-(((PERCENT - 14) / 8) ** 2)) + 55 * np.exp(-(((PERCENT - 73) / 12) ** 2))
-SWING = Deviation(
-    extreme_of(Joint.LEFT_KNEE, KNEE, 25, 60, is_maximum=False),
-    extreme_of(Joint.LEFT_KNEE, KNEE, 55, 90, is_maximum=True),
-    "L bends 55° from stance to swing",
-    size="55°",
-    number=1,
-)
 CHART = StrideChart(
     Axis(-10, 80, 20, 10, "bent", "straight"),
     (StrideCurve("L", Side.LEFT, KNEE, 60.0, toe_off_label="L toe-off 60.0 %"),),
@@ -31,26 +22,6 @@ CHART = StrideChart(
     is_simulated=False,
     alt="Knee.",
 )
-MARKED = replace(CHART, deviations=(SWING,))
-
-
-def uprights(svg: str) -> list[tuple[float, float, float]]:
-    """Place, top and bottom of each upright line of a bracket's width."""
-    pattern = (
-        r'<line x1="([\d.]+)" y1="([\d.]+)" x2="\1" y2="([\d.]+)" '
-        rf'stroke="#000000" stroke-width="{BRACKET_WIDTH}"/>'
-    )
-    return [(float(x), float(top), float(bottom)) for x, top, bottom in re.findall(pattern, svg)]
-
-
-def test_a_bracket_reaches_from_one_extreme_to_the_other_and_has_its_size_and_number() -> None:
-    drawn, frame = draw(MARKED, WIDTH), frame_of(MARKED, WIDTH)
-    ((_, top, bottom),) = uprights(drawn.svg)
-    assert top == pytest.approx(float(frame.y(SWING.second.angle_deg)), abs=0.01)
-    assert bottom == pytest.approx(float(frame.y(SWING.first.angle_deg)), abs=0.01)
-    assert drawn.svg.count(">55°</text>") == 1
-    assert drawn.svg.count(">1</text>") == 1
-    assert drawn.alt == "Knee. L bends 55° from stance to swing."
 
 
 @pytest.mark.parametrize("side", Side)
@@ -61,30 +32,6 @@ def test_sides_are_reported_by_letter_and_line_and_not_by_colour_alone(side: Sid
     (drawn,) = re.findall(rf'<path [^>]*stroke="{re.escape(COLOURS[side])}"[^>]*>', svg)
     assert ("stroke-dasharray" in drawn) is (side is Side.RIGHT)
     assert f">{side[0].upper()}</text>" in svg
-
-
-def test_the_leg_without_a_sentence_has_its_bracket_without_a_number() -> None:
-    drawn = draw(replace(CHART, deviations=(replace(SWING, number=None),)), WIDTH)
-    assert len(uprights(drawn.svg)) == 1
-    assert ">1</text>" not in drawn.svg
-
-
-def test_without_a_deviation_nothing_is_marked() -> None:
-    drawn = draw(CHART, WIDTH)
-    assert uprights(drawn.svg) == []
-    assert drawn.alt == "Knee."
-
-
-def test_letters_keep_away_from_brackets() -> None:
-    (place,) = places_of(frame_of(MARKED, WIDTH), MARKED)
-    centres = re.findall(r'<circle cx="([\d.]+)" cy="([\d.]+)" r="4.5"', draw(MARKED, WIDTH).svg)
-    assert len(centres) == 2
-    frame = frame_of(MARKED, WIDTH)
-    points = [(float(frame.x(point.percent)), float(frame.y(point.angle_deg))) for point in SWING.points]
-    for x, y in centres:
-        assert min(math.dist((float(x), float(y)), point) for point in points) > 13
-        is_beside = place.top - 9 < float(y) < place.bottom + 9
-        assert not is_beside or abs(float(x) - place.bar_x) > 9
 
 
 def test_a_curve_that_is_compared_is_drawn_by_its_order() -> None:
@@ -102,16 +49,15 @@ def test_a_curve_that_is_compared_is_drawn_by_its_order() -> None:
 
 def test_what_is_not_reported_is_hatched_with_its_reason_and_has_no_curve() -> None:
     why = "81° of range; walking has no more than 60°. Foot and shank sensor do not move as neighbours."
-    drawn = draw(replace(MARKED, not_reported=why), WIDTH)
+    drawn = draw(replace(CHART, not_reported=why), WIDTH)
     words = re.findall(r">([^<>]+)</text>", drawn.svg)
     at = words.index("Not reported")
     assert why in " ".join(words[at:])
     assert "<path" not in drawn.svg
-    assert uprights(drawn.svg) == []
     assert "SIMULATED" not in words
-    assert ">SIMULATED</text>" in draw(replace(MARKED, not_reported=why, is_simulated=True), WIDTH).svg
+    assert ">SIMULATED</text>" in draw(replace(CHART, not_reported=why, is_simulated=True), WIDTH).svg
     assert drawn.alt == f"Knee. Not reported. {why}"
-    assert "Not reported" not in draw(MARKED, WIDTH).svg
+    assert "Not reported" not in draw(CHART, WIDTH).svg
 
 
 def test_hatching_stays_inside_the_plot() -> None:

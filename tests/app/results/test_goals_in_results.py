@@ -6,13 +6,12 @@ from dataclasses import replace
 
 import pytest
 
-from app.reports.patient.key_numbers import key_rows
 from app.results.compared_table import comparison_table
-from app.results.summary_text import key_figures
 from app.summary.agreed import agreed_with
 from app.summary.comparison import Comparison, Contrast
 from app.summary.facts import Facts
 from app.summary.request import AnalysedVisit
+from app.summary.tiles import tiles_of
 from app.summary.visits import WalkedVisit, visits_by_condition
 from app.summary.what_differs import what_differs
 from app.widgets.table_cells import TextCell
@@ -49,12 +48,15 @@ def facts(day: str, visit: tuple[Session, Analysis]) -> Facts:
     return Facts(AnalysedVisit(on(day, visit), visit[1]), walk_of(visit[1]))
 
 
-def test_a_key_figure_has_its_goal_beneath_it(visit: tuple[Session, Analysis]) -> None:
-    notes = {one.key: one.note for one in key_figures(facts("2026-11-21", visit))}
-    assert notes["speed_m_s"] == f"goal 1.20{SPACE}m/s"
-    assert "goal" not in notes["cadence_steps_min"]
-    before = {one.key: one.note for one in key_figures(facts("2026-09-29", visit))}
-    assert not any("goal" in note for note in before.values())
+def test_a_tile_has_its_goal_at_its_scale_and_read_out(visit: tuple[Session, Analysis]) -> None:
+    tiles = {one.column: one for one in tiles_of(facts("2026-11-21", visit))}
+    speed, stance = tiles["speed_m_s"], tiles["stance_percent"]
+    assert (speed.goal, speed.goals) == (f"goal 1.20{SPACE}m/s", (1.2,))
+    assert "goal" in speed.in_words
+    assert stance.goals == (2.0, -2.0)  # either leg may be the longer
+    assert stance.goal.startswith("goal")
+    assert not any(tiles[column].goal for column in ("cadence_steps_min", "knee_stance_to_swing_deg"))
+    assert not any(one.goal or one.goals for one in tiles_of(facts("2026-09-29", visit)))
 
 
 def test_a_figure_that_is_not_reported_has_its_reason_and_no_goal(visit: tuple[Session, Analysis]) -> None:
@@ -67,7 +69,7 @@ def test_a_figure_that_is_not_reported_has_its_reason_and_no_goal(visit: tuple[S
     assert values["speed_m_s"] == pytest.approx(1.18, abs=0.01)
 
 
-def test_measures_with_goals_come_first_in_what_differs_and_stand_among_the_key_numbers(
+def test_measures_with_goals_come_first_in_what_differs(
     visit: tuple[Session, Analysis],
 ) -> None:
     rows = what_differs(facts("2026-11-21", visit))
@@ -75,9 +77,6 @@ def test_measures_with_goals_come_first_in_what_differs_and_stand_among_the_key_
     assert all(row.goals for row in rows[:3])
     assert not any(row.goals for row in rows[3:])
     assert not any(row.goals for row in what_differs(facts("2026-09-29", visit)))
-    assert {"ankle_push_off_deg", "stance_percent"} <= {
-        row.column for row in key_rows(facts("2026-11-21", visit), None)
-    }
 
 
 def test_between_visits_the_goal_is_behind_the_name_and_is_dotted_in_the_trend(

@@ -136,11 +136,11 @@ def test_where_room_is_short_the_key_figures_join_the_sentence(page: ResultPage)
     page.set_room(*COMPACT)
     assert not page.key_figures.isVisible()
     assert not page.differs.isVisible()
-    assert "Walking speed" in page.answer.text
+    assert "Walking speed" in page.headline.text
     assert page.cycles.isVisible()
     assert page.door.isVisible()
     page.set_room(*WIDE)
-    assert "Walking speed" not in page.answer.text
+    assert "Walking speed" not in page.headline.text
     assert page.key_figures.isVisible()
 
 
@@ -338,10 +338,10 @@ def test_the_answer_is_over_the_mean_cycle_and_nothing_scrolls_for_it(page: Resu
     in_wizard = (1064.0, 672.0)  # of a window of 1280 x 800 with its rail
     page.set_room(*in_wizard)
     show(page, analysis)
-    assert page.answer.text.startswith("Left and right are similar: knee flexion, stance to swing ")
-    assert page.answer.text.endswith("° fits.")
+    assert page.headline.text.startswith("Left and right are similar: knee flexion, stance to swing ")
+    assert page.headline.text.endswith("° fits.")
     show(page, with_more(analysis, Side.LEFT, "knee_range_rad", -20.0))
-    assert page.answer.text.startswith("The left knee has 21.3° less range of motion than the right: ")
+    assert page.headline.text.startswith("The left knee has 21.3° less range of motion than the right: ")
     assert page.minimumSizeHint().height() <= in_wizard[1]
     for view in (WHOLE, STRIDES):
         page.view.choose(view)
@@ -349,7 +349,7 @@ def test_the_answer_is_over_the_mean_cycle_and_nothing_scrolls_for_it(page: Resu
     show(page, changed(analysis, gait={}))
     page.view.choose(WHOLE)
     assert page.answer.isVisible()
-    assert page.answer.text.startswith("No results for this walk: no foot or shank sensor showed a stride")
+    assert page.headline.text.startswith("No results for this walk: no foot or shank sensor showed a stride")
 
 
 @pytest.mark.parametrize("room", [(1064.0, 672.0), (1150.0, 640.0)])  # of windows of 1280 x 800 and 1366 x 768

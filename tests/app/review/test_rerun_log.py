@@ -17,9 +17,9 @@ from app.exports.gait_csv import write_gait
 from app.review import rerun_log
 from app.review.data_quality_panel import document, name_of_view
 from app.review.rerun_log import write_log
-from app.summary.answer import answer_of
 from app.summary.drawn_legs import draw_legs
 from app.summary.facts import Facts
+from app.summary.headline import headline_of
 from app.summary.request import AnalysedVisit
 from app.summary.walk_figures import verdict_of
 from app.theme.colours import DARK
@@ -72,7 +72,8 @@ def curve(path: Path, entity: str, timeline: str) -> tuple[FloatArray, FloatArra
     batches = [c.to_record_batch() for c in chunks if timeline in c.timeline_names]
     time_s = [batch.column(timeline).cast("int64").to_numpy() / 1e9 for batch in batches]
     values = [np.array(batch.column("Scalars:scalars").to_pylist(), dtype=float) for batch in batches]
-    return np.concatenate(time_s), np.concatenate(values)
+    in_order = np.argsort(np.concatenate(time_s), kind="stable")
+    return np.concatenate(time_s)[in_order], np.concatenate(values)[in_order]
 
 
 def test_every_sample_and_angle_comes_back(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
@@ -254,11 +255,13 @@ def walk(tmp_path_factory: pytest.TempPathFactory) -> tuple[Path, Analysis]:
     return folder, analysis
 
 
-def words(path: Path, entity: str, component: str) -> list[tuple[float, str]]:
-    """Read time, seconds, and word of every row of one entity."""
-    batches = [c.to_record_batch() for c in RrdReader(path).stream() if c.entity_path == entity and not c.is_static]
-    times = [ns / 1e9 for batch in batches for ns in batch.column("walking_1").cast("int64").to_pylist()]
-    return list(zip(times, [row[0] for b in batches for row in b.column(component).to_pylist()], strict=True))
+def words(path: Path, entity: str, component: str, timeline: str = "walking_1") -> list[tuple[float, str]]:
+    """Read time, seconds, and word of every row of one entity, in order of time."""
+    chunks = [c for c in RrdReader(path).stream() if c.entity_path == entity and timeline in c.timeline_names]
+    batches = [c.to_record_batch() for c in chunks]
+    times = [ns / 1e9 for batch in batches for ns in batch.column(timeline).cast("int64").to_pylist()]
+    found = [row[0] for b in batches for row in b.column(component).to_pylist()]
+    return sorted(zip(times, found, strict=True), key=lambda row: row[0])
 
 
 @pytest.mark.parametrize("side", Side)
@@ -320,6 +323,112 @@ def test_phases_and_curves_are_in_the_colours_of_their_side(walk: tuple[Path, An
             assert colours[f"/angles/{side}_knee/{name}"] == [[int(colour[1:] + "FF", 16)]]
 
 
+def test_the_log_opens_at_the_first_contact_of_a_used_stride_and_the_legs_walk(walk: tuple[Path, Analysis]) -> None:
+    path, (recording,) = walk[0] / "session.rrd", walk[1].recordings
+    used = [gait.strides for gait in recording.gait.values()]
+    first_s = min(strides.start_s[strides.is_used].min() for strides in used)
+    last_s = max(strides.end_s[strides.is_used].max() for strides in used)
+    (layout,) = RrdReader(path).blueprints()
+    chunks = [c for c in RrdReader(path).stream(store=layout) if c.entity_path == "/time_panel"]
+    stated = {name: value for c in chunks for name, value in c.to_record_batch().to_pydict().items()}
+    assert stated["TimePanelBlueprint:timeline"] == [["walking_1_steps"]]
+    assert stated["TimePanelBlueprint:play_state"] == [[2]]  # playing
+    assert stated["TimePanelBlueprint:loop_mode"] == [[3]]  # all of it, again and again
+    times_s = [
+        column.cast("int64").to_numpy() / 1e9
+        for c in RrdReader(path).stream()
+        if "walking_1_steps" in c.timeline_names
+        for column in [c.to_record_batch().column("walking_1_steps")]
+    ]
+    assert min(map(np.min, times_s)) == pytest.approx(first_s, abs=1e-9)
+    assert last_s - 0.02 < max(map(np.max, times_s)) <= last_s + 1e-9
+    for joint in LEG_JOINTS:
+        whole_s, whole_deg = curve(path, f"/angles/{joint}/result", "walking_1")
+        time_s, angle_deg = curve(path, f"/angles/{joint}/result", "walking_1_steps")
+        is_step = (whole_s >= first_s) & (whole_s <= last_s)
+        np.testing.assert_array_equal(time_s, whole_s[is_step])
+        np.testing.assert_array_equal(angle_deg, whole_deg[is_step])
+    assert {"/legs/left/thigh", "/legs/right/foot"} <= entities(path, "walking_1_steps")
+
+
+def test_beside_the_first_step_is_the_answer_and_each_leg_has_its_phase(walk: tuple[Path, Analysis]) -> None:
+    path, (recording,) = walk[0] / "session.rrd", walk[1].recordings
+    first_s = min(gait.strides.start_s[gait.strides.is_used].min() for gait in recording.gait.values())
+    ((time_s, text),) = words(path, "/answer", "TextDocument:text", "walking_1_steps")
+    assert time_s == pytest.approx(first_s, abs=1e-9)
+    assert text == words(path, "/answer", "TextDocument:text")[0][1]
+    for side, gait in recording.gait.items():
+        rows = words(path, f"/phases/{side}", "StateChange:state", "walking_1_steps")
+        assert rows[0][0] == pytest.approx(first_s, abs=0.02)  # and not only once the phase changes
+        sample = int(np.searchsorted(recording.time_s, first_s))
+        phase = [phase for at_s, phase in rows if at_s <= recording.time_s[sample] + 1e-9][-1]
+        assert phase == str(PHASES[gait.phase[sample]])
+
+
+def test_a_walk_without_a_used_stride_opens_at_its_beginning(tmp_path: Path) -> None:
+    write_log(*visit(), tmp_path / "session.rrd")
+    chunks = list(RrdReader(tmp_path / "session.rrd").stream())
+    assert not any("steps" in name for c in chunks for name in c.timeline_names)
+
+
+def test_certainty_is_a_band_between_its_edges(walk: tuple[Path, Analysis]) -> None:
+    path, (recording,) = walk[0] / "session.rrd", walk[1].recordings
+    for joint in LEG_JOINTS:
+        angle_deg, sd_deg = (np.rad2deg(v) for v in (recording.joints[joint].angle_rad, recording.joints[joint].sd_rad))
+        time_s, band_deg = curve(path, f"/angles/{joint}/band", "walking_1")
+        np.testing.assert_allclose(time_s, np.repeat(recording.time_s, 2), atol=1e-9)
+        np.testing.assert_allclose(band_deg[::2, 0], angle_deg - 2 * sd_deg, atol=1e-9)
+        np.testing.assert_allclose(band_deg[1::2, 0], angle_deg + 2 * sd_deg, atol=1e-9)
+        looks = [c for c in RrdReader(path).stream() if c.is_static and c.entity_path == f"/angles/{joint}/band"]
+        (look,) = [c.to_record_batch().to_pydict() for c in looks]
+        assert look["SeriesLines:colors"] == [[int(getattr(DARK, f"{joint.side}_soft")[1:] + "FF", 16)]]
+        assert look["SeriesLines:aggregation_policy"] == [[5]]  # lowest and highest of a pixel: zoomed out it is whole
+
+
+def test_left_and_right_have_the_same_axis_which_holds_all_that_is_shown(walk: tuple[Path, Analysis]) -> None:
+    def axis(view: rrb.View) -> list[float]:
+        axis = view.properties["ScalarAxis"]
+        assert isinstance(axis, rrb.ScalarAxis)
+        assert axis.range is not None
+        return [float(end) for end in np.ravel(axis.range.as_arrow_array().to_pylist())]
+
+    columns = [rerun_log.side_views(walk[1], side) for side in Side]
+    left, right = ([v for v in c.contents if isinstance(v, rrb.View)] for c in columns if c is not None)
+    for one, other, kind in zip(left, right, ("knee", "ankle"), strict=True):
+        low, high = axis(one)
+        assert axis(other) == [low, high]
+        for side in Side:
+            for name in ("band", "phases/foot_flat"):
+                _, values_deg = curve(walk[0] / "session.rrd", f"/angles/{side}_{kind}/{name}", "walking_1")
+                assert low < np.nanmin(values_deg)
+                assert np.nanmax(values_deg) < high
+
+
+def test_no_panel_of_words_is_empty_whatever_recording_is_chosen(walk: tuple[Path, Analysis], tmp_path: Path) -> None:
+    ((_, text),) = words(walk[0] / "session.rrd", "/answer", "TextDocument:text", "standing_1")
+    assert text == "This recording has no joint angles. Choose a walk below."
+    (recording,) = walk[1].recordings
+    free = replace(recording, kind=RecordingKind.FREE_MOTION, joints={}, gait={})
+    write_log(WALKED, replace(walk[1], recordings=(free,)), tmp_path / "session.rrd")
+    texts = [
+        c.to_record_batch().to_pydict()["TextDocument:text"][0][0]
+        for c in RrdReader(tmp_path / "session.rrd").stream()
+        if c.entity_path == "/answer"
+    ]
+    assert texts
+    assert all(text.strip() for text in texts)
+    (layout,) = RrdReader(tmp_path / "session.rrd").blueprints()
+    shown = "".join(
+        str(c.to_record_batch().to_pydict()) for c in RrdReader(tmp_path / "session.rrd").stream(store=layout)
+    )
+    assert "'/events'" not in shown  # there are none
+    (layout,) = RrdReader(walk[0] / "session.rrd").blueprints()
+    shown = "".join(
+        str(c.to_record_batch().to_pydict()) for c in RrdReader(walk[0] / "session.rrd").stream(store=layout)
+    )
+    assert "'/events'" in shown
+
+
 def doubtful(analysis: Analysis, **stated: Assessment) -> Analysis:
     """The walk with another verdict of the left knee, or of the left leg's timing."""
     (recording,) = analysis.recordings
@@ -360,8 +469,8 @@ def test_beside_the_legs_is_the_answer_with_a_verdict_for_each_joint(walk: tuple
     ((time_s, text),) = words(folder / "session.rrd", "/answer", "TextDocument:text")
     assert time_s == pytest.approx(WALKED.recordings[-1].imu[Site.LEFT_THIGH].time_s[0])  # there from the beginning
     facts = Facts(AnalysedVisit(WALKED, analysis), analysis.recordings[0])
-    answer = answer_of(facts)
-    assert text.startswith(f"### {answer.first}\n\n{answer.then}\n")
+    headline = headline_of(facts)
+    assert text.startswith(f"### {headline.first}\n\n{headline.then}\n")
     for joint in LEG_JOINTS:
         verdict = verdict_word(verdict_of(facts.verdicts.joint(joint)))
         assert f"- **{joint.replace('_', ' ').capitalize()}: {verdict}.**" in text
@@ -474,9 +583,10 @@ def test_two_legs_walk_above_the_curves_and_say_that_they_are_drawn(walk: tuple[
     for side in Side:
         for number, part in enumerate(("thigh", "shank")):
             chunks = [c for c in reader.stream() if c.entity_path == f"/legs/{side}/{part}"]
-            (moving,) = [c.to_record_batch() for c in chunks if not c.is_static]
+            moving = [c.to_record_batch() for c in chunks if not c.is_static]
+            in_order = np.argsort(np.concatenate([b.column("walking_1").cast("int64") for b in moving]))
             found = {
-                name: np.array([row[0] for row in moving.column(f"Capsules3D:{name}").to_pylist() if row])
+                name: np.array([row[0] for b in moving for row in b.column(f"Capsules3D:{name}").to_pylist()])[in_order]
                 for name in ("translations", "lengths", "quaternions", "radii")
             }
             np.testing.assert_allclose(found["translations"], legs[side].leg_m[:, number], atol=1e-6)

@@ -103,7 +103,7 @@ def test_a_visit_that_cannot_be_read_is_a_gap_and_the_change_counts_from_the_fir
     assert (low + high) / 2 == pytest.approx(40.0)
     assert lane_in_words(knee, visits).startswith(
         "Knee flexion, stance to swing, left: not reported on 20 Feb, 40 degrees on 20 Mar, not reported on 20 Apr, "
-        "60 degrees on 20 May. +20 since 20 Mar, beyond error (6."
+        "60 degrees on 20 May. +20 since 20 Mar, beyond error (7.0)."
     )
 
 
@@ -250,7 +250,7 @@ def test_a_lane_holds_its_goals_and_the_leg_that_they_are_of() -> None:
     assert lane_in_words(knee, visits).endswith("Goal: Knee flexion, stance to swing, right: at least 72°.")
     before = replace(right, agreed=datetime.date(2026, 3, 19))  # the day before the last visit
     reported = lane_in_words(lane(lanes(visits, goals=[before]), KNEE_LANE), visits)
-    assert reported.endswith("right: at least 72°. Not reached; the difference is beyond measurement error (±7.5°).")
+    assert reported.endswith("right: at least 72°. Not reached; the difference is beyond measurement error (±8.0°).")
     same_day = replace(right, agreed=datetime.date(2026, 3, 20))
     assert "Not reached" not in lane_in_words(lane(lanes(visits, goals=[same_day]), KNEE_LANE), visits)
     apart = goal(STANCE_LANE.column, GoalOf.BETWEEN, 2.0)

@@ -117,8 +117,8 @@ def test_legs_are_set_side_by_side_with_their_status(tmp_path: Path) -> None:
     found = {row["parameter"]: row for row in table(tmp_path / "sides.csv")}
     knee, ankle, time = (found[name] for name in ("knee_range_deg", "ankle_range_deg", "stride_time_s"))
     assert (knee["difference"], knee["status"], knee["verdict"]) == ("15.00000", "read", "exceeds_error")
-    # 1.96 times hypot(1.2, 0.04 * 75) and hypot(1.2, 0.04 * 60) is 8.24, and 1 ms of lag in each leg
-    assert float(knee["error"]) == pytest.approx(8.3, abs=0.05)
+    # 1.96 times hypot(1.2, 0.043 * 75) and hypot(1.2, 0.043 * 60) is 8.75, and 1 ms of lag in each leg
+    assert float(knee["error"]) == pytest.approx(8.8, abs=0.05)
     assert knee["mark"] == "beyond_healthy"
     assert float(knee["healthy_limit"]) == pytest.approx(10.25, abs=0.06)
     assert float(knee["low"]) == pytest.approx(15.0 - float(knee["error"]), abs=1e-4)

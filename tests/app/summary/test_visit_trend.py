@@ -66,7 +66,7 @@ def test_values_are_those_of_each_visit_over_the_error_of_the_change(session: Se
     each = [part.value(Side.LEFT, "knee_range_deg").mean for part in found.parts]
     assert shown.values == pytest.approx(each)
     error = row.difference.error
-    assert error == pytest.approx(7.6, abs=0.3)  # 1.96 sqrt(2) hypot(1.2, 0.04 * 62), and chance
+    assert error == pytest.approx(7.8, abs=0.2)  # 1.96 sqrt(2) hypot(1.2, 0.043 * 58.7) = 7.7, and chance
     assert shown.band == pytest.approx((each[0] - error, each[0] + error))
 
 
@@ -77,7 +77,7 @@ def test_what_is_inside_the_error_is_not_blown_up(session: Session, analysis: An
     few = compared(session, (analysis, analysis, with_few_strides(analysis, left=5)))
     unjudged = trend(few, "knee_range_deg")
     assert unjudged.band is None  # from five strides no error is known, and none is drawn
-    assert unjudged.edges[1] - unjudged.edges[0] >= 2 * 7.2 * (1 - 1e-9)
+    assert unjudged.edges[1] - unjudged.edges[0] >= 2 * 7.7 * (1 - 1e-9)
 
 
 def test_a_visit_without_its_value_is_a_gap(session: Session, analysis: Analysis) -> None:

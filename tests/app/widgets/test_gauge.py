@@ -209,3 +209,31 @@ def test_no_words_of_a_card_lie_on_others_however_low_it_is(
     finally:
         use_language("en")
     assert forms == {False, True}
+
+
+@pytest.mark.parametrize("size", [(400, 210), (400, 186), (640, 340)])
+@pytest.mark.parametrize("joint", [Joint.LEFT_KNEE, Joint.RIGHT_KNEE])
+def test_words_never_enter_the_ring(
+    qtbot: QtBot, look: ThemeNotifier, monkeypatch: pytest.MonkeyPatch, joint: Joint, size: tuple[int, int]
+) -> None:
+    load_fonts()
+    monkeypatch.setattr(gauge_module, "QPainter", Recorder)
+    gauge = Gauge(look, joint)
+    qtbot.addWidget(gauge)
+    gauge.resize(*size)
+    assert not gauge.is_brief
+    ring = gauge._ring()
+    for shown in set(GaugeState) - {GaugeState.ABSENT}:
+        gauge.show_face(replace(gauge_face(joint, state(1.4, 23.0), HUMAN, is_now=False), state=shown, note="Needs it"))
+        Recorder.written = []
+        gauge.grab()
+        inside = [text for text, box in Recorder.written if text and box.intersects(ring)]
+        assert inside == ["1.4°", "23 mm"], shown
+
+
+def test_a_joint_whose_sensor_is_elsewhere_says_what_it_needs(qtbot: QtBot, look: ThemeNotifier) -> None:
+    gauge = Gauge(look, Joint.LEFT_KNEE)
+    qtbot.addWidget(gauge)
+    nothing = gauge_face(Joint.LEFT_KNEE, None, HUMAN, is_now=False)
+    gauge.show_face(replace(nothing, state=GaugeState.NEEDS, note="Needs the left shank sensor"))
+    assert gauge.accessibleName().endswith("Needs the left shank sensor")

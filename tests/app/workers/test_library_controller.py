@@ -1,5 +1,6 @@
 """The thread that asks the library: in order, answered on the screen's thread, refused in words."""
 
+import base64
 import gc
 import shutil
 import time
@@ -10,6 +11,7 @@ from datetime import UTC, datetime, timedelta
 from pathlib import Path
 from threading import Event, current_thread, main_thread
 from types import CellType
+from typing import cast
 
 import pytest
 from PySide6.QtCore import QObject
@@ -377,6 +379,98 @@ def test_the_demonstration_holds_patients_who_have_no_visit_yet_and_leaves_nothi
     with qtbot.waitSignal(controller.closed, timeout=WAIT_MS):
         controller.close()
     assert not folder.exists()
+
+
+def stored(library: OpenedLibrary) -> list[str]:
+    return [one.details.code for one in library.library.patients.search()]
+
+
+def begun_demonstration(qtbot: QtBot, controller: LibraryController, monkeypatch: pytest.MonkeyPatch) -> OpenedState:
+    monkeypatch.setattr("app.demonstration.patients.simulated_patients", lambda _now: ())  # nobody waits for visits
+    with qtbot.waitSignal(controller.opened, timeout=WAIT_MS) as reported:
+        controller.open_demonstration()
+    (state,) = reported.args or []
+    assert state.is_demonstration
+    return cast(OpenedState, state)
+
+
+def test_after_the_demonstration_the_library_opens_without_its_passphrase_for_the_same_user(
+    qtbot: QtBot, controller: LibraryController, folder: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    opened(qtbot, controller, folder, "vi")
+    begun_demonstration(qtbot, controller, monkeypatch)
+    assert controller.has_kept
+    with qtbot.waitSignal(controller.opened, timeout=WAIT_MS) as reported:
+        controller.open_kept()
+    (state,) = reported.args or []
+    assert (state.operator.code, state.library.folder, state.is_continued) == ("vi", folder, True)
+    assert not controller.has_kept
+    asker = Asker()
+    controller.run(stored, asker.on_done, asker.on_failed, asker)
+    qtbot.waitUntil(lambda: bool(asker.results), timeout=WAIT_MS)
+
+
+def test_the_key_that_is_kept_meanwhile_is_one_and_in_no_file(
+    qtbot: QtBot, controller: LibraryController, folder: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    state = opened(qtbot, controller, folder)
+    data_key = state.library.data_key
+    assert data_key is not None
+    key = bytes(data_key)
+    shown = begun_demonstration(qtbot, controller, monkeypatch)
+    assert not data_key  # moved, not copied
+    kept = controller._holder.kept
+    assert kept is not None
+    assert bytes(kept.data_key) == key
+    assert key.hex() not in repr(kept)
+    files = [one for place in (tmp_path, shown.library.folder) for one in place.rglob("*") if one.is_file()]
+    assert files
+    written = (key, key.hex().encode(), base64.b64encode(key))
+    assert [one for one in files if any(form in one.read_bytes() for form in written)] == []
+
+
+def test_who_logs_out_or_left_the_desk_is_not_kept_behind_the_demonstration(
+    qtbot: QtBot, controller: LibraryController, folder: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    for log_out in (controller.forget, controller.close):
+        opened(qtbot, controller, folder)
+        begun_demonstration(qtbot, controller, monkeypatch)
+        kept = controller._holder.kept
+        assert kept is not None
+        log_out()
+        with qtbot.waitSignal(controller.not_opened, timeout=WAIT_MS) as reported:
+            controller.open_kept()
+        assert reported.args is not None
+        assert reported.args[0] == "The library is locked."
+        assert not kept.data_key  # wiped
+    opened(qtbot, controller, folder)
+    controller.lock()
+    begun_demonstration(qtbot, controller, monkeypatch)
+    assert not controller.has_kept
+
+
+def test_the_next_window_opens_the_library_of_whoever_is_logged_in_and_no_locked_one(
+    qtbot: QtBot, controller: LibraryController, folder: Path
+) -> None:
+    opened(qtbot, controller, folder, "vi")
+    kept = controller.finish(must_keep=True)
+    assert kept is not None
+    following = LibraryController()
+    try:
+        with qtbot.waitSignal(following.opened, timeout=WAIT_MS) as reported:
+            following.open_kept(kept)
+        (state,) = reported.args or []
+        assert (state.operator.code, state.is_continued) == ("vi", True)
+        following.lock()
+        assert following.finish(must_keep=True) is None
+    finally:
+        following.finish()
+
+
+def test_at_the_programs_end_nobody_is_kept(qtbot: QtBot, controller: LibraryController, folder: Path) -> None:
+    opened(qtbot, controller, folder)
+    assert controller.finish() is None
+    assert controller._holder.kept is None
 
 
 def test_long_work_shows_progress_and_is_stopped(qtbot: QtBot, controller: LibraryController, folder: Path) -> None:

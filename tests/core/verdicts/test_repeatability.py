@@ -182,7 +182,7 @@ def test_an_excursion_of_8_degrees_and_one_of_60_keep_their_own_sizes() -> None:
     with using(own(2.0, Between.DAYS).figures):
         sigma = sigma_of(KNEE_RANGE, VISITS)
         assert sigma is not None
-        assert (sigma.of(8.0), sigma.of(60.0)) == pytest.approx((2 * math.hypot(1.2, 0.32), 2 * math.hypot(1.2, 2.4)))
+        assert (sigma.of(8.0), sigma.of(60.0)) == pytest.approx((2 * math.hypot(1.2, 0.344), 2 * math.hypot(1.2, 2.58)))
 
 
 def test_what_no_study_found_stays_as_published() -> None:

@@ -1,10 +1,11 @@
 """Questions from home: a table is chosen, asked beside the screen, remembered, saved, and gone when somebody leaves."""
 
 import csv
+from collections.abc import Callable
 from pathlib import Path
 
 import pytest
-from PySide6.QtCore import Qt
+from PySide6.QtCore import QObject, Qt
 from PySide6.QtTest import QTest
 from pytestqt.qtbot import QtBot
 
@@ -12,7 +13,10 @@ from app.cohort.study.groups import Grouping, GroupQuestion, answer
 from app.cohort.study.parameter_table import ParameterTable
 from app.home.cohort.cohort_page import QuestionsPage
 from app.home.home import QUESTIONS, Home
+from app.storage.exchange import import_session
+from app.storage.journal.disk import Room
 from app.system.settings import Settings
+from devices.simulation.walker import FreeMotion, Standing, Walk, WalkerSettings, simulate
 from tests.app.cohort.study.study_tables import MEASURE, random_rows, write_rows
 from tests.app.home.home_library import WAIT_MS
 from tests.app.watchdog import Watchdog
@@ -40,7 +44,7 @@ def test_home_leads_to_the_page_which_states_how_a_table_comes_to_be(home: Home)
     row.click()
     page = home.questions.page
     assert home.current is page
-    assert page.first_table.hasFocus()
+    assert page.make_table.hasFocus()
     assert home.rail.rows[QUESTIONS].is_current
     assert not home.bar.primary.isVisible()
     home.escape()
@@ -131,3 +135,55 @@ def test_a_file_that_is_no_table_is_refused_in_words(
     assert page.question is None
     assert settings.latest_table == str(table)
     assert not home.bar.primary.isVisible()
+
+
+def test_where_no_session_has_a_recording_no_table_is_made_and_the_page_states_why(
+    qtbot: QtBot, home: Home, tmp_path: Path
+) -> None:
+    home.rail.step_pressed.emit(QUESTIONS)
+    home.again.write(tmp_path / "made", None)
+    qtbot.waitUntil(lambda: "no session in this library has a recording" in home.banner.text.lower(), timeout=WAIT_MS)
+    page = home.questions.page
+    assert home.current is page
+    assert page.make_table.isVisible()
+    assert not page.measure.isVisible()
+
+
+@pytest.mark.endurance
+def test_a_table_of_the_whole_library_is_made_and_asked_by_one_button(
+    qtbot: QtBot, home: Home, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    recordings = (Standing(), FreeMotion(duration_s=3.0), Walk(strides=4))
+    session = simulate(WalkerSettings(seed=5, recordings=recordings)).session
+    kept: list[object] = []
+
+    class Keeper(QObject):
+        def on_done(self, result: object) -> None:
+            kept.append(result)
+
+    keeper, room = Keeper(), Room(start_bytes=0, kept_bytes=0)
+    home._controller.run(
+        lambda opened: import_session(opened, session, lambda *_: None, "DEMO-1", room=room),
+        keeper.on_done,
+        None,
+        keeper,
+    )
+    qtbot.waitUntil(lambda: bool(kept), timeout=WAIT_MS)
+    asked_in: list[object] = []
+
+    def choose(_window: object, _title: str, _proposed: object, chosen: Callable[[str], None]) -> None:
+        asked_in.append(home.current)
+        chosen(str(tmp_path / "made"))
+
+    monkeypatch.setattr("app.home.again.controller.ask_for_new_folder", choose)
+    monkeypatch.setattr("app.home.again.controller.processors", lambda: 1)
+    home.rail.step_pressed.emit(QUESTIONS)
+    page = home.questions.page
+    page.make_table.click()
+    assert asked_in == [page]
+    assert home.current is home.working
+    qtbot.waitUntil(lambda: page.found is not None, timeout=60_000)
+    assert home.current is page
+    assert page.measure.isVisible()
+    assert not page.make_table.isVisible()
+    assert (tmp_path / "made" / "parameters.parquet").exists()

@@ -158,7 +158,9 @@ def test_without_a_table_it_is_stated_how_one_comes_to_be(qtbot: QtBot, page: Qu
     assert "gaitwright batch" not in shown(page)
     page.forget_table()
     assert "gaitwright batch" in shown(page)
-    assert not page.measure.isVisible()
+    assert not any(control.isVisible() for control in (page.measure, page.grouping, page.included, page.simulated))
+    with qtbot.waitSignal(page.making_requested):
+        page.make_table.click()
     with qtbot.waitSignal(page.table_requested):
         page.first_table.click()
 

@@ -206,8 +206,8 @@ def test_two_visits_are_compared_by_the_error_of_a_new_attachment(
     page = texts(make_report(replace(request_of_alignments, earlier=alignments)))[4]
     assert "Comparison of visits" in page
     assert "Two visits, sensors reattached" in page
-    # 1.96 x sqrt(2) x hypot(1.2, 0.04 x 60)
-    assert "Differences between walks alone account for 7.4° of knee range of motion" in " ".join(page.split())
+    # 1.96 x sqrt(2) x hypot(1.2, 0.043 x 60)
+    assert "Differences between walks alone account for 7.9° of knee range of motion" in " ".join(page.split())
 
 
 def test_a_visit_of_another_alignment_is_not_compared_and_the_report_states_so(

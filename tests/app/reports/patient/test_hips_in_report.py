@@ -2,7 +2,7 @@
 
 import io
 import math
-from dataclasses import asdict, replace
+from dataclasses import replace
 
 import pypdf
 import pytest
@@ -14,9 +14,9 @@ from app.reports.patient.evidence import clocks_in_words, hips_table
 from app.reports.patient.first_page import first_page
 from app.reports.patient.peaks_table import peaks_table
 from app.reports.patient.pelvis_table import pelvis_table
-from app.summary.answer import answer_of
 from app.summary.data_quality import data_quality, one_time_in_words
 from app.summary.facts import Facts
+from app.summary.headline import headline_of
 from app.summary.quality import caveats
 from app.summary.request import ReportRequest
 from app.wording.translation import use_language
@@ -166,7 +166,7 @@ def test_no_sentence_shows_how_hips_or_pelvis_differ_however_much() -> None:
 
     facts = hip_facts(rewalked(hip_analysis(), stiffened))
     assert rows(peaks_table(facts))["Abduction range of motion"][3] == "–"
-    words = stated(list(asdict(answer_of(facts)).values())).casefold()
+    words = f"{headline_of(facts).first} {headline_of(facts).then}".casefold()
     assert words
     assert not [word for word in ("hip", "pelvis") if word in words]
 
@@ -188,19 +188,22 @@ def test_without_a_pelvis_nothing_of_it_is_printed(request_of_demonstration: Rep
     assert "hip" not in stated(first_page(request_of_demonstration, facts, None)).casefold()
 
 
-def test_the_first_page_has_six_panels_and_a_not_reported_hip_states_why() -> None:
-    request = hip_request(with_hip(hip_analysis(), Joint.LEFT_HIP, margin=1.2))
-    page = first_page(request, hip_facts(request.visit.analysis), None)
-    assert "Hip, knee and ankle over the gait cycle" in stated(page)
-    pictures = [panel["picture"] for panel in page["curves"]["panels"]]  # type: ignore[index]  # a block is plain JSON
-    assert len(pictures) == 6
-    assert "Not reported" in pictures[0]["alt"]
-    assert "Not reported" not in pictures[1]["alt"]
+def test_hips_are_a_row_on_page_one_and_curves_on_page_two_and_a_not_reported_one_states_why() -> None:
+    table = first_page(hip_request(hip_analysis()), hip_facts(), None)["table"]
+    assert isinstance(table, dict)
+    assert [row["name"] for row in table["rows"]].count("Hip range of motion") == 1
+    gated = with_hip(hip_analysis(), Joint.LEFT_HIP, margin=1.2)
+    page = first_page(hip_request(gated), hip_facts(gated), None)
+    assert "not reported" in stated(page["caution"])
+    (figures,) = (block for block in curves_page(hip_facts()) if block["kind"] == "figures")
+    pictures = figures["pictures"]
+    assert isinstance(pictures, list)
+    assert len(pictures) == 3
 
 
 def test_page_two_has_no_band_at_the_hip() -> None:
     blocks = curves_page(hip_facts())
-    assert "At the hip, the reference has another zero and is shown on page 1 only." in stated(blocks)
+    assert "At the hip, the reference has another zero and is not shown." in stated(blocks)
     assert hip_facts().has_joint(JointKind.HIP)
 
 

@@ -6,10 +6,11 @@ import numpy as np
 import pytest
 
 from app.summary.facts import Facts
-from app.summary.marks_on_curves import deviations_of, gaps_of
+from app.summary.headline import headline_of
+from app.summary.marks_on_curves import bracket_of, gaps_of, labels_of
 from app.summary.request import AnalysedVisit, ReportRequest
-from core.body import Joint, Side
-from core.results import Analysis
+from core.body import LEG_JOINTS, Joint, JointKind, Side
+from core.results import Analysis, ZeroKind
 from core.samples import FloatArray
 from tests.app.changed_analysis import recalibrated, rewalked, visit_of, walk_of
 from tests.app.reports.patient.test_what_stands_out import with_more
@@ -34,21 +35,45 @@ def moved(analysis: Analysis, joint: Joint, by_rad: FloatArray | float) -> Analy
     return rewalked(analysis, gait=gait)
 
 
-def test_the_range_that_a_sentence_shows_is_marked_between_its_extremes(
+def test_peaks_have_the_values_of_the_tables_and_lie_on_their_curves(
     request_of_demonstration: ReportRequest, analysis: Analysis
 ) -> None:
-    assert deviations_of(facts(request_of_demonstration, analysis)) == []
-    (mark,) = deviations_of(facts(request_of_demonstration, with_more(analysis, Side.LEFT, "knee_range_rad", -20.0)))
-    assert mark.words.startswith("L ")
-    assert mark.more.endswith(" less than R")
-    assert mark.first.angle_deg < mark.second.angle_deg
-    assert mark.is_larger_than_error
+    found = facts(request_of_demonstration, analysis)
+    labels = {kind: labels_of(found, kind) for kind in (JointKind.KNEE, JointKind.ANKLE)}
+    assert [len(labels[kind]) for kind in labels] == [2, 4]
+    for label in labels[JointKind.KNEE]:
+        value = found.value(label.side, "knee_swing_peak_deg").mean
+        assert label.text == f"{label.side.letter} {value:.0f}\N{DEGREE SIGN}"
+        curve = found.mean_curve_deg(label.side, "knee")
+        assert label.point.angle_deg == pytest.approx(curve[int(label.point.percent)])
+    gated = recalibrated(analysis, [Joint.LEFT_KNEE], is_same_joint=False, sign_margin=1.05)
+    assert [label.side for label in labels_of(facts(request_of_demonstration, gated), JointKind.KNEE)] == [Side.RIGHT]
+    assert (
+        labels_of(
+            facts(request_of_demonstration, recalibrated(analysis, LEG_JOINTS, zero=ZeroKind.NONE)), JointKind.KNEE
+        )
+        == []
+    )
 
 
-def test_what_is_not_reported_is_not_marked(request_of_demonstration: ReportRequest, analysis: Analysis) -> None:
-    shortened = with_more(analysis, Side.LEFT, "knee_range_rad", -20.0)
-    gated = recalibrated(shortened, [Joint.LEFT_KNEE], is_same_joint=False, sign_margin=1.05)
-    assert deviations_of(facts(request_of_demonstration, gated)) == []
+def test_the_headlines_movement_has_a_bracket_with_its_numbers(
+    request_of_demonstration: ReportRequest, analysis: Analysis
+) -> None:
+    found = facts(request_of_demonstration, with_more(analysis, Side.LEFT, "knee_stance_to_swing_rad", -20.0))
+    headline = headline_of(found)
+    bracket = bracket_of(found, headline)
+    assert bracket is not None
+    assert bracket.words == "L 41\N{DEGREE SIGN}"
+    assert bracket.more == "21\N{DEGREE SIGN} less than R"
+    assert all(number in headline.first for number in ("41\N{DEGREE SIGN}", "21\N{DEGREE SIGN}"))
+    assert bracket.first.angle_deg < bracket.second.angle_deg
+    assert bracket.first.joint is Joint.LEFT_KNEE
+
+
+def test_similar_legs_and_stance_have_no_bracket(request_of_demonstration: ReportRequest, analysis: Analysis) -> None:
+    for changed in (analysis, with_more(analysis, Side.LEFT, "stance_percent", 6.0)):
+        found = facts(request_of_demonstration, changed)
+        assert bracket_of(found, headline_of(found)) is None
 
 
 def test_a_bump_leaves_the_band_and_a_height_alone_does_not(

@@ -14,15 +14,16 @@ from app.exports.spreadsheet import write_spreadsheet
 from app.exports.summary import write_summary
 from app.reports.patient.comparison_page import comparison_of
 from app.reports.patient.document import facts_of
-from app.reports.patient.first_page import answer
-from app.reports.patient.key_numbers import key_rows
+from app.reports.patient.first_page import first_page
 from app.reports.patient.patient_page import patient_page
 from app.results.result_page import ResultPage
 from app.summary.course import course_of
 from app.summary.course_lanes import CourseVisit
 from app.summary.facts import Facts
+from app.summary.headline import headline_of
 from app.summary.request import AnalysedVisit, ReportRequest, default_walks
 from app.summary.trend_lines import trend_lines
+from app.summary.what_differs import what_differs
 from app.theme.notifier import ThemeNotifier
 from core.body import Side
 from core.goals import NO_GOALS
@@ -85,7 +86,7 @@ def test_a_knee_has_one_value_on_screen_report_course_and_in_files(now: Analysed
     assert comparison is not None
     (line,) = [one for one in trend_lines(request.course, SHOES, [KNEE], NO_GOALS) if one.side is Side.LEFT]
     (compared,) = [row for row in comparison.rows if (row.measure.column, row.side) == (KNEE, Side.LEFT)]
-    (key_row,) = [row for row in key_rows(shown, comparison) if row.column == KNEE]
+    (key_row,) = [row for row in what_differs(shown) if row.column == KNEE]
     values = [
         *(Facts(now, now.walk(name)).value(Side.LEFT, KNEE).mean for name in ("walk 1", "walk 2")),  # on the screen
         shown.value(Side.LEFT, KNEE).mean,
@@ -100,7 +101,7 @@ def test_a_knee_has_one_value_on_screen_report_course_and_in_files(now: Analysed
     rows = openpyxl.load_workbook(tmp_path / "results.xlsx")["Conditions"].iter_rows(values_only=True)
     values += [float(str(row[4])) for row in rows if (row[0], row[2], row[3]) == (SHOES, "left", KNEE)]
     assert values == pytest.approx([52.4] * 8, abs=0.02)
-    assert "52.4" in str(answer(shown, comparison))
+    assert "Left knee flexes 52°" in first_page(request, shown, comparison)["summary"]["first"]  # type: ignore[index]  # plain JSON
     stated = "Your left knee now bends 52 degrees. At your first visit it was 34."
     assert patient_page(request, shown)["answer"] == stated
 
@@ -117,21 +118,21 @@ def test_page_one_and_the_patients_page_judge_the_knee_alike(
 ) -> None:
     request = request_of(visit_on(FIRST, (first_deg, 12)), now)
     facts = facts_of(request)
-    page_one, patient = str(answer(facts, comparison_of(request))), str(patient_page(request, facts))
+    page_one, patient = headline_of(facts), str(patient_page(request, facts))
     assert ("° is clearly more than that: this is a real change" in patient) is is_real
-    assert ("18.4° more than on 1 Jul 2026 (34.0°)" in page_one) is is_real
-    assert ("which may be measurement error" in page_one) is not is_real
+    assert ("up 18° since 1 Jul" in page_one.first) is is_real
+    assert ("within measurement error" in page_one.then) is not is_real
 
 
 @pytest.mark.parametrize("first_deg", [34.0, 50.0])
-def test_the_screen_states_first_what_page_one_states_first(qtbot: QtBot, now: AnalysedVisit, first_deg: float) -> None:
+def test_the_screen_states_first_what_a_report_states_first(qtbot: QtBot, now: AnalysedVisit, first_deg: float) -> None:
     request = request_of(visit_on(FIRST, (first_deg, 12)), now)
     facts = facts_of(request)
-    sentences = answer(facts, comparison_of(request))["sentences"]
-    assert isinstance(sentences, list)
+    summary = first_page(request, facts, comparison_of(request))["summary"]
+    assert isinstance(summary, dict)
     page = ResultPage(ThemeNotifier())
     qtbot.addWidget(page)
     page.show_visit(now, course=request.course)
-    assert page.answer.text.startswith(sentences[0][1])
+    assert summary["first"] in page.headline.text
     assert page.recordings.currentData() == request.shown
     assert [cycle.mean.n for cycle in page.cycles.charts.knee.chart.cycles.values()] == [25, 25]

@@ -33,7 +33,7 @@ def test_the_subcommand_makes_a_report_with_the_clinicians_words(session: Path, 
     assert main(["report", str(session), "--out", str(out), "--paper", "letter", *comment]) == 0
     reader = pypdf.PdfReader(out)
     assert [float(side) for side in reader.pages[0].mediabox[2:]] == [612, 792]
-    assert "Walks well with one crutch." in reader.pages[-1].extract_text()
+    assert "Walks well with one crutch." in reader.pages[0].extract_text()
     assert list(out.parent.iterdir()) == [out]
 
 

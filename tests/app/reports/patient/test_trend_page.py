@@ -146,14 +146,14 @@ def test_a_goal_is_dotted_with_who_and_when_and_a_sentence_states_how_the_last_v
     blocks = page(with_goals(request_of_demonstration, knee_goal(41.0)), seen)
     assert sentences(blocks)[-1] == (
         "Goal: Knee flexion, stance to swing, left: at least 41°; measured 52.0°, reached; the difference is beyond "
-        "measurement error (±6.8°). More than 9 of 10 such measurements are at the goal. First reached at visit 4."
+        "measurement error (±7.1°). More than 9 of 10 such measurements are at the goal. First reached at visit 4."
     )
     (drawn,) = (block["pictures"] for block in blocks if block["kind"] == "figures")
     assert "goal L 41°, agreed 16 Sep" in str(drawn)
     assert "Keller" in str(drawn)
     inside = sentences(page(with_goals(request_of_demonstration, knee_goal(55.0)), seen))[-1]
     assert inside.endswith(
-        "not reached; the difference is within measurement error (±6.8°). 1 of 10 such measurements is at the goal."
+        "not reached; the difference is within measurement error (±7.1°). 1 of 10 such measurements is at the goal."
     )
 
 

@@ -8,16 +8,25 @@ from PySide6.QtTest import QTest
 from pytestqt.qtbot import QtBot
 
 from app.theme.notifier import ThemeNotifier
+from app.widgets.action_bar import VerbButton
+from app.widgets.body_figure import SensorMark
+from app.widgets.gauge import GaugeState
 from app.widgets.rail_row import StepState
+from app.widgets.sensor_tile import marks
+from app.wizard.free_motion.motion_shown import sensor_marks
 from app.wizard.free_motion.step import FreeMotionStep
+from app.wizard.keys import Intent, KeyAction
 from app.wizard.sensors.step import SensorsStep
 from app.wizard.step import StepId
 from app.wizard.visit import Visit
+from app.wizard.walking.step import WalkingStep
 from app.wizard.wizard import Wizard
-from core.body import Site
+from app.wizard.worn_tiles import worn_tiles
+from core.body import LEG_JOINTS, Joint, Site
 from core.placement.labels import groups_of
 from core.session import RecordingKind
 from tests.app.wizard.begun_visit import begin, record
+from tests.app.wizard.free_motion.test_hints import motion, state
 from tests.app.wizard.pressing import press
 
 THIGH, SHANK, FOOT = Site.LEFT_THIGH, Site.LEFT_SHANK, Site.LEFT_FOOT
@@ -41,46 +50,130 @@ def moved(
 
 
 @pytest.mark.parametrize("detected", [{THIGH: SHANK, SHANK: THIGH}, MIXED], ids=["two", "three"])
-def test_detected_positions_are_used_by_the_primary_button_and_the_step_goes_on(
+def test_detected_positions_are_used_by_one_button_of_the_page_and_the_step_goes_on(
     qtbot: QtBot, visit: Visit, moved: FreeMotionStep, detected: dict[Site, Site]
 ) -> None:
     visit.sensors.doubt(detected)
-    primary = moved.bar().primary
-    assert primary is not None
-    assert (primary.text, primary.key, primary.is_enabled) == ("Use detected positions", "Enter", True)
+    assert [(one.text, one.key) for one in moved.bar().on_page] == [
+        ("Use detected positions", "Enter"),
+        ("Check positions", "P"),
+    ]
     assert moved.state is StepState.ATTENTION
     moved.enter()
-    assert moved.page.band.hint.sentence == "Positions look swapped"
     before = dict(visit.sensors.site_of)
-    with qtbot.waitSignals([moved.done, moved.reported, visit.worn.corrected], timeout=10_000):
-        press(moved)
+    with qtbot.waitSignals([moved.done, moved.offered, visit.worn.corrected], timeout=10_000):
+        moved.page.swapped.use.click()
     assert visit.sensors.site_of == {name: detected.get(site, site) for name, site in before.items()}
     free = visit.recordings.free_motion
     assert free is not None
     assert free.stored.placement is not None
     names = {site: sensor.name for site, sensor in free.stored.placement.sensors.items()}
     assert names == visit.sensors.sensor_at  # what was recorded is of the new positions
-    assert moved.bar().primary != primary
+    assert not visit.sensors.detected
+
+
+def test_positions_that_were_changed_by_one_button_come_back_with_their_doubt_when_that_is_undone(
+    qtbot: QtBot, visit: Visit, moved: FreeMotionStep
+) -> None:
+    visit.sensors.doubt(MIXED)
+    before = dict(visit.sensors.site_of)
+    with qtbot.waitSignal(visit.worn.corrected, timeout=10_000):
+        press(moved)
+    moved.leave()
+    moved._worn_before = before  # as after `done`, which the wizard answers by leaving
+    with qtbot.waitSignal(visit.worn.corrected, timeout=10_000):
+        moved.undo()
+    assert (visit.sensors.site_of, visit.sensors.detected) == (before, MIXED)
+    free = visit.recordings.free_motion
+    assert free is not None
+    assert free.stored.placement is not None
+    assert {site: sensor.name for site, sensor in free.stored.placement.sensors.items()} == visit.sensors.sensor_at
 
 
 def test_without_a_doubt_the_primary_button_goes_on(visit: Visit, moved: FreeMotionStep) -> None:
-    primary = moved.bar().primary
-    assert primary is not None
-    assert (primary.text, moved.state) == ("Continue to walking", StepState.DONE)
+    bar = moved.bar()
+    assert bar.primary is not None
+    assert (bar.primary.text, bar.primary.is_enabled, bar.on_page) == ("Continue to walking", True, ())
+    assert moved.state is StepState.DONE
+    assert (moved.page.swapped.isHidden(), moved.page.band.isHidden()) == (True, False)
+    assert all(gauge.face.state is not GaugeState.NEEDS for gauge in moved.page.gauges.values())
+    assert not any(tile.moves_like or tile.is_bad for tile in worn_tiles(visit.sensors).values())
+
+
+def test_sensors_that_look_swapped_take_the_hints_place_and_walking_waits_for_them(
+    visit: Visit, moved: FreeMotionStep
+) -> None:
+    visit.sensors.doubt({SHANK: Site.RIGHT_THIGH, Site.RIGHT_THIGH: SHANK})
+    moved.enter()
+    page = moved.page
+    assert (page.swapped.isHidden(), page.band.isHidden(), page.question.isHidden()) == (False, True, True)
+    assert page.swapped.text == (
+        "Left shank and right thigh look swapped. These angles would be wrong: left knee, left ankle and right knee."
+    )
+    bar = moved.bar()
+    assert bar.primary is not None
+    assert (bar.primary.is_enabled, bar.note) == (False, "Correct the sensor positions first.")
+    walking = WalkingStep(ThemeNotifier(), visit)
+    assert walking.cannot_enter == bar.note
+    filled = [button for button in page.findChildren(VerbButton) if button.is_filled and not button.isHidden()]
+    assert filled == [page.swapped.use]
+    visit.sensors.doubt({})
+    moved.enter()
+    assert (page.swapped.isHidden(), page.band.isHidden()) == (True, False)
+    assert walking.cannot_enter != bar.note
+    walking.deleteLater()
+
+
+def test_gauges_of_swapped_sensors_show_no_figure_but_what_they_need(visit: Visit, moved: FreeMotionStep) -> None:
+    moved._motion = motion({joint: state(0.8, 6.0, None, is_closed=True) for joint in LEG_JOINTS})
+    visit.sensors.doubt({SHANK: Site.RIGHT_THIGH, Site.RIGHT_THIGH: SHANK})
+    moved._show()
+    faces = {joint: gauge.face for joint, gauge in moved.page.gauges.items()}
+    needs = {joint: face.note for joint, face in faces.items() if face.state is GaugeState.NEEDS}
+    assert needs == {
+        Joint.LEFT_KNEE: "Needs the left shank sensor",
+        Joint.LEFT_ANKLE: "Needs the left shank sensor",
+        Joint.RIGHT_KNEE: "Needs the right thigh sensor",
+    }
+    for joint in needs:
+        centre = faces[joint].centre
+        assert centre is not None
+        assert (centre.figure, centre.share) == ("\N{EN DASH}", 0.0)
+    assert faces[Joint.RIGHT_ANKLE].state is GaugeState.CENTRE
+    visit.sensors.doubt(MIXED)
+    moved._show()
+    assert moved.page.gauges[Joint.LEFT_KNEE].face.note == "Needs both sensors"
+
+
+def test_the_tiles_and_the_figure_show_whose_place_a_swapped_sensor_moves_like(
+    visit: Visit, moved: FreeMotionStep
+) -> None:
+    visit.sensors.doubt({SHANK: Site.RIGHT_THIGH, Site.RIGHT_THIGH: SHANK})
+    tiles = worn_tiles(visit.sensors)
+    amber = {site: tile.words for site, tile in tiles.items() if tile.is_bad}
+    assert amber == {SHANK: "moves like R thigh", Site.RIGHT_THIGH: "moves like L shank"}
+    assert {site for site, mark in marks(tiles).items() if mark is SensorMark.SWAPPED} == set(amber)
+    assert {site for site, mark in sensor_marks(visit.sensors).items() if mark is SensorMark.SWAPPED} == set(amber)
+    moved._show()
+    doubted = moved.page.figure.grab().toImage()
+    moved.page.figure.show_moves({})
+    assert moved.page.figure.grab().toImage() != doubted  # the arrow
 
 
 def test_positions_can_be_checked_and_kept_as_they_are(
     qtbot: QtBot, visit: Visit, moved: FreeMotionStep, worn: dict[str, Site]
 ) -> None:
     visit.sensors.doubt(MIXED)
-    assert [(one.text, one.key) for one in moved.bar().quiet] == [("Check positions", "P")]
     with qtbot.waitSignal(moved.jumped) as jumped:
         press(moved, "Check positions")
     assert jumped.args == [StepId.SENSORS]
     sensors = SensorsStep(ThemeNotifier(), visit)
     qtbot.addWidget(sensors.page)
     sensors.enter()
-    words = "L thigh, L shank and L foot look mixed up. Change the sensor positions, or continue with the current ones."
+    words = (
+        "Left thigh, left shank and left foot look mixed up. "
+        "Change the sensor positions, or continue with the current ones."
+    )
     assert sensors.page.notice.text == words
     assert (sensors.state, sensors.note) == (StepState.ATTENTION, "positions look swapped")
     sensors.leave()
@@ -137,8 +230,27 @@ def test_the_keys_on_the_bar_use_and_check_the_positions(wizard: Wizard, monkeyp
     assert visit is not None
     visit.sensors.doubt(MIXED)
     assert set(wizard.shell.bar.keys) == {"Enter", "Space", "P"}
+    used: list[None] = []
+    monkeypatch.setattr(type(step), "_use_detected", lambda _: used.append(None))
+    wizard._show()
     step.jumped.disconnect()
     step.jumped.connect(gone.append)
     wizard.shell.bar.back.setFocus()
+    QTest.keyClick(wizard.shell.bar.back, Qt.Key.Key_Return)
+    assert used == [None]
     QTest.keyClick(wizard.shell.bar.back, Qt.Key.Key_P)
     assert gone == [StepId.SENSORS]
+
+
+def test_what_the_toast_offers_is_taken_back_by_the_step_that_offered_it(
+    wizard: Wizard, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    wizard.begin(None)
+    undone: list[StepId] = []
+    for step in wizard.steps.values():
+        monkeypatch.setattr(type(step), "undo", lambda self: undone.append(self.id))
+    wizard.steps[StepId.FREE_MOTION].offered.emit("Sensor positions changed.")
+    wizard.shell.toast.undo()
+    assert undone == [StepId.FREE_MOTION]
+    wizard.act_on(Intent(KeyAction.UNDO))  # with nothing offered, it is the current step's
+    assert undone[1:] == [StepId.PATIENT]

@@ -313,15 +313,15 @@ def test_labels_that_are_kept_are_not_asked_about_again(qtbot: QtBot, step: Free
     step.enter()
     visit.sensors.doubt(swapped(*pair))
     step.enter()
-    assert step.page.question.notice.text == (
-        "L thigh and L shank look swapped. These angles would be wrong: left knee and left ankle."
+    assert step.page.swapped.text == (
+        "Left thigh and left shank look swapped. These angles would be wrong: left knee and left ankle."
     )
     visit.sensors.keep_labels()
     step.enter()
-    assert step.page.question.isHidden()
+    assert step.page.swapped.isHidden()
     visit.sensors.doubt(swapped(*pair))
     step.enter()
-    assert step.page.question.isHidden()
+    assert step.page.swapped.isHidden()
 
 
 def test_swapped_labels_change_places_and_what_was_recorded_is_corrected(

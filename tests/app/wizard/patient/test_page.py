@@ -155,6 +155,19 @@ def test_the_last_visit_can_be_had_again(page: PatientPage, qtbot: QtBot) -> Non
         QTest.keyClick(button, Qt.Key.Key_Space)
 
 
+def test_the_side_is_the_first_question_after_the_code_by_keyboard_and_in_sight(page: PatientPage) -> None:
+    page.show_draft(PatientDraft(KNOWN))
+    order = page.tab_order
+    assert order[:5] == [page.code.line_edit, *page.side.segments]
+    for is_compact, size in ((False, (1064, 672)), (True, (736, 432))):
+        page.set_compact(is_compact)
+        page.resize(*size)
+        QTest.qWait(1)
+        places = [control.mapTo(page, QPoint()) for control in order if control.isVisible()]
+        assert (places[0].y(), places[0].x()) < (places[1].y() + page.height() // 10, places[1].x() + 1)
+        assert all(places[1].y() < later.y() for later in places[5:])
+
+
 def test_every_control_has_a_name_and_nothing_is_wider_than_the_page(page: PatientPage) -> None:
     page.show_draft(PatientDraft(KNOWN))
     for is_compact, size in ((False, (1064, 672)), (True, (736, 432))):

@@ -182,7 +182,7 @@ def test_an_earlier_visit_is_compared_as_worn_again(qtbot: QtBot, visit: Visit, 
     assert [row.difference.difference for row in knees] == [0.0, 0.0]
     for row in knees:
         assert ErrorSource.DAYS in row.difference.sources
-        strapped_again = 1.96 * math.sqrt(2) * math.hypot(1.2, 0.04 * row.value.mean)
+        strapped_again = 1.96 * math.sqrt(2) * math.hypot(1.2, 0.043 * row.value.mean)
         assert strapped_again < row.difference.error < 1.2 * strapped_again  # chance is added
 
 

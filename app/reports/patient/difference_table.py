@@ -1,0 +1,153 @@
+"""Page one's table: in what the legs differ most, with intervals, healthy people's difference and the last visit."""
+
+import math
+from collections.abc import Sequence
+
+from app.charts.cycles import is_mean_enough
+from app.charts.drawing import MM, Picture, box, line, picture
+from app.charts.joint_on_paper import CHIP, chip_picture
+from app.summary.facts import Facts
+from app.summary.goals import goal_mark
+from app.summary.interval_words import interval_in_figures
+from app.summary.numbers_in_words import CARE, DAGGER, NOTHING, dagger_note, fixed, marked, signed
+from app.summary.trend_lines import walked_visits
+from app.summary.what_differs import LegsRow, since_last, what_differs, without_family
+from app.summary.what_stands_out import FAMILIES
+from app.theme.colours import LIGHT, PAPER
+from app.wording.body import side_name
+from app.wording.dates import day_in_words
+from app.wording.measures import with_unit
+from app.wording.translation import tr
+from core.body import Side
+from core.parameters import KNEE, Unit, unit_of
+from core.verdicts.measurement_error import Difference, Mark
+from core.verdicts.model import Verdict
+
+MOST_ROWS = 5
+HIP = "hip_range_deg"
+MARK, STRIP, STRIP_HEIGHT = 7.0, 22 * MM, 12.0
+ZONES, HALVES = 2.3, 1.6  # half a drawing: so many times healthy people's difference, else half of the interval
+FILLED, HOLLOW = 2.4, 2.0  # radii
+
+
+def difference_table(facts: Facts) -> dict[str, object] | None:
+    """Up to five rows, a hip's among them where one was measured; None where nothing was. One leg: its values alone."""
+    rows = _rows(facts)
+    if not any(row.values for row in rows):
+        return None
+    sides = [side for side in Side if side in facts.gait]
+    walked = walked_visits(facts.course, facts.condition)
+    days = [visit.day for visit in walked]
+    has_last, first = len(walked) > 1, facts.first_and_second[0]
+    less = f"{first.letter} \N{MINUS SIGN} {first.other.letter}"
+    since = tr("Since {day}").format(day=day_in_words(days[-2], days)) if has_last else ""
+    return {
+        "title": tr("Largest differences") if len(sides) > 1 else tr("Values"),
+        "sides": [chip_picture(side, CHIP, side_name(side)).as_data() for side in sides],
+        "heads": [less, tr("likely between"), tr("Reference")] if len(sides) > 1 else [],
+        "since": since,
+        "rows": [_row(facts, row, sides, has_last=has_last) for row in rows],
+        "marks": _marks(rows, sides),
+    }
+
+
+def _rows(facts: Facts) -> list[LegsRow]:
+    """As on the screen; the last is a hip's, else one not reported, where neither is among the first."""
+    rows = without_family(what_differs(facts))
+    if len(facts.gait) < len(Side):
+        columns = {row.column for row in rows if row.values}
+        rows = [row for row in rows if row.values and FAMILIES.get(row.column) not in columns]
+    shown, rest = rows[:MOST_ROWS], rows[MOST_ROWS:]
+    for is_wanted in (
+        lambda row: row.column == HIP and row.values,
+        lambda row: row.column == KNEE and Verdict.NOT_REPORTED in row.verdicts.values(),
+        lambda row: Verdict.NOT_REPORTED in row.verdicts.values(),
+    ):
+        if any(map(is_wanted, shown)):
+            return shown
+        if found := next(filter(is_wanted, rest), None):
+            return [*shown[:-1], found]
+    return shown
+
+
+def _row(facts: Facts, row: LegsRow, sides: Sequence[Side], *, has_last: bool) -> dict[str, object]:
+    found, unit = row.difference, "°" if unit_of(row.column) is Unit.DEGREES else ""
+    is_marked, decimals = found.mark is not Mark.NONE, row.decimals
+    missing = [side for side in sides if side not in row.values and row.verdicts[side] is not Verdict.NOT_MEASURED]
+    why = ""
+    if missing and not found.is_reported:
+        why = ", ".join(f"{side.letter} {row.unknown[side]}" for side in missing)
+    return {
+        "name": "; ".join([row.name if unit else with_unit(row.name, row.unit.strip()), *map(goal_mark, row.goals)]),
+        "values": [_value(row, side, unit) for side in sides],
+        "mark": mark_picture(found.mark).as_data() if is_marked else None,
+        "difference": signed(found.difference, decimals) + unit if found.is_reported else NOTHING,
+        "between": interval_in_figures(row.column, found, unit),
+        "why": why,
+        "reference": tr("up to {limit}").format(limit=fixed(found.healthy, decimals) + unit)
+        if math.isfinite(found.healthy)
+        else NOTHING,
+        "is_marked": is_marked,
+        "since": _since(facts, row, unit) if has_last else "",
+        "strip": strip(row).as_data() if not has_last and found.is_judged and len(sides) > 1 else None,
+    }
+
+
+def _value(row: LegsRow, side: Side, unit: str) -> str:
+    if side not in row.values or not is_mean_enough(row.values[side].n):
+        return NOTHING
+    return marked(fixed(row.values[side].mean, row.decimals) + unit, row.verdicts.get(side, Verdict.READ))
+
+
+def _since(facts: Facts, row: LegsRow, unit: str) -> str:
+    changed = since_last(facts, row.column)
+    if changed is None:
+        return NOTHING
+    side, found = changed
+    dagger = DAGGER if found.is_unverified and found.exceeds else ""
+    return f"{side.letter}\u00a0{signed(found.difference, row.decimals)}{unit}{dagger}"
+
+
+def _marks(rows: Sequence[LegsRow], sides: Sequence[Side]) -> list[dict[str, object]]:
+    """What is beside the numbers, in words: each mark's picture, or none."""
+    stated: list[dict[str, object]] = []
+    if len(sides) > 1:
+        beyond = tr("beyond the reference: 95 of 100 healthy people differ by less")
+        stated.append({"picture": mark_picture(Mark.HEALTHY).as_data(), "said": beyond})
+        stated.append({"picture": mark_picture(Mark.ERROR).as_data(), "said": tr("beyond measurement error")})
+        if any(row.difference.is_judged and row.difference.is_unverified for row in rows):
+            stated.append({"picture": None, "said": dagger_note()})
+    if any(Verdict.CARE in row.verdicts.values() for row in rows):
+        stated.append({"picture": None, "said": tr("{mark}: caution.").format(mark=CARE)})
+    return stated
+
+
+def mark_picture(mark: Mark) -> Picture:
+    fill = PAPER.ink if mark is Mark.HEALTHY else PAPER.paper
+    words = tr("beyond 95 of 100") if mark is Mark.HEALTHY else tr("beyond error")
+    dot = f'<circle cx="{MARK / 2}" cy="{MARK / 2}" r="2.6" fill="{fill}" stroke="{PAPER.ink}" stroke-width="1.1"/>'
+    return picture([dot], MARK, MARK, words)
+
+
+def strip(row: LegsRow) -> Picture:
+    """A difference with its likely interval over what 95 of 100 healthy people differ by."""
+    found: Difference = row.difference
+    reach = ZONES * found.healthy if math.isfinite(found.healthy) else HALVES * found.error
+    y, half = STRIP_HEIGHT / 2, STRIP / 2
+
+    def x(value: float) -> float:
+        return half + (half - FILLED) * min(max(value / reach, -1.0), 1.0)
+
+    parts = []
+    if math.isfinite(found.healthy):
+        left, right = x(-found.healthy), x(found.healthy)
+        parts.append(box(left, 1, right - left, STRIP_HEIGHT - 2, LIGHT.band_2sd))
+    parts.append(line(half, 0.5, half, STRIP_HEIGHT - 0.5, PAPER.note, 0.5))
+    low, high = (x(edge) for edge in found.interval)
+    parts.append(line(low, y, high, y, PAPER.ink, 0.9))
+    parts += [line(end, y - 2.2, end, y + 2.2, PAPER.ink, 0.9) for end in (low, high)]
+    is_hollow, radius = found.mark is Mark.ERROR, FILLED if found.mark is not Mark.NONE else HOLLOW
+    fill = PAPER.paper if is_hollow else PAPER.ink
+    centre = f'cx="{x(found.difference):.2f}" cy="{y}" r="{radius}"'
+    parts.append(f'<circle {centre} fill="{fill}" stroke="{PAPER.ink}" stroke-width="0.9"/>')
+    return picture(parts, STRIP, STRIP_HEIGHT)

@@ -1,0 +1,162 @@
+"""Banner in the place of the hint while sensors move like those of other places, with its two ways on."""
+
+from PySide6.QtCore import QPointF, QRectF, QSize, Signal
+from PySide6.QtGui import (
+    QAccessible,
+    QAccessibleAnnouncementEvent,
+    QColor,
+    QFontMetrics,
+    QPainter,
+    QPaintEvent,
+    QResizeEvent,
+)
+from PySide6.QtWidgets import QBoxLayout, QHBoxLayout, QSizePolicy, QVBoxLayout, QWidget
+
+from app.theme.icons import Icon, paint_icon
+from app.theme.notifier import ThemeNotifier
+from app.theme.theme import CARD_RADIUS
+from app.widgets.action_bar import BarAction, VerbButton
+from app.widgets.button import ButtonKind
+from app.widgets.painted_text import height_for
+from app.widgets.text import SEMIBOLD, Text
+from app.widgets.themed import Themed
+
+HEIGHT, COMPACT_HEIGHT = 120, 96
+MARK, COMPACT_MARK = 64, 40
+SENTENCES, COMPACT_SENTENCES = (32, 28, 24, 20), (22, 20, 18)  # the largest that takes two lines at most
+BUTTONS = 324
+STACKED_BELOW = 620  # px of the design: the buttons stand below the words
+
+
+class SwapBanner(Themed):
+    """Hidden until sensors look swapped.
+
+    Signals
+    -------
+    pressed
+        The BarAction of the button that was pressed.
+    """
+
+    accessible_role = QAccessible.Role.AlertMessage
+
+    pressed = Signal(object)
+
+    def __init__(self, look: ThemeNotifier) -> None:
+        super().__init__()
+        self._look, self._is_compact = look, False
+        self.setSizePolicy(QSizePolicy.Policy.Expanding, QSizePolicy.Policy.Minimum)
+        self._what = Text(look, size=SENTENCES[0], weight=SEMIBOLD, tone="caution_ink", wraps=True)
+        self._then = Text(look, size=15, tone="caution_ink", wraps=True)
+        self.use = VerbButton(look, self, is_primary=True)
+        self.check = VerbButton(look, self)
+        words = QVBoxLayout()
+        words.setSpacing(0)
+        words.addStretch(1)
+        words.addWidget(self._what)
+        words.addWidget(self._then)
+        words.addStretch(1)
+        self._beside = QVBoxLayout()
+        for button in (self.use, self.check):
+            self._beside.addWidget(button)
+            button.clicked.connect(self._on_clicked)
+        self._row = QHBoxLayout(self)
+        self._row.addLayout(words, 1)
+        self._row.addLayout(self._beside)
+        self._on_look_changed()
+        self.hide()
+
+    @property
+    def text(self) -> str:
+        return " ".join(filter(None, [self._what.text(), self._then.text()]))
+
+    @property
+    def buttons(self) -> tuple[QWidget, ...]:
+        """The two ways on, in the order of reading."""
+        return (self.use, self.check)
+
+    def show_message(self, what: str, then: str, use: BarAction, check: BarAction) -> None:
+        """Show which places look swapped and what that costs; whoever cannot see it is notified once."""
+        is_news = self.isHidden() or what != self._what.text()
+        self.use.show_verb(use, ButtonKind.PRIMARY, is_inverse=False)
+        self.check.show_verb(check, ButtonKind.QUIET, is_inverse=False)
+        self.show()
+        if is_news:
+            self._what.setText(what)
+            self._then.setText(then)
+            self._then.setVisible(bool(then))
+            self._fit_sentence()
+            self.setAccessibleName(self.text)
+            QAccessible.updateAccessibility(QAccessibleAnnouncementEvent(self, self.text))
+
+    def set_compact(self, is_compact: bool) -> None:
+        self._is_compact = is_compact
+        self._on_look_changed()
+
+    def resizeEvent(self, event: QResizeEvent) -> None:
+        super().resizeEvent(event)
+        is_stacked = self.width() < self._look.theme.px(STACKED_BELOW)
+        self._row.setDirection(QBoxLayout.Direction.TopToBottom if is_stacked else QBoxLayout.Direction.LeftToRight)
+        self._fit_sentence()
+
+    def minimumSizeHint(self) -> QSize:
+        hint = super().minimumSizeHint()
+        return QSize(hint.width(), max(hint.height(), self._look.theme.px(self._height)))
+
+    def paintEvent(self, _event: QPaintEvent) -> None:
+        theme = self._look.theme
+        c, px = theme.colours, theme.px
+        painter = QPainter(self)
+        box = QRectF(self.rect()).adjusted(0.5, 0.5, -0.5, -0.5)
+        theme.paint_box(painter, box, c.caution, c.caution_edge, 1, CARD_RADIUS)
+        mark = self._mark * theme.scale
+        centre = QPointF(px(self._inset) + mark / 2, self._what.parentWidget().height() / 2)
+        if self._row.direction() is QBoxLayout.Direction.TopToBottom:
+            centre.setY(px(12) + mark / 2)
+        painter.setPen(theme.pen(c.caution_mark, 1))
+        painter.setBrush(QColor(c.caution_mark))
+        painter.drawEllipse(centre, mark / 2, mark / 2)
+        side = mark * 0.5
+        icon = QRectF(centre.x() - side / 2, centre.y() - side / 2, side, side)
+        paint_icon(painter, Icon.SWAP, icon, c.caution_mark_ink)
+
+    @property
+    def _height(self) -> int:
+        return COMPACT_HEIGHT if self._is_compact else HEIGHT
+
+    @property
+    def _mark(self) -> int:
+        return COMPACT_MARK if self._is_compact else MARK
+
+    @property
+    def _inset(self) -> int:
+        return 16 if self._is_compact else 24
+
+    def _fit_sentence(self) -> None:
+        theme, margins = self._look.theme, self._row.contentsMargins()
+        room = self.width() - margins.left() - margins.right()
+        if self._row.direction() is QBoxLayout.Direction.LeftToRight:
+            room -= self._row.spacing() + max(button.sizeHint().width() for button in self.buttons)
+        sizes = COMPACT_SENTENCES if self._is_compact else SENTENCES
+        for size in sizes:
+            font = theme.font(size, SEMIBOLD)
+            if height_for(self._what.text(), font, room) <= 2.1 * QFontMetrics(font).lineSpacing():
+                break
+        self._what.set_size(size)
+
+    def _on_clicked(self) -> None:
+        button = self.sender()
+        assert isinstance(button, VerbButton)
+        self.pressed.emit(button.verb)
+
+    def _on_look_changed(self) -> None:
+        px = self._look.theme.px
+        self._then.set_size(14 if self._is_compact else 15)
+        left = self._inset + self._mark + (16 if self._is_compact else 20)
+        down = 6 if self._is_compact else 10
+        self._row.setContentsMargins(px(left), px(down), px(16 if self._is_compact else 24), px(down))
+        self._row.setSpacing(px(12))
+        self._beside.setSpacing(px(0 if self._is_compact else 4))
+        self.use.setMinimumWidth(0 if self._is_compact else px(BUTTONS))
+        self._fit_sentence()
+        self.updateGeometry()
+        self.update()
