@@ -150,10 +150,8 @@ def _apart_rad(parts: Parts) -> float:
 def _spread(
     span: SpanAnalysis, walk: Recording, joint: JointAnalysis, parts: Parts, strides: Strides
 ) -> dict[str, float]:
-    """Half of what a walk's means differ by with either part's axes, beyond chance, rad, by the parameter's name.
-
-    Half, for the axes in use lie between those of both parts. Each angle counts from its own zero.
-    """
+    """Half of what a walk's means differ by with either part's axes, beyond chance, rad, by the parameter's name."""
+    # half, for the axes in use lie between those of both parts; each angle counts from its own zero
     tracks, found, of = span.tracks, joint.identified, joint.basis.joint
     offset_s, sign = span.offset_s(walk, of.proximal), joint.calibration.clinical_sign
     pairs = pairs_of(tracks, walk, of, tracks.blocks(walk)[0], joint.lags_s[walk.name])

@@ -208,10 +208,8 @@ def slips_in_walks(
 
 
 def _is_in_place(walk: Recording) -> bool:
-    """Whether nobody walks in it: rising bends knees so far that the tissue over them turns a sensor as a slip would.
-
-    A strap that slips meanwhile shows in the next walk.
-    """
+    """Whether nobody walks in it: rising bends knees so far that the tissue turns a sensor as a slip would."""
+    # a strap that slips meanwhile shows in the next walk
     return walk.test is not None and walk.test.protocol is TimedProtocol.SIT_TO_STAND
 
 

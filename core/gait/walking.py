@@ -139,13 +139,7 @@ def _events(
     time_s: FloatArray,
     pitch_rad: FloatArray,
 ) -> list[FootEvents]:
-    """Events of one side, stretch by stretch; long recordings block by block, the seams within a stretch closed.
-
-    Parameters
-    ----------
-    time_s, pitch_rad : (n,)
-        The recording's clock; the foot's pitch is written where it is known.
-    """
+    """Events of one side, stretch by stretch, a long recording's seams closed; its pitch (n,) is written in place."""
     found: list[FootEvents] = []
     is_rigid = site.side in prosthetic_sides(tracks.session.patient)
     for block in tracks.blocks(recording):

@@ -190,11 +190,9 @@ def is_half(percent: float) -> bool:
 
 
 def _missing_rows(received_s: FloatArray, step_s: float) -> FloatArray:
-    """How many samples lack after each but the last (n - 1,).
-
-    Where stamps jitter, which shows in short steps, a long step between short ones lacks nothing: as many samples must
-    be missing around it, by a step that many steps show.
-    """
+    """How many samples lack after each but the last (n - 1,)."""
+    # where stamps jitter, a long step between short ones lacks nothing: as many must be missing around it, by a step
+    # that many steps show
     steps = np.diff(received_s)
     if len(steps) <= STEPS_TOGETHER or np.mean(steps < SHORT_STEP * step_s) < MIN_SHORT_STEPS:
         return np.asarray(np.maximum(np.round(steps / step_s) - 1, 0))

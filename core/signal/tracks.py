@@ -305,11 +305,8 @@ def _even(time_s: FloatArray, signals: dict[str, FloatArray], step_s: float) -> 
 
 
 def _without_stamp_noise(time_s: FloatArray, step_s: float, gyr: FloatArray) -> tuple[FloatArray, float]:
-    """Stamps (n,) on the even clock that made them, and its step, where the noise is the stamps' own.
-
-    Sensors sample evenly; their stamps often say when a sample arrived. Where each sample follows better from the
-    samples beside it by number than by stamp, the numbers are believed.
-    """
+    """Stamps (n,) on the even clock that made them, and its step, where the noise is the stamps' own."""
+    # stamps often say when a sample arrived; where each follows better by number than by stamp, numbers are believed
     number = np.concatenate([[0.0], np.cumsum(np.maximum(np.round(np.diff(time_s) / step_s), 1.0))])
     slope, start = np.polyfit(number, time_s, 1)
     even_s = start + slope * number

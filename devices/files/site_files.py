@@ -195,13 +195,7 @@ def _header_cell(name: str) -> str:
 
 
 def _check_clock(time_s: FloatArray, table: Table, where: str) -> BoolArray:
-    """(n,) which samples are later than the one before.
-
-    Raises
-    ------
-    FileRefusedError
-        The first stamp that is empty or lies before its predecessor.
-    """
+    """(n,) which samples are later than the one before; refuses an empty stamp and one before its predecessor."""
     is_new = np.ones(len(time_s), dtype=bool)
     empty = np.flatnonzero(~np.isfinite(time_s))
     if len(empty):
