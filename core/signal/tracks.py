@@ -5,6 +5,7 @@ from dataclasses import dataclass
 from itertools import pairwise
 
 import numpy as np
+from scipy.interpolate import Akima1DInterpolator
 
 from core.samples import BoolArray, FloatArray, ImuBlock
 
@@ -286,8 +287,7 @@ def _even(time_s: FloatArray, signals: dict[str, FloatArray], step_s: float) -> 
     if is_on_grid and n == len(time_s):
         even = signals
     else:
-        from scipy.interpolate import Akima1DInterpolator  # local and without overshoot; imported late, it is slow
-
+        # local and without overshoot
         inside_s = np.clip(grid_s, time_s[0], time_s[-1])
         even = {name: Akima1DInterpolator(time_s, values)(inside_s) for name, values in signals.items()}
         if is_on_grid:

@@ -368,7 +368,6 @@ def _library() -> ModuleType:
 
 def _imported() -> ModuleType:
     try:
-        import pylsl
         import pylsl.util
     except (ImportError, RuntimeError, OSError) as problem:  # RuntimeError: its own library is not there
         raise SourceRefusedError("Lab Streaming Layer is not installed", "Install gaitwright[lsl]") from problem
