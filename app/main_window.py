@@ -301,6 +301,7 @@ class MainWindow(QWidget):
             self.screens.addWidget(self._home)
             self._home.session_requested.connect(self._on_session_requested)
             self._home.session_opened.connect(self._on_session_opened)
+            self._home.report_requested.connect(self._on_report_requested)
             self._home.demonstration_requested.connect(self.open_demonstration)
             self._home.own_library_requested.connect(self._on_own_library_requested)
             self._home.help_requested.connect(self._show_help)
@@ -324,6 +325,9 @@ class MainWindow(QWidget):
 
     def _on_session_opened(self, session_id: UUID) -> None:
         self._entered_wizard().show_session(session_id)
+
+    def _on_report_requested(self, session_id: UUID) -> None:
+        self._entered_wizard().show_session(session_id, is_for_report=True)
 
     def _entered_wizard(self) -> "Wizard":
         """The wizard, in sight: the one place where a session with a patient is entered."""
@@ -359,7 +363,7 @@ class MainWindow(QWidget):
 
     def _on_own_library_requested(self) -> None:
         """From the demonstration, back into the library of whoever is still logged in."""
-        if self.entry is None or not self.controller.has_kept:
+        if self.entry is None or self.controller.kept is None:
             self._log_out()
             return
         self._clear()
@@ -566,14 +570,14 @@ def open_window(argv: list[str], language: str = "") -> int:
     settings, folders = Settings(own_settings()), [word for word in app.arguments()[1:] if not word.startswith("-")]
     settings.language = language or settings.language
     settings.language_changed.connect(partial(app.exit, IN_ANOTHER_LANGUAGE))
-    code, kept = _show_window(app, settings, folders, None)
+    code, kept = show_window(app, settings, folders, None)
     while code == IN_ANOTHER_LANGUAGE:
-        code, kept = _show_window(app, settings, [], kept)
+        code, kept = show_window(app, settings, [], kept)
     keep_no_visited_folders()
     return code
 
 
-def _show_window(
+def show_window(
     app: QApplication, settings: Settings, folders: list[str], kept: KeptLogIn | None
 ) -> tuple[int, KeptLogIn | None]:
     """Give what the event loop ended with, and who is logged in where another window follows."""

@@ -165,11 +165,14 @@ class SessionRecord(EditedRecord[StoredSession]):
         self.changed.emit()
 
     def _on_refused(self, what: str, remedy: str) -> None:
-        """Words stay as they were typed, and are saved with the next; so do limits before there is a session."""
+        """Words stay as they were typed, and are saved with the next; so do limits before there is a session.
+
+        A confirmation does not: what nobody holds is not printed.
+        """
         self._is_busy = False
-        details, _, limits, _ = _whole(self.stored)
+        details, _, limits, confirmed = _whole(self.stored)
         limits = limits if self.stored is not None else self.limits
-        self._say(_stated_fields(details, self.comment, limits, self._confirmed))
+        self._say(_stated_fields(details, self.comment, limits, confirmed))
         super()._on_refused(what, remedy)
         self.changed.emit()
 

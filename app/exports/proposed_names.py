@@ -14,7 +14,7 @@ def session_name(code: str, started: str, what: str = "") -> str:
     return f"session_{name}" if name.lower() in DEVICES else name
 
 
-def free_name(place: Path, name: str) -> str:
+def free_name(place: Path, name: str, suffix: str = "") -> str:
     """A name that is not taken in a folder: a second session of a day is put beside the first."""
-    names = (name, *(f"{name}_{number}" for number in range(2, 1000)))
+    name, names = f"{name}{suffix}", (f"{name}{suffix}", *(f"{name}_{number}{suffix}" for number in range(2, 1000)))
     return next((one for one in names if not (place / one).exists()), name)

@@ -25,6 +25,7 @@ from app.home.repeatability.controller import Repeatability
 from app.home.repeatability.repeatability_page import RepeatabilityPage
 from app.home.settings.controller import SettingsController
 from app.home.settings.settings_page import SettingsPage
+from app.summary.course_words import NextKind, NextStep
 from app.system.settings import Scheme, Settings
 from app.theme.icons import Icon
 from app.theme.notifier import ThemeNotifier
@@ -48,6 +49,7 @@ PATIENTS, DEMONSTRATION, IMPORT, QUESTIONS = range(4)
 class Home(Themed):
     session_requested = Signal(object)  # the StoredPatient of a new session, or None: a new patient
     session_opened = Signal(object)  # UUID
+    report_requested = Signal(object)  # UUID of the session
     demonstration_requested = Signal()
     own_library_requested = Signal()  # from the demonstration back
     lock_requested = Signal()
@@ -276,6 +278,7 @@ class Home(Themed):
         page.computing_requested.connect(self._on_computing_requested)
         page.panel.analysing_requested.connect(self._begin_again)
         page.panel.goals_requested.connect(self._begin_goals)
+        page.panel.next_requested.connect(self._take_next)
         page.patient_deleted.connect(self.deleting.patient)
         page.session_deleted.connect(self.deleting.session)
         self.rail.step_pressed.connect(self._on_rail_pressed)
@@ -309,6 +312,8 @@ class Home(Themed):
             ("Ctrl+F", self._on_find, here),
             ("Ctrl+N", self._on_new_patient, here),
             ("Ctrl+S", self._on_save, here),
+            ("W", self._on_next, here),
+            ("Alt+W", self._on_next, here),  # out of the search, which takes letters
             ("Ctrl+Z", self.toast.undo, in_sight),  # wherever the focus went from what is gone now
             ("F1", self._on_help, here),
         ):
@@ -399,8 +404,7 @@ class Home(Themed):
             return BarState(quiet=(new,), has_back=False)
         words = tr("New session for {code}").format(code=patient.details.code)
         begin = BarAction(words, self._begin_session, tr("Enter"), Icon.PLAY)
-        note = "" if self.rail.form is RailForm.COMPACT else tr("No session is running.")
-        return BarState(begin, quiet=(new,), note=note, has_back=False)
+        return BarState(begin, quiet=(new,), has_back=False)
 
     @property
     def _is_again(self) -> bool:
@@ -435,6 +439,21 @@ class Home(Themed):
     def _begin_session(self) -> None:
         if self.current is self.page and self.patients.patient is not None:
             self.session_requested.emit(self.patients.patient)
+
+    def _on_next(self) -> None:
+        if self.current is self.page:
+            self.page.panel.take_next()
+
+    def _take_next(self, step: NextStep) -> None:
+        match step.kind:
+            case NextKind.REVIEW:
+                self.session_opened.emit(step.session_id)
+            case NextKind.REPORT:
+                self.report_requested.emit(step.session_id)
+            case NextKind.GOALS:
+                self._begin_goals()
+            case NextKind.SESSION:
+                self._begin_session()
 
     def _begin_again(self) -> None:
         """Show which sessions can be analysed again: those of the patient, where home shows one."""

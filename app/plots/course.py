@@ -1,44 +1,41 @@
 """A patient's course: lanes over the dates of the visits, with what has changed beside them."""
 
-import math
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 
-from PySide6.QtCore import Qt, Signal
-from PySide6.QtGui import QAccessible, QAccessibleAnnouncementEvent, QKeyEvent
+from PySide6.QtCore import QPointF, Qt, Signal
+from PySide6.QtGui import QAccessible, QAccessibleAnnouncementEvent, QKeyEvent, QPainter, QPaintEvent
 from PySide6.QtWidgets import QGridLayout, QHBoxLayout, QVBoxLayout, QWidget
 
-from app.plots.lane_plot import ConditionMark, DateAxis, DatedPlot, LanePlot
+from app.plots.lane_plot import DateAxis, DatedPlot, LanePlot
 from app.summary.course_lanes import CourseLane, CourseVisit, LaneChange, LaneKind, lane_kinds
 from app.summary.course_words import (
     change_in_words,
     day_of,
-    judged_in_words,
     key_in_words,
     lane_in_words,
+    lane_name,
     last_in_words,
     nothing_between,
-    reported_goals,
-    since_last_in_words,
+    unit_beside,
     visit_in_words,
 )
-from app.summary.goals import brief_standing, goal_mark
-from app.summary.visits import condition_in_words
+from app.summary.progress_words import arrow_of
 from app.theme.icons import Icon
 from app.theme.notifier import ThemeNotifier
 from app.widgets.button import Button, ButtonKind
 from app.widgets.card import Card
+from app.widgets.change_arrow import ChangeArrow
 from app.widgets.chip import Chip
 from app.widgets.heard_order import hear_as_laid_out
-from app.widgets.icons import IconMark
-from app.widgets.text import REGULAR, SEMIBOLD, Text
+from app.widgets.text import MEDIUM, REGULAR, SEMIBOLD, Text
 from app.widgets.themed import Themed
-from app.wording.measures import measure_name, unit_name
 from app.wording.translation import tr
 from core.verdicts.model import Verdict
 
-LABELS, CHANGES = 148, 172  # px: the columns of words beside the lanes
+LABELS, CHANGES = 166, 196  # px: the columns of words beside the lanes
 NARROW_BELOW = 560  # words stand over the lanes instead
-VALUE = 22
+ROW = 62
+VALUE, VALUE_OF_TWO = 28, 22
 WIDEST = 16_777_215  # Qt's own
 
 
@@ -59,43 +56,48 @@ class CourseCard(Card):
     computing_requested = Signal()
 
     def __init__(self, look: ThemeNotifier) -> None:
-        self._grid, self._legend, self._foot = QGridLayout(), QHBoxLayout(), QHBoxLayout()
-        super().__init__(look, padding=16, spacing=4)
+        self._grid, self.head, self._foot = QGridLayout(), QHBoxLayout(), QHBoxLayout()
+        self.rows: dict[LaneKind, LaneRow] = {}
+        self._is_narrow: bool | None = None
+        super().__init__(look, padding=16, spacing=0)
         self.visits: tuple[CourseVisit, ...] = ()
         self.lanes: tuple[CourseLane, ...] = ()
         self.number: int | None = None
         self.setFocusPolicy(Qt.FocusPolicy.StrongFocus)
-        self.rows: dict[LaneKind, LaneRow] = {}
         self.axis = DateAxis(look)
+        self.method = Text(look, size=12, tone="ink2", wraps=True)
         self.note = Text(look, size=12, tone="ink2", wraps=True)
         self.compute = Button(look, tr("Calculate"), ButtonKind.SECONDARY, height=36)
-        self._grid_room, self._legend_room = QWidget(), QWidget()
-        self._is_narrow: bool | None = None
+        self.info = Button(look, "", ButtonKind.QUIET, Icon.INFO, height=36)
+        self.info.setAccessibleName(tr("Method"))
+        self.info.setCheckable(True)
+        self._grid_room = QWidget()
+        self.head.addWidget(self.info)
         self._foot.addWidget(self.note, 1)
         self._foot.addWidget(self.compute)
-        for room, layout, stretch in ((self._legend_room, self._legend, 0), (self._grid_room, self._grid, 1)):
-            layout.setContentsMargins(0, 0, 0, 0)
-            room.setLayout(layout)
-            self.column.addWidget(room, stretch)
+        self._grid.setContentsMargins(0, 0, 0, 0)
+        self._grid_room.setLayout(self._grid)
+        self.column.addLayout(self.head)
+        self.column.addWidget(self._grid_room)
+        self.column.addWidget(self.method)
         self.column.addLayout(self._foot)
         self._join(self.axis)
         self._show_kinds(lane_kinds())
         self.compute.clicked.connect(self.computing_requested)
+        self.info.toggled.connect(self.method.setVisible)
+        self.method.hide()
         self.set_room(NARROW_BELOW)
 
-    def show_course(
-        self, visits: Sequence[CourseVisit], lanes: Sequence[CourseLane], conditions: Sequence[str]
-    ) -> None:
-        """Show lanes over visits, which are in order of time; `conditions` in the order of their marks."""
+    def show_course(self, visits: Sequence[CourseVisit], lanes: Sequence[CourseLane]) -> None:
+        """Show lanes over visits, which are in order of time."""
         self.visits, self.lanes, self.number = tuple(visits), tuple(lanes), None
         self._show_kinds([lane.kind for lane in lanes])
         for lane in lanes:
-            self.rows[lane.kind].show_lane(lane, visits, conditions)
+            self.rows[lane.kind].show_lane(lane, visits)
         self.axis.show_visits(visits)
-        drawn = {line.condition for lane in lanes for line in lane.lines}
-        self._show_legend({mark: name for mark, name in enumerate(conditions) if name in drawn})
         self._grid_room.setVisible(any(lane.lines for lane in lanes))
-        self.note.setText(" ".join(filter(None, [nothing_between(visits), key_in_words(lanes)])))
+        self.method.setText(key_in_words(lanes))
+        self.note.setText(nothing_between(visits))
         self.note.setVisible(bool(self.note.text()))
         self.compute.setVisible(any(visit.course is None for visit in visits))
         self.setAccessibleName(tr("Progress across visits"))
@@ -147,18 +149,6 @@ class CourseCard(Card):
     def _open(self, number: int) -> None:
         self.visit_opened.emit(self.visits[number].id)
 
-    def _show_legend(self, conditions: Mapping[int, str]) -> None:
-        """The conditions by their marks, where there are several."""
-        while (item := self._legend.takeAt(0)) is not None:
-            if (widget := item.widget()) is not None:
-                widget.hide()
-                widget.deleteLater()
-        for mark, condition in conditions.items():
-            self._legend.addWidget(ConditionMark(self._look, mark))
-            self._legend.addWidget(Text(self._look, condition_in_words(condition), size=12, tone="ink2", wraps=True))
-        self._legend.addStretch(1)
-        self._legend_room.setVisible(len(conditions) > 1)
-
     def set_room(self, width: float) -> None:
         """Put words beside the lanes, or over them where there is little width, in px of the design."""
         is_narrow = width < NARROW_BELOW
@@ -171,15 +161,14 @@ class CourseCard(Card):
         """Put the rows into the grid, and the axis under them."""
         is_narrow = bool(self._is_narrow)
         for at in range(self._grid.rowCount()):
-            self._grid.setRowStretch(at, 0)
+            self._grid.setRowMinimumHeight(at, 0)
         for number, row in enumerate(self.rows.values()):
             at = 2 * number
             row.set_narrow(is_narrow)
             self._grid.addWidget(row.label, at, 0)
             self._grid.addWidget(row.changes, at, 1 if is_narrow else 2)
             self._grid.addWidget(row.plot, at + 1 if is_narrow else at, 0 if is_narrow else 1, 1, 2 if is_narrow else 1)
-            self._grid.setRowStretch(at, 0 if is_narrow else 1)
-            self._grid.setRowStretch(at + 1, 1 if is_narrow else 0)
+            self._grid.setRowMinimumHeight(at, 0 if is_narrow else self._look.theme.px(ROW))
         self._grid.removeWidget(self.axis)
         self._grid.addWidget(self.axis, 2 * len(self.rows), 0 if is_narrow else 1, 1, 2 if is_narrow else 1)
         self._grid.setColumnStretch(0, 1 if is_narrow else 0)
@@ -187,17 +176,33 @@ class CourseCard(Card):
         hear_as_laid_out(self._grid_room)
         self._on_look_changed()
 
+    def paintEvent(self, event: QPaintEvent) -> None:
+        """A hairline over every row."""
+        super().paintEvent(event)
+        if self._grid_room.isHidden():
+            return
+        painter, side = QPainter(self), self._look.theme.px(16)
+        painter.setPen(self._look.theme.pen(self._look.theme.colours.line, 1))
+        for row in self.rows.values():
+            top = self._grid_room.y() + min(row.plot.y(), row.label.y()) - 1.5
+            painter.drawLine(QPointF(side, top), QPointF(self.width() - side, top))
+
     def _on_look_changed(self) -> None:
         super()._on_look_changed()
         px = self._look.theme.px
-        self._grid.setHorizontalSpacing(px(12))
-        self._grid.setVerticalSpacing(px(4))
-        self._legend.setSpacing(px(6))
+        self.column.setContentsMargins(px(16), px(4), px(8), px(4))
+        self._grid.setContentsMargins(0, px(2), px(8), 0)
+        self._grid.setHorizontalSpacing(px(8))
+        self._grid.setVerticalSpacing(px(2))
+        for number in range(len(self.rows)):
+            self._grid.setRowMinimumHeight(2 * number, 0 if self._is_narrow else px(ROW - 2))
+        self.head.setSpacing(px(8))
+        self._foot.setContentsMargins(0, 0, px(8), 0)
         self._foot.setSpacing(px(12))
 
 
 class LaneRow:
-    """The three parts of a lane: its name, its plot, and what has changed."""
+    """The three parts of a lane: its name, its plot, and its last value with what has changed."""
 
     def __init__(self, look: ThemeNotifier, kind: LaneKind) -> None:
         self.kind = kind
@@ -211,78 +216,70 @@ class LaneRow:
         return self.label, self.plot, self.changes
 
     def set_narrow(self, is_narrow: bool) -> None:
-        self.label.set_brief(is_narrow)
-        self.changes.set_brief(is_narrow)
+        self.label.set_wide(is_narrow)
+        self.changes.set_wide(is_narrow)
 
-    def show_lane(self, lane: CourseLane, visits: Sequence[CourseVisit], conditions: Sequence[str]) -> None:
-        self.plot.show_lane(lane, visits, conditions)
+    def show_lane(self, lane: CourseLane, visits: Sequence[CourseVisit]) -> None:
+        self.plot.show_lane(lane, visits)
         self.label.clear()
-        name = measure_name(self.kind.column, is_between=self.kind.is_between)
-        self.label.add(Text(self._look, name, weight=SEMIBOLD, wraps=True))
-        for goal in lane.goals:
-            mark = Text(self._look, f"\N{MIDDLE DOT}\N{MIDDLE DOT}\N{MIDDLE DOT} {goal_mark(goal)}", 12, SEMIBOLD)
-            mark.setAccessibleName(goal_mark(goal))
-            self.label.add(mark, is_brief=True)
-        self.label.add(Text(self._look, unit_name(self.kind.column), size=12, tone="ink2"))
+        sides = [one.line.side for one in lane.changes if one.line.side is not None]
+        name = Text(self._look, lane_name(self.kind), weight=MEDIUM, wraps=True)
+        self.label.add(self._beside(name, *(Chip(self._look, side) for side in sides if len(sides) == 1), wide=name))
         self.changes.clear()
-        values = QWidget()
-        row = QHBoxLayout(values)
+        values: list[QWidget] = []
+        for one in lane.changes:
+            if len(sides) > 1 and one.line.side is not None:
+                values.append(Chip(self._look, one.line.side))
+            values += self._value(lane, one, VALUE if len(lane.changes) == 1 else VALUE_OF_TWO)
+        self.changes.add(self._beside(*values))
+        for one in lane.changes:
+            self._add_change(lane, one, visits, has_sides=len(sides) > 1)
+
+    def _value(self, lane: CourseLane, one: LaneChange, size: float) -> list[QWidget]:
+        """Type follows trust: bold what is read, regular what is to be read with care, small what cannot be."""
+        last, words = one.line.points[-1], last_in_words(lane, one)
+        if not last.is_reported:
+            return [Text(self._look, words, size=12, tone="ink2")]
+        value = Text(self._look, words, size=size, weight=SEMIBOLD if last.verdict is Verdict.READ else REGULAR)
+        return [value, *([Text(self._look, unit, 13, tone="ink2")] if (unit := unit_beside(self.kind)) else [])]
+
+    def _add_change(self, lane: CourseLane, one: LaneChange, visits: Sequence[CourseVisit], *, has_sides: bool) -> None:
+        """Since the first visit that can be read, after its arrow; of a value that is not the last visit's, its day."""
+        last, words = one.line.points[-1], change_in_words(lane, one, visits)
+        if not words and last.visit != len(visits) - 1:
+            words = tr("on {day}").format(day=day_of(last.visit, visits))
+        if not words:
+            return
+        arrow, who = arrow_of(lane, one.since_first), ""
+        if has_sides and one.line.side is not None:
+            who = f"{one.line.side.letter} "
+        text = Text(self._look, who + words, 13, MEDIUM if arrow is not None and arrow.is_filled else REGULAR)
+        self.changes.add(self._beside(*([ChangeArrow(self._look, arrow)] if arrow is not None else []), text))
+
+    def _beside(self, *parts: QWidget, wide: QWidget | None = None) -> QWidget:
+        """Parts in a row; `wide` takes what the others leave."""
+        room = QWidget()
+        row = QHBoxLayout(room)
         row.setContentsMargins(0, 0, 0, 0)
         row.setSpacing(self._look.theme.px(6))
-        for one in lane.changes:
-            if one.line.side is not None:
-                row.addWidget(Chip(self._look, one.line.side))
-            row.addWidget(self._value(one))
-        row.addStretch(1)
-        self.changes.add(values)
-        for one in lane.changes:
-            self._add_goals(lane, one, visits)
-            self._add_change(one, visits, has_sides=len(lane.changes) > 1)
-
-    def _add_goals(self, lane: CourseLane, one: LaneChange, visits: Sequence[CourseVisit]) -> None:
-        """How the last value compares with goals that were agreed before it."""
-        for found in reported_goals(lane, one, visits):
-            self.changes.add(Text(self._look, brief_standing(found.standing), 12, wraps=True))
-
-    def _value(self, one: LaneChange) -> Text:
-        """Type follows trust: bold what is read, regular what is to be read with care, small what cannot be."""
-        last = one.line.points[-1]
-        words = last_in_words(one, self.kind)
-        if not last.is_reported:
-            return Text(self._look, words, size=12, tone="ink2")
-        return Text(self._look, words, size=VALUE, weight=SEMIBOLD if last.verdict is Verdict.READ else REGULAR)
-
-    def _add_change(self, one: LaneChange, visits: Sequence[CourseVisit], *, has_sides: bool) -> None:
-        """Since the first visit that can be read, and since the one before."""
-        last = one.line.points[-1]
-        if last.visit != len(visits) - 1 and not has_sides:
-            self.changes.add(Text(self._look, tr("on {day}").format(day=day_of(last.visit, visits)), 12, tone="ink2"))
-        found = one.since_first
-        if found is None or one.first is None or not math.isfinite(found.difference):
-            return
-        who = f"{one.line.side.letter} " if has_sides and one.line.side is not None else ""
-        stated = tr("{change} since {day}").format(
-            change=who + change_in_words(found, self.kind), day=day_of(one.first, visits)
-        )
-        self.changes.add_marked(stated, is_marked=found.exceeds)
-        self.changes.add(Text(self._look, judged_in_words(found, self.kind), 12, tone="ink2", wraps=True))
-        if one.since_last is not None and not has_sides:
-            self.changes.add(
-                Text(self._look, since_last_in_words(one.since_last, self.kind), 12, tone="ink2", wraps=True)
-            )
+        for part in parts:
+            row.addWidget(part, int(part is wide))
+        if wide is None:
+            row.addStretch(1)
+        return room
 
 
 class _Words(Themed):
-    """Words under one another; brief, only the first of them."""
+    """Rows of words under one another, in the middle of the height that there is."""
 
     def __init__(self, look: ThemeNotifier, width: int) -> None:
         super().__init__()
-        self._look, self._width, self._is_brief = look, width, False
+        self._look, self._width, self._is_wide = look, width, False
         self._parts: list[QWidget] = []
-        self._few: list[QWidget] = []
         self._column = QVBoxLayout(self)
         self._column.setContentsMargins(0, 0, 0, 0)
         self._column.setSpacing(0)
+        self._column.addStretch(1)
         self._column.addStretch(1)
         self._on_look_changed()
 
@@ -291,48 +288,19 @@ class _Words(Themed):
             self._column.removeWidget(part)
             part.hide()
             part.deleteLater()
-        self._parts, self._few = [], []
+        self._parts = []
 
-    def add(self, part: QWidget, *, is_brief: bool = False) -> None:
-        """`is_brief`: it is shown where words are to be few, too, as the first one is."""
+    def add(self, part: QWidget) -> None:
         self._column.insertWidget(self._column.count() - 1, part)
         self._parts.append(part)
-        if is_brief or len(self._parts) == 1:
-            self._few.append(part)
-        self._show()
+        part.show()
 
-    def add_marked(self, words: str, *, is_marked: bool) -> None:
-        """A line with arrows before it where what it states lies beyond the error."""
-        line = QWidget()
-        row = QHBoxLayout(line)
-        row.setContentsMargins(0, 0, 0, 0)
-        row.setSpacing(self._look.theme.px(4))
-        if is_marked:
-            row.addWidget(IconMark(self._look, Icon.DIFFERENCE, size=16))
-        row.addWidget(Text(self._look, words, 12, SEMIBOLD if is_marked else REGULAR, wraps=True), 1)
-        self.add(line)
-
-    def set_brief(self, is_brief: bool) -> None:
-        self._is_brief = is_brief
-        self._show()
+    def set_wide(self, is_wide: bool) -> None:
+        """Take all the width there is, in place of a column's."""
+        self._is_wide = is_wide
         self._on_look_changed()
-
-    def _show(self) -> None:
-        for part in self._parts:
-            part.setVisible(part in self._few or not self._is_brief)
-        self._fit()
 
     def _on_look_changed(self) -> None:
         width = self._look.theme.px(self._width)
-        self.setMinimumWidth(0 if self._is_brief else width)
-        self.setMaximumWidth(WIDEST if self._is_brief else width)
-        self._fit()
-
-    def _fit(self) -> None:
-        """Ask for the height that the words take in this width: a lane beside them is not to squeeze them."""
-        shown = self._few if self._is_brief else self._parts
-        width = self._look.theme.px(self._width)
-        heights = [
-            part.heightForWidth(width) if part.hasHeightForWidth() else part.sizeHint().height() for part in shown
-        ]
-        self.setMinimumHeight(sum(heights))
+        self.setMinimumWidth(0 if self._is_wide else width)
+        self.setMaximumWidth(WIDEST if self._is_wide else width)

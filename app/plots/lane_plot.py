@@ -1,58 +1,46 @@
 """One lane of a patient's course, and the axis of dates under all of them."""
 
-import math
 from collections.abc import Sequence
 from dataclasses import dataclass
 from itertools import pairwise
 
 import numpy as np
 from PySide6.QtCore import QPointF, QRectF, QSize, Qt, Signal
-from PySide6.QtGui import QColor, QFontMetrics, QMouseEvent, QPainter, QPaintEvent, QPen, QPolygonF
-from PySide6.QtWidgets import QSizePolicy, QWidget
+from PySide6.QtGui import QColor, QFontMetrics, QMouseEvent, QPainter, QPaintEvent, QPen
+from PySide6.QtWidgets import QSizePolicy
 
 from app.summary.course_lanes import CourseLane, CourseVisit, LaneLine, LanePoint
 from app.summary.course_words import day_of
+from app.summary.goals import goal_mark
 from app.theme.notifier import ThemeNotifier
 from app.theme.theme import Theme
-from app.widgets.painted_text import CENTRE, RIGHT, PaintedText
+from app.widgets.painted_text import CENTRE, LEFT, RIGHT, PaintedText
 from app.widgets.themed import Themed
 from app.wording.measures import least_span
-from app.wording.numbers import MINUS
-from app.wording.translation import figure_text
-from core.body import Side
 
-AXIS, INSET = 40, 10  # px: for the figures of the values, and from the plot's edges to the first and last visit
+INSET = 8  # px from the plot's edges to the first and last visit
 APART = 18  # px between two visits, whatever their days
-HALF_LINE = 8  # of the figures
-LEAST_HEIGHT, DATES = 66, 26
-DOT, CAP, TICK = 5, 5, 4
-STEPS = (1, 2, 5, 10)
-MOST_STEPS = 2
+OVER, UNDER = 15, 8  # the values: a goal's words, half a dot
+LEAST_HEIGHT, DATES = 58, 24
+DOT, LAST_DOT = 4, 5  # radius
+NOT_REPORTED = 9  # high: the tick of a visit without a value
+GOAL_LINE = 14
 
 
 @dataclass(frozen=True, slots=True)
 class LaneScale:
-    """Round values at the lower and upper edge of a lane; `decimals` of the figures at its lines."""
+    """The values at the lower and upper edge of a lane."""
 
     low: float
     high: float
-    step: float
-    decimals: int
 
     @classmethod
     def of(cls, lane: CourseLane) -> "LaneScale":
-        """Round all that is drawn, and not less than what is worth a lane."""
+        """All that is drawn, and not less than what is worth a lane."""
         values = lane.values or [0.0]
         middle = (min(values) + max(values)) / 2
         half = max(max(values) - min(values), least_span(lane.kind.column)) / 2
-        power = math.floor(math.log10(2 * half / MOST_STEPS))
-        step = next(one * 10.0**power for one in STEPS if one * 10.0**power >= 2 * half / MOST_STEPS - 1e-9)
-        low, high = math.floor((middle - half) / step + 1e-6), math.ceil((middle + half) / step - 1e-6)
-        return cls(low * step, high * step, step, max(0, -math.floor(math.log10(step) + 1e-9)))
-
-    @property
-    def ticks(self) -> list[float]:
-        return [self.low + k * self.step for k in range(round((self.high - self.low) / self.step) + 1)]
+        return cls(middle - half, middle + half)
 
 
 class DatedPlot(Themed):
@@ -72,9 +60,9 @@ class DatedPlot(Themed):
 
     @property
     def plot(self) -> QRectF:
-        """Where values lie; half a line of figures is over and under them."""
+        """Where values lie."""
         px = self._look.theme.px
-        return QRectF(px(AXIS), px(HALF_LINE), self.width() - px(AXIS), self.height() - 2 * px(HALF_LINE))
+        return QRectF(0, px(OVER), self.width(), self.height() - px(OVER) - px(UNDER))
 
     def point_at(self, number: int | None) -> None:
         """Mark a visit."""
@@ -122,17 +110,15 @@ class DatedPlot(Themed):
 
 
 class LanePlot(DatedPlot):
-    """The values of a lane with their whiskers, over the first visit's less and plus the error of a change."""
+    """The values of a lane, over its goals and, between the legs, where healthy people are."""
 
     def __init__(self, look: ThemeNotifier) -> None:
         super().__init__(look)
         self.lane: CourseLane | None = None
-        self._marks: Sequence[str] = ()
-        self.setSizePolicy(QSizePolicy.Policy.Expanding, QSizePolicy.Policy.Expanding)
+        self.setSizePolicy(QSizePolicy.Policy.Expanding, QSizePolicy.Policy.Fixed)
 
-    def show_lane(self, lane: CourseLane, visits: Sequence[CourseVisit], conditions: Sequence[str]) -> None:
-        """Draw a lane; `conditions` in the order of their marks."""
-        self.lane, self.visits, self._marks, self._number = lane, tuple(visits), tuple(conditions), None
+    def show_lane(self, lane: CourseLane, visits: Sequence[CourseVisit]) -> None:
+        self.lane, self.visits, self._number = lane, tuple(visits), None
         self.update()
 
     def sizeHint(self) -> QSize:
@@ -147,15 +133,16 @@ class LanePlot(DatedPlot):
         return plot.bottom() - (value - scale.low) / (scale.high - scale.low) * plot.height()
 
     def painted_texts(self) -> list[PaintedText]:
+        """The goals' words over their lines, under those too near the top, at the end that is freer."""
         if self.lane is None:
             return []
-        theme, scale, half = self._look.theme, LaneScale.of(self.lane), self._look.theme.px(HALF_LINE)
-        texts, ticks = [], scale.ticks
-        every = 1 if self.plot.height() / max(len(ticks) - 1, 1) >= 2 * half else 2
-        for tick in ticks[::every]:
-            words = figure_text(tick if abs(tick) > 1e-9 else 0.0, f".{scale.decimals}f").replace("-", MINUS)
-            box = QRectF(0, self.y_of(tick) - half, theme.px(AXIS - 8), 2 * half)
-            texts.append(PaintedText(words, box, theme.font(12), "ink2", RIGHT))
+        theme, texts = self._look.theme, []
+        for goal in self.lane.goals:
+            line, y = theme.px(GOAL_LINE), self.y_of(goal.value)
+            top = y - line if y >= line else y
+            box = QRectF(0, top, self.width(), line)
+            align = LEFT if self._is_free(box, at_left=True) or not self._is_free(box, at_left=False) else RIGHT
+            texts.append(PaintedText(goal_mark(goal), box, theme.font(12), "ink2", align))
         return texts
 
     def paintEvent(self, _event: QPaintEvent) -> None:
@@ -164,53 +151,53 @@ class LanePlot(DatedPlot):
         theme, plot = self._look.theme, self.plot
         painter = QPainter(self)
         painter.setRenderHint(QPainter.RenderHint.Antialiasing)
-        if self.lane.band is not None:
-            low, high = (self.y_of(end) for end in self.lane.band)
+        if self.lane.healthy is not None:
+            low, high = (self.y_of(end) for end in self.lane.healthy)
             painter.fillRect(QRectF(plot.left(), high, plot.width(), low - high), QColor(theme.colours.band_2sd))
-        painter.setPen(theme.pen(theme.colours.line, 1))
-        for tick in LaneScale.of(self.lane).ticks:
-            painter.drawLine(QPointF(plot.left(), self.y_of(tick)), QPointF(plot.right(), self.y_of(tick)))
+            painter.setPen(theme.pen(theme.colours.control, 1))
+            painter.drawLine(QPointF(plot.left(), self.y_of(0.0)), QPointF(plot.right(), self.y_of(0.0)))
         self.paint_pointer(painter)
         painter.setPen(_goal_pen(theme))
         for value in self.lane.goal_values:
             painter.drawLine(QPointF(plot.left(), self.y_of(value)), QPointF(plot.right(), self.y_of(value)))
-        for line in reversed(self.lane.lines):  # where marks lie on one another, the first condition's is seen whole
+        for line in self.lane.lines:
             self._paint_line(painter, line)
         for text in self.painted_texts():
             text.paint(painter, theme.colours)
 
+    def _is_free(self, box: QRectF, *, at_left: bool) -> bool:
+        """Whether no value lies where words at one end of a line would."""
+        assert self.lane is not None
+        words = box.adjusted(0, 0, -box.width() * 0.6, 0) if at_left else box.adjusted(box.width() * 0.6, 0, 0, 0)
+        return not any(words.contains(self._at(point)) for line in self.lane.lines for point in line.reported)
+
     def _paint_line(self, painter: QPainter, line: LaneLine) -> None:
-        """Adjacent points are joined; what lies beyond a visit that cannot be read is not."""
+        """Adjacent points are joined; what lies beyond a visit that cannot be read is not, and that has a tick."""
         theme = self._look.theme
         colour = QColor(theme.colours.ink) if line.side is None else theme.curve(line.side)
-        painter.setBrush(Qt.BrushStyle.NoBrush)
-        painter.setPen(_line_pen(theme, line.side, colour, self._mark_of(line)))
+        painter.setPen(theme.side_pen(line.side, 2) if line.side is not None else theme.pen(colour, 2))
         for one, other in pairwise(line.points):
             if one.is_reported and other.is_reported:
                 painter.drawLine(self._at(one), self._at(other))
-        painter.setPen(theme.pen(colour, 1.5))
+        painter.setPen(theme.pen(theme.colours.ink2, 1.25))
+        for point in line.points:
+            if not point.is_reported:
+                x, foot = self.x_of(point.visit), float(self.height())
+                painter.drawLine(QPointF(x, foot - theme.px(NOT_REPORTED)), QPointF(x, foot))
+        painter.setPen(theme.pen(colour, 2))
         for point in line.reported:
-            if math.isfinite(point.whisker):
-                self._paint_whisker(painter, point)
-        for point in line.reported:
-            paint_mark(painter, theme, self._at(point), self._mark_of(line), colour, line.side)
-
-    def _paint_whisker(self, painter: QPainter, point: LanePoint) -> None:
-        x, cap = self.x_of(point.visit), self._look.theme.px(CAP)
-        ends = [self.y_of(point.value + sign * point.whisker) for sign in (-1, 1)]
-        painter.drawLine(QPointF(x, ends[0]), QPointF(x, ends[1]))
-        for y in ends:
-            painter.drawLine(QPointF(x - cap, y), QPointF(x + cap, y))
+            is_last = point is line.points[-1]
+            painter.setBrush(colour if is_last else QColor(theme.colours.surface))
+            radius = (LAST_DOT if is_last else DOT) * theme.scale
+            painter.drawEllipse(self._at(point), radius, radius)
+        painter.setBrush(Qt.BrushStyle.NoBrush)
 
     def _at(self, point: LanePoint) -> QPointF:
         return QPointF(self.x_of(point.visit), self.y_of(point.value))
 
-    def _mark_of(self, line: LaneLine) -> int:
-        return self._marks.index(line.condition)
-
 
 class DateAxis(DatedPlot):
-    """A tick at every visit; dates that would touch are left out, the first and the last stay."""
+    """The day of every visit; those that would touch are left out, the first and the last stay."""
 
     def __init__(self, look: ThemeNotifier) -> None:
         super().__init__(look)
@@ -228,14 +215,14 @@ class DateAxis(DatedPlot):
 
     def labels(self) -> dict[int, PaintedText]:
         """The dates that find room, by the number of their visit."""
-        theme, font = self._look.theme, self._look.theme.font(12)
+        font = self._look.theme.font(12)
         metrics, gap, last = QFontMetrics(font), self._look.theme.px(8), len(self.visits) - 1
         kept: dict[int, PaintedText] = {}
         for number in sorted(range(len(self.visits)), key=lambda k: (k not in (0, last), k != last, k)):
             words = day_of(number, self.visits)
             width = metrics.horizontalAdvance(words) + 2
             left = min(max(self.x_of(number) - width / 2, 0), self.width() - width)
-            box = QRectF(left, theme.px(TICK + 2), width, self.height() - theme.px(TICK + 2))
+            box = QRectF(left, 0, width, self.height())
             if not any(box.adjusted(-gap, 0, gap, 0).intersects(other.box) for other in kept.values()):
                 kept[number] = PaintedText(words, box, font, "ink2", CENTRE)
         return {number: kept[number] for number in sorted(kept)}
@@ -244,51 +231,9 @@ class DateAxis(DatedPlot):
         return list(self.labels().values())
 
     def paintEvent(self, _event: QPaintEvent) -> None:
-        theme, plot = self._look.theme, self.plot
         painter = QPainter(self)
-        painter.setPen(theme.pen(theme.colours.control, 1))
-        painter.drawLine(QPointF(plot.left(), 0.5), QPointF(plot.right(), 0.5))
-        for number in range(len(self.visits)):
-            x = self.x_of(number)
-            painter.drawLine(QPointF(x, 0), QPointF(x, theme.px(TICK)))
         for text in self.painted_texts():
-            text.paint(painter, theme.colours)
-
-
-class ConditionMark(QWidget):
-    """The mark of a condition, before its name."""
-
-    def __init__(self, look: ThemeNotifier, mark: int) -> None:
-        super().__init__()
-        self._look, self._mark = look, mark
-        self.setSizePolicy(QSizePolicy.Policy.Fixed, QSizePolicy.Policy.Fixed)
-
-    def sizeHint(self) -> QSize:
-        side = self._look.theme.px(4 * DOT)
-        return QSize(side, side)
-
-    def paintEvent(self, _event: QPaintEvent) -> None:
-        painter = QPainter(self)
-        painter.setRenderHint(QPainter.RenderHint.Antialiasing)
-        centre = QPointF(self.width() / 2, self.height() / 2)
-        paint_mark(painter, self._look.theme, centre, self._mark, QColor(self._look.theme.colours.ink), None)
-
-
-def paint_mark(painter: QPainter, theme: Theme, at: QPointF, mark: int, colour: QColor, side: Side | None) -> None:
-    """Draw the mark of a condition: filled dot, open square, filled diamond, open dot. The right leg's are open."""
-    surface, radius = QColor(theme.colours.surface), DOT * theme.scale
-    is_filled = mark % 2 == 0 and side is not Side.RIGHT
-    painter.setPen(theme.pen(colour, 1.75))
-    painter.setBrush(colour if is_filled else surface)
-    if mark == 1:
-        painter.drawRect(QRectF(at.x() - radius, at.y() - radius, 2 * radius, 2 * radius))
-    elif mark == 2:
-        far = 1.3 * radius
-        ends = ((0, -far), (far, 0), (0, far), (-far, 0))
-        painter.drawPolygon(QPolygonF([QPointF(at.x() + x, at.y() + y) for x, y in ends]))
-    else:
-        painter.drawEllipse(at, radius, radius)
-    painter.setBrush(Qt.BrushStyle.NoBrush)
+            text.paint(painter, self._look.theme.colours)
 
 
 def _goal_pen(theme: Theme) -> QPen:
@@ -296,10 +241,3 @@ def _goal_pen(theme: Theme) -> QPen:
     pen.setStyle(Qt.PenStyle.DotLine)
     return pen
 
-
-def _line_pen(theme: Theme, side: Side | None, colour: QColor, mark: int) -> QPen:
-    """Solid for the first condition, dotted for the others; the right leg's dashed."""
-    pen = theme.side_pen(side, 1.75) if side is not None else theme.pen(colour, 1.75)
-    if mark:
-        pen.setStyle(Qt.PenStyle.DotLine)
-    return pen

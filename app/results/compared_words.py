@@ -37,7 +37,7 @@ def part_in_words(part: Part, name: str) -> str:
 def days_of(parts: Sequence[Part]) -> list[str]:
     """The day of each visit, or its name where the day is not known."""
     days = [part.day for part in parts if part.day is not None]
-    return [part.name if part.day is None else day_in_words(part.day, days) for part in parts]
+    return [name_in_words(part.name) if part.day is None else day_in_words(part.day, days) for part in parts]
 
 
 def change_in_words(value: float, measure: Measure) -> str:

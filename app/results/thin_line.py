@@ -43,13 +43,14 @@ class ThinLineChoice(Choice):
         self._walks: Mapping[str, Part] = {}  # of this session, each alone
         self._shown = ""
         self._is_own = False  # somebody chose
-        self.activated.connect(self._on_activated)
+        self._taken: ThinLine | str | None = None  # what `turn` took away
+        self.currentIndexChanged.connect(self._on_chosen)  # what `offer` sets is not notified
 
     def show_visit(self, visit: AnalysedVisit) -> None:
         """Take the walks of this session; `offer` follows."""
         agreed = agreed_with(visit.session)
         self._visit, self._walks = visit, walks_alone(visit.analysis, visit.session.recordings, agreed)
-        self._is_own = False
+        self._is_own, self._taken = False, None
 
     def offer(self, facts: Facts, headline: Headline) -> None:
         """Offer what the walk of these facts can stand beside; unless somebody chose, the headline's visit is drawn."""
@@ -75,10 +76,13 @@ class ThinLineChoice(Choice):
         self.updateGeometry()
 
     def turn(self) -> None:
-        """Take the line away, or draw the first that there is."""
-        nothing = self.findData(ThinLine.NOTHING)
-        self._is_own = True
-        self.setCurrentIndex(0 if self.currentIndex() == nothing else nothing)
+        """Take the line away, or draw that again which was taken, else the first that there is."""
+        chosen = self.currentData()
+        if chosen is not ThinLine.NOTHING:
+            self._taken = chosen
+            self.setCurrentIndex(self.findData(ThinLine.NOTHING))
+        else:
+            self.setCurrentIndex(max(self.findData(self._taken), 0))
 
     @property
     def walks(self) -> tuple[str, ...]:
@@ -108,5 +112,5 @@ class ThinLineChoice(Choice):
         other = replace(part_of(visit, chosen, self.walks), name=str(names.get(chosen, chosen)))
         return beside_walk(walk, other, is_simulated=is_simulated), ""
 
-    def _on_activated(self, _index: int) -> None:
+    def _on_chosen(self, _index: int) -> None:
         self._is_own = True

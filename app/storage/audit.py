@@ -26,6 +26,7 @@ MANY = 1000  # rows held at a time
 APPEND = text("SELECT append_audit(:number, :at, :operator, :action, :subject, :details, :previous_hash, :hash)")
 NOTE_READING = text("SELECT note_reading(:by, :did, :subject, :details)")
 REPORT_FORMAT = "report"  # the format of an export by which a session is reported
+LETTER_FORMAT = "letter"
 
 
 class Audit:

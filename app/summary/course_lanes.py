@@ -1,7 +1,6 @@
 """A patient's course as lanes over the dates of the visits: what is drawn, and what has changed since the first one.
 
-Conditions stand side by side and are never joined. What is not reported is a gap, and a change counts from the first
-visit that can be read.
+A course is of one condition. What is not reported is a gap, and a change counts from the first visit that can be read.
 """
 
 import datetime
@@ -13,14 +12,14 @@ from typing import NamedTuple
 from uuid import UUID
 
 from app.summary.course import Course, CourseCondition, change, change_between_legs
+from app.wording.measures import decimals
 from core.body import Side
-from core.goals import Goal, GoalOf, held, is_of_walk
+from core.goals import Goal, GoalOf, agreed_by, held, is_of_walk
 from core.parameters import KNEE, SPEED, STANCE
 from core.timed.measures import COLUMNS, PROTOCOLS
 from core.verdicts.measurement_error import Difference, Judgement
 from core.verdicts.model import Verdict
 
-MOST_TOGETHER = 4  # conditions in one lane: as many marks can be distinguished
 USUAL_LANES, MOST_LANES = 3, 4  # without goals, and with as many
 
 
@@ -58,12 +57,15 @@ class CourseVisit:
 
 @dataclass(frozen=True, slots=True)
 class LanePoint:
-    """One value at the visit of this number. `value` NaN: it cannot be read; `whisker` NaN: no error is known."""
+    """One value at the visit of this number; NaN where it cannot be read.
+
+    `healthy`, of what the legs differ by: what 95 of 100 healthy people measured as surely stay below.
+    """
 
     visit: int
     value: float
-    whisker: float
     verdict: Verdict
+    healthy: float = math.nan
 
     @property
     def is_reported(self) -> bool:
@@ -82,6 +84,10 @@ class LaneLine:
     def reported(self) -> tuple[LanePoint, ...]:
         return tuple(point for point in self.points if point.is_reported)
 
+    def at(self, visit: int) -> LanePoint:
+        """The point at a visit that has one."""
+        return next(point for point in self.points if point.visit == visit)
+
 
 @dataclass(frozen=True, slots=True)
 class LaneChange:
@@ -93,18 +99,19 @@ class LaneChange:
     first: int | None  # the visits' numbers
     before: int | None
 
+    @property
+    def since_before(self) -> Difference | None:
+        """Since the visit before, be it the first."""
+        return self.since_last if self.since_last is not None else self.since_first
+
 
 @dataclass(frozen=True, slots=True)
 class CourseLane:
-    """`changes`: of the lines of the condition that is reported. `band`: its first visit less and plus the error.
-
-    `goals`: those that hold now.
-    """
+    """Lines of one leg each, or of the walk, with their changes. `goals`: those that hold now."""
 
     kind: LaneKind
     lines: tuple[LaneLine, ...]
     changes: tuple[LaneChange, ...]
-    band: tuple[float, float] | None
     goals: tuple[Goal, ...] = ()
 
     @property
@@ -114,11 +121,33 @@ class CourseLane:
         return [sign * one.value for one in self.goals for sign in signs]
 
     @property
+    def healthy(self) -> tuple[float, float] | None:
+        """Between the legs, where 95 of 100 healthy people are, measured as surely as the last visit."""
+        known = [point.healthy for line in self.lines for point in line.reported if math.isfinite(point.healthy)]
+        return (-known[-1], known[-1]) if known else None
+
+    @property
+    def decimals(self) -> int:
+        """Of its values: whole degrees, unless two of them so rounded do not differ by the change that is shown."""
+        places = decimals(self.kind.column)
+        if places:
+            return places
+        pairs = [
+            (found, one.line.at(number), one.line.points[-1])
+            for one in self.changes
+            for found, number in ((one.since_first, one.first), (one.since_last, one.before))
+            if found is not None and number is not None and math.isfinite(found.difference)
+        ]
+        is_even = all(
+            round(last.value) - round(first.value) == round(found.difference) for found, first, last in pairs
+        )
+        return 0 if is_even else 1
+
+    @property
     def values(self) -> list[float]:
         """All that has to have a place in the lane."""
-        points = [point for line in self.lines for point in line.reported]
-        ends = [end for p in points if math.isfinite(p.whisker) for end in (p.value - p.whisker, p.value + p.whisker)]
-        return [*(point.value for point in points), *ends, *(self.band or ()), *self.goal_values]
+        points = [point.value for line in self.lines for point in line.reported]
+        return [*points, *(self.healthy or ()), *self.goal_values]
 
 
 def walked_at(visits: Sequence[CourseVisit], line: LaneLine) -> CourseCondition | None:
@@ -131,6 +160,13 @@ def conditions_of_visits(visits: Sequence[CourseVisit]) -> dict[str, int]:
     """At how many visits each condition was walked, the most frequent first, of equal ones the latest."""
     latest_first = [one.condition for visit in reversed(visits) if visit.course for one in visit.course.conditions]
     return dict(Counter(latest_first).most_common())
+
+
+def usual_condition(visits: Sequence[CourseVisit]) -> str:
+    """Of the conditions of the latest visit that is known, the one walked at most visits."""
+    latest = next((visit.course for visit in reversed(visits) if visit.course and visit.course.conditions), None)
+    own = {one.condition for one in latest.conditions} if latest is not None else set()
+    return next((name for name in conditions_of_visits(visits) if name in own), "")
 
 
 def lane_kinds(goals: Sequence[Goal] = ()) -> tuple[LaneKind, ...]:
@@ -165,13 +201,11 @@ def lanes(
     Parameters
     ----------
     condition
-        The only one that is shown; None: all of them, and changes are reported for the most frequent one.
+        The one that is shown; None: the usual one.
     kinds
         What has a lane in place of these.
     """
-    known = list(conditions_of_visits(visits))
-    shown = known if condition is None else [condition]
-    reported = shown[0] if shown else ""
+    shown = usual_condition(visits) if condition is None else condition
     affected = next((visit.course.affected for visit in reversed(visits) if visit.course is not None), None)
     sides = (affected,) if affected is not None else tuple(Side)
     found = []
@@ -181,10 +215,8 @@ def lanes(
         if not (kind.is_between or kind.is_of_walk):
             with_goal = {one.of.side for one in own}
             required = tuple(side for side in Side if side in sides or side in with_goal)
-        lines = [_line(visits, kind, one, side) for one in shown for side in required]
-        lines = [line for line in lines if line.points]
-        changes = [_change(visits, kind, line) for line in lines if line.condition == reported]
-        found.append(CourseLane(kind, tuple(lines), tuple(changes), _band(lines, reported), own))
+        lines = tuple(line for side in required if (line := _line(visits, kind, shown, side)).points)
+        found.append(CourseLane(kind, lines, tuple(_change(visits, kind, line, goals) for line in lines), own))
     return tuple(found)
 
 
@@ -207,35 +239,30 @@ def _point(number: int, walked: CourseCondition, kind: LaneKind, side: Side | No
         between = walked.between_legs(kind.column)
         if between is None:
             return None
-        is_not_reported = between.judgement is Judgement.NOT_REPORTED
-        return LanePoint(
-            number, between.difference, math.nan, Verdict.NOT_REPORTED if is_not_reported else Verdict.READ
-        )
+        verdict = Verdict.NOT_REPORTED if between.judgement is Judgement.NOT_REPORTED else Verdict.READ
+        return LanePoint(number, between.difference, verdict, between.healthy)
     if kind.is_of_test:
         test = walked.test(kind.column)
-        return None if test is None else LanePoint(number, test.found.mean, test.whisker, test.verdict)
+        return None if test is None else LanePoint(number, test.found.mean, test.verdict)
     figure = walked.figure(kind.column, side)
     if figure is None or figure.verdict is Verdict.NOT_MEASURED:
         return None
-    return LanePoint(
-        number,
-        figure.found.mean if figure.is_reported else math.nan,
-        figure.whisker_at(walked.speed_m_s),
-        figure.verdict,
-    )
+    return LanePoint(number, figure.found.mean if figure.is_reported else math.nan, figure.verdict)
 
 
-def _change(visits: Sequence[CourseVisit], kind: LaneKind, line: LaneLine) -> LaneChange:
+def _change(visits: Sequence[CourseVisit], kind: LaneKind, line: LaneLine, goals: Sequence[Goal]) -> LaneChange:
     last = line.points[-1]
     before = [point for point in line.reported if point.visit < last.visit]
     if not before or not last.is_reported:
         return LaneChange(line, None, None, before[0].visit if before else None, None)
-    since = [_difference(visits, kind, line, last, point) for point in (before[0], before[-1])]
+    agreed = agreed_by(goals, visits[last.visit].day)
+    is_chosen = agreed.is_chosen(kind.column, tuple(Side) if line.side is None else (line.side,))
+    since = [_difference(visits, kind, line, last, point, is_chosen) for point in (before[0], before[-1])]
     return LaneChange(line, since[0], since[1] if len(before) > 1 else None, before[0].visit, before[-1].visit)
 
 
 def _difference(
-    visits: Sequence[CourseVisit], kind: LaneKind, line: LaneLine, last: LanePoint, first: LanePoint
+    visits: Sequence[CourseVisit], kind: LaneKind, line: LaneLine, last: LanePoint, first: LanePoint, is_chosen: bool
 ) -> Difference | None:
     walked = [course.condition(line.condition) for at in (last, first) if (course := visits[at.visit].course)]
     one, other = walked
@@ -243,14 +270,4 @@ def _difference(
     assert other is not None
     if kind.is_between:
         return change_between_legs(one, other, kind.column)
-    return change(one, other, kind.column, line.side)
-
-
-def _band(lines: Sequence[LaneLine], condition: str) -> tuple[float, float] | None:
-    """Where one line alone is reported and has two values to compare: the first, less and plus the error."""
-    of_condition = [line for line in lines if line.condition == condition]
-    if len(of_condition) != 1 or len(of_condition[0].reported) < 2:
-        return None
-    first = of_condition[0].reported[0]
-    error = 2 * first.whisker
-    return (first.value - error, first.value + error) if math.isfinite(error) else None
+    return change(one, other, kind.column, line.side, is_chosen_before=is_chosen)

@@ -149,18 +149,6 @@ def beyond_in_words(found: GoalStanding) -> str:
     return tr("beyond error") if found is GoalStanding.REACHED else tr("within measurement error, so not certain")
 
 
-def brief_standing(found: GoalStanding) -> str:
-    """The same in a few words, where the goal is shown beside it."""
-    return {
-        GoalStanding.SHORT: tr("not reached; the difference is beyond measurement error"),
-        GoalStanding.SHORT_INSIDE: tr("not reached; the difference is within measurement error"),
-        GoalStanding.REACHED_INSIDE: tr("reached; the difference is within measurement error"),
-        GoalStanding.REACHED: tr("reached; the difference is beyond measurement error"),
-        GoalStanding.NOT_JUDGED: tr("goal not judged"),
-        GoalStanding.UNKNOWN: tr("goal not judged"),
-    }[found]
-
-
 def goal_sentence(found: GoalFigure) -> str:
     """A goal that was agreed before, what was measured, and how they compare; nothing where no value is judged."""
     if found.standing in (GoalStanding.UNKNOWN, GoalStanding.NOT_JUDGED):

@@ -82,7 +82,7 @@ def marked(stated: str, verdict: Verdict) -> str:
 
 
 def care_note() -> str:
-    return tr("{mark}: caution; reason on page 1.").format(mark=CARE)
+    return tr("{mark}: caution; reason under data quality.").format(mark=CARE)
 
 
 MARKS = {Mark.HEALTHY: "\N{BLACK CIRCLE}", Mark.ERROR: "\N{WHITE CIRCLE}", Mark.NONE: ""}

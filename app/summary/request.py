@@ -70,8 +70,6 @@ class ReportRequest:
         The condition at the earlier visit whose curves page one draws thin; None: none is.
     course
         The patient's visits in order of time, this one the last; from two on, a page shows the course.
-    patient_language
-        In which language a page for the patient is added, as "de"; empty: none is.
     """
 
     visit: AnalysedVisit
@@ -84,7 +82,6 @@ class ReportRequest:
     paper: str = "a4"
     earlier: AnalysedVisit | None = None
     course: tuple[CourseVisit, ...] = ()
-    patient_language: str = ""
     comment_by: str = ""
     thin: Part | None = None
 

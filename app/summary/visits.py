@@ -10,6 +10,7 @@ from datetime import date
 from typing import NamedTuple
 
 from app.summary.conditions import Part, conditions_of
+from app.wording.recordings import name_in_words
 from app.wording.translation import tr
 from core.goals import NO_GOALS, AgreedGoals
 from core.results import Analysis
@@ -98,4 +99,4 @@ def conditions_in_words(visits: Sequence[WalkedVisit]) -> str:
 
 
 def condition_in_words(condition: str) -> str:
-    return condition or tr("no condition recorded")
+    return name_in_words(condition) or tr("no condition recorded")

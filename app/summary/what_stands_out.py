@@ -26,6 +26,7 @@ from app.summary.trend_lines import TrendLine, trend_columns, trend_lines, walke
 from app.wording.body import name_of
 from app.wording.dates import date
 from app.wording.measures import name_in_sentence
+from app.wording.recordings import name_in_words
 from app.wording.translation import capitalised, later, tr
 from core.body import Joint, Side
 from core.parameters import (
@@ -329,7 +330,7 @@ def _speed_error(kind: ComparisonKind, mean_m_s: float) -> float:
 def _changed(facts: Facts, comparison: Comparison | None, row: Compared) -> str:
     """One figure of one part beside that of the first."""
     is_visits = comparison is not None and comparison.kind is Contrast.VISITS
-    names = (typed(part.name, CONDITION_LENGTH) for part in (row.part, row.against))
+    names = (typed(name_in_words(part.name), CONDITION_LENGTH) for part in (row.part, row.against))
     now, before = (tr("in {part}").format(part=name) for name in names)
     if is_visits:
         now, before = tr("in this visit"), tr("in the earlier visit")

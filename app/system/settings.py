@@ -81,6 +81,15 @@ class Settings(QObject):
         self._put("has_sound", "yes" if has_sound else "no")
 
     @property
+    def has_prompts(self) -> bool:
+        """Whether what is to be done is spoken."""
+        return self._kept.value("has_prompts", "") == "yes"
+
+    @has_prompts.setter
+    def has_prompts(self, has_prompts: bool) -> None:
+        self._put("has_prompts", "yes" if has_prompts else "no")
+
+    @property
     def has_less_motion(self) -> bool:
         """Whether nothing may move by itself; else that is as the system was asked for."""
         return self._kept.value("has_less_motion", "") == "yes"
@@ -106,6 +115,15 @@ class Settings(QObject):
     @latest_library.setter
     def latest_library(self, folder: str) -> None:
         self._put("latest_library", folder)
+
+    @property
+    def latest_source(self) -> str:
+        """The key of the source whose sensors were received last here."""
+        return str(self._kept.value("latest_source", ""))
+
+    @latest_source.setter
+    def latest_source(self, key: str) -> None:
+        self._put("latest_source", key)
 
     @property
     def latest_table(self) -> str:

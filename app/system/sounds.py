@@ -10,11 +10,11 @@ import logging
 import shutil
 import subprocess
 import sys
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from enum import StrEnum
 from importlib.resources import files
-from queue import Empty, Full, Queue
-from threading import Thread
+from threading import Condition, Thread
+from time import monotonic
 
 from PySide6.QtCore import QObject, Qt, Signal
 from PySide6.QtWidgets import QApplication
@@ -23,7 +23,8 @@ from PySide6.QtWidgets import QApplication
 PLAYERS: Sequence[Sequence[str]] = (
     (("afplay",),) if sys.platform == "darwin" else (("paplay",), ("pw-play",), ("aplay", "-q"))
 )
-LONGEST_S = 3.0  # the sounds last less than half a second; a player that hangs must not hold up the next sound
+LONGEST_S = 6.0  # tones last under half a second, phrases under four; a player that hangs holds up no other sound
+LOOK_S = 0.02  # how soon a phrase is cut off
 
 _log = logging.getLogger(__name__)
 
@@ -42,7 +43,8 @@ class Loudspeaker(QObject):
     """Plays one sound after the other. Where nothing can play, it lets the desktop beep.
 
     Of several that are asked for while another sounds only the latest is kept: an old one would report what is over.
-    Only the tick of a metronome takes no other's place: it signals nothing that the next one does not.
+    Only the tick of a metronome takes no other's place: it signals nothing that the next one does not. A spoken phrase
+    waits for the tones, and is cut off by whatever comes next: a tone marks an instant, and a new phrase is what holds.
     """
 
     _not_received = Signal()
@@ -51,7 +53,9 @@ class Loudspeaker(QObject):
         super().__init__()
         self.is_on = True
         self._players = [list(player) for player in players]
-        self._next: Queue[Sound] = Queue(maxsize=1)
+        self._waits = Condition()
+        self._tone: Sound | None = None  # what comes next
+        self._phrase = ""
         self._thread: Thread | None = None
         self._not_received.connect(self._on_not_received, Qt.ConnectionType.QueuedConnection)
 
@@ -59,31 +63,50 @@ class Loudspeaker(QObject):
         """Play `sound`, at once or after the one that sounds; nothing while the bell is off."""
         if not self.is_on:
             return
+        with self._waits:
+            if sound is not Sound.TICK or self._tone is None:
+                self._tone = sound
+            self._wake()
+
+    def speak(self, phrase: str) -> None:
+        """Play a spoken phrase, named by its language and its name, as "en/recorded"; nothing while the bell is off."""
+        if not self.is_on:
+            return
+        with self._waits:
+            self._phrase = phrase
+            self._wake()
+
+    def _wake(self) -> None:
         if self._thread is None:
             # a daemon: the end of the program waits for no sound
             self._thread = Thread(target=self._run, name="sounds", daemon=True)
             self._thread.start()
-        while True:
-            with contextlib.suppress(Full):
-                self._next.put_nowait(sound)
-                return
-            if sound is Sound.TICK:
-                return
-            with contextlib.suppress(Empty):
-                self._next.get_nowait()
+        self._waits.notify()
 
     def _run(self) -> None:
         while True:
-            if not self._is_received(self._next.get()):
+            with self._waits:
+                self._waits.wait_for(self._has_more)
+                tone, phrase = self._tone, self._phrase
+                self._tone = None
+                if tone is None:
+                    self._phrase = ""
+            if tone is None:
+                self._is_received(f"spoken/{phrase}", self._has_more)
+            elif not self._is_received(tone):
                 with contextlib.suppress(RuntimeError):  # the program has ended meanwhile
                     self._not_received.emit()
 
-    def _is_received(self, sound: Sound) -> bool:
+    def _has_more(self) -> bool:
+        return self._tone is not None or bool(self._phrase)
+
+    def _is_received(self, sound: str, is_over: Callable[[], bool] | None = None) -> bool:
+        """Play it, to its end or until `is_over`; whether anything could."""
         file = str(files("resources") / "sounds" / f"{sound}.wav")
         if sys.platform == "win32":
-            return _play_on_windows(file)
+            return _play_on_windows(file, is_beside=is_over is not None)
         while self._players:
-            if _has_played([*self._players[0], file]):
+            if _has_played([*self._players[0], file], is_over):
                 return True
             del self._players[0]  # not there, or nothing to play to: the next time would be no better
         return False
@@ -98,6 +121,11 @@ def play(sound: Sound) -> None:
     _loudspeaker.play(sound)
 
 
+def speak(phrase: str) -> None:
+    """Let the room hear a spoken phrase, as `play` does a sound."""
+    _loudspeaker.speak(phrase)
+
+
 def is_on() -> bool:
     return _loudspeaker.is_on
 
@@ -107,24 +135,35 @@ def set_on(is_on: bool) -> None:
     _loudspeaker.is_on = is_on
 
 
-def _has_played(command: Sequence[str]) -> bool:
+def _has_played(command: Sequence[str], is_over: Callable[[], bool] | None) -> bool:
+    """Whether the command played its sound, to its end or until `is_over`."""
     if shutil.which(command[0]) is None:
         return False
     quiet = subprocess.DEVNULL
     try:
-        ended = subprocess.run(command, stdin=quiet, stdout=quiet, stderr=quiet, timeout=LONGEST_S, check=False)
-    except (OSError, subprocess.TimeoutExpired) as problem:
+        with subprocess.Popen(command, stdin=quiet, stdout=quiet, stderr=quiet) as process:
+            until_s = monotonic() + LONGEST_S
+            while process.poll() is None:
+                is_cut = is_over is not None and is_over()
+                if is_cut or monotonic() > until_s:
+                    process.kill()
+                    return is_cut
+                with contextlib.suppress(subprocess.TimeoutExpired):
+                    process.wait(LOOK_S)
+            return process.returncode == 0
+    except OSError as problem:
         _log.info("%s played nothing: %s", command[0], problem)
         return False
-    return ended.returncode == 0
 
 
-def _play_on_windows(file: str) -> bool:
+def _play_on_windows(file: str, *, is_beside: bool) -> bool:
+    """Play a sound to its end; `is_beside`: the call returns at once, and the next sound cuts it off."""
     if sys.platform == "win32":
         import winsound
 
         try:
-            winsound.PlaySound(file, winsound.SND_FILENAME | winsound.SND_NODEFAULT)
+            flags = winsound.SND_FILENAME | winsound.SND_NODEFAULT
+            winsound.PlaySound(file, flags | winsound.SND_ASYNC if is_beside else flags)
         except RuntimeError as problem:
             _log.info("the sound was not played: %s", problem)
             return False

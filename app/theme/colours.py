@@ -116,6 +116,10 @@ class PaperColours:
     band_mean: str
     left: str
     right: str
+    left_soft: str
+    earlier: str
+    track: str
+    way: str
 
 
 PAPER = PaperColours(
@@ -130,4 +134,8 @@ PAPER = PaperColours(
     band_mean="#6E6E6E",
     left=LIGHT.left,
     right=LIGHT.right,
+    left_soft="#F3BE9B",
+    earlier="#EEF2F5",
+    track="#E6EAED",
+    way="#C9D1D8",
 )

@@ -16,6 +16,7 @@ class Choice(QComboBox):
         self._least: float | None = None
         self._most = 0.0
         self._whole: tuple[str, ...] = ()
+        self._height: float | None = None
         self.setAccessibleName(name)
         if sys.platform.startswith("linux"):  # there Qt gives the choice in force as the name, and ours is not read out
             self.setAccessibleDescription(name)
@@ -40,6 +41,11 @@ class Choice(QComboBox):
         self._whole = words
         self.updateGeometry()
 
+    def set_height(self, height: float) -> None:
+        """Be as high as this, in px of the design: in the head of a card it is lower than in a form."""
+        self._height = height
+        self.updateGeometry()
+
     @property
     def is_cut(self) -> bool:
         """Whether the choice in force is wider than its box."""
@@ -47,6 +53,8 @@ class Choice(QComboBox):
 
     def sizeHint(self) -> QSize:
         required = super().sizeHint()
+        if self._height is not None:
+            required.setHeight(self._look.theme.px(self._height))
         return required if self._least is None else required.boundedTo(QSize(self._look.theme.px(self._most), 99_999))
 
     def minimumSizeHint(self) -> QSize:

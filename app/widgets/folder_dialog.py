@@ -61,11 +61,20 @@ def ask_for_new_folder(
 
 
 def ask_for_new_file(
-    parent: QWidget, title: str, proposed: str, on_chosen: Callable[[str], None], filters: Sequence[str] = ()
+    parent: QWidget,
+    title: str,
+    proposed: str | Callable[[Path], str],
+    on_chosen: Callable[[str], None],
+    filters: Sequence[str] = (),
 ) -> QFileDialog:
-    """Open a dialog for a file that is to be written; what is typed without a suffix gets that of `proposed`."""
+    """Open a dialog for a file that is to be written; what is typed without a suffix gets that of `proposed`.
+
+    `proposed` may be given by the place that is shown first.
+    """
     dialog = QFileDialog(parent, title)
     dialog.setAcceptMode(QFileDialog.AcceptMode.AcceptSave)
+    if not isinstance(proposed, str):
+        proposed = proposed(Path(dialog.directory().absolutePath()))
     dialog.setDefaultSuffix(Path(proposed).suffix[1:])
     if filters:
         dialog.setNameFilters(filters)

@@ -33,7 +33,7 @@ class Header(Themed):
         self._name = Text(look, "Gaitwright", size=18, weight=SEMIBOLD)
         self.code = Text(look, size=22, weight=SEMIBOLD, is_code=True)
         self.facts = Text(look, size=14, tone="ink2", wraps=True)
-        self.simulated = _Tag(look, tr("SIMULATED"))
+        self.simulated = Tag(look, tr("SIMULATED"))
         self.fold = StripButton(look)
         self.stopwatch = Stopwatch(look)
         self._left: list[QWidget] = [self._mark, self._name, self.code, self.facts, self.simulated]
@@ -166,7 +166,7 @@ class ProductMark(QWidget):
             painter.drawLine(hip, QPointF(foot * unit, 21 * unit))
 
 
-class _Tag(Text):
+class Tag(Text):
     """A word that must not be overlooked, on yellow."""
 
     def __init__(self, look: ThemeNotifier, text: str) -> None:

@@ -20,12 +20,16 @@ LARGE_FROM = 1500
 
 @dataclass(frozen=True, slots=True)
 class Hint:
-    """`sentence` has at most 28 letters; `how` is the second line, `how_short` where there is little room."""
+    """`sentence` has at most 28 letters; `how` is the second line, `how_short` where there is little room.
+
+    `phrase`: the name of the spoken prompt that has the same sentence.
+    """
 
     sentence: str
     how: str = ""
     how_short: str = ""
     icon: Icon = Icon.REPEAT
+    phrase: str = ""
 
 
 class HintBand(QWidget):

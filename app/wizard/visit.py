@@ -112,6 +112,8 @@ class Visit(QObject):
         """What each sensor, by name, reads while the patient is standing; empty until then."""
         self.placement_before: dict[str, Site] = {}
         """Site by the sensor's name as at the last visit, where the same set-up was asked for."""
+        self.source_before = ""
+        """The key of the source that was received last at this workstation."""
         self._began_s: float | None = None
         self._ended_s: float | None = None
         self._is_of_another_day = self._must_look = False

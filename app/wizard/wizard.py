@@ -10,6 +10,7 @@ from PySide6.QtWidgets import QVBoxLayout, QWidget
 
 from app.editing.question import EditQuestion
 from app.system import sounds
+from app.system.prompts import prompter
 from app.system.settings import Settings
 from app.theme.notifier import ThemeNotifier
 from app.widgets.action_bar import BarAction, BarState
@@ -69,6 +70,7 @@ class Wizard(QWidget):
         self._steps: dict[StepId, Step] = {}
         self._current = self._offering = StepId.PATIENT  # `_offering`: whose offer to undo the toast shows
         self._ticks = 0
+        self._is_for_report = False  # as soon as what is resumed is there
         self._to_resume: UUID | None = None  # a session that waits for what visits before still save
         self._deaf_until_s = 0.0
         self._reported_of_recording: Message = NOTHING
@@ -121,10 +123,13 @@ class Wizard(QWidget):
             visit.patient.choose_from_list(patient)
         self._go_to(StepId.PATIENT)
 
-    def show_session(self, session_id: UUID) -> None:
-        """Look at what came of a session, or go on with it where nothing has come of it yet."""
+    def show_session(self, session_id: UUID, *, is_for_report: bool = False) -> None:
+        """Look at what came of a session, or go on with it where nothing has come of it yet.
+
+        `is_for_report`: its report is to be written, where that can be.
+        """
         self._begin_visit()
-        self._to_resume = session_id
+        self._to_resume, self._is_for_report = session_id, is_for_report
         self._on_resume_due()
 
     def _on_resume_due(self) -> None:
@@ -192,6 +197,8 @@ class Wizard(QWidget):
         self.close_visit()
         visit = Visit(self._controller, choices(), self)
         self._visit = visit
+        visit.source_before = self._settings.latest_source
+        visit.sensors.opened.connect(self._on_source_opened)
         look = self._look
         steps = (
             PatientStep(look, visit, self),
@@ -231,6 +238,7 @@ class Wizard(QWidget):
         for signal in (visit.changed, visit.sensors.changed, visit.patient.changed, visit.evaluation.done):
             signal.disconnect(self._on_visit_changed)
         visit.resumed.disconnect(self._on_resumed)
+        visit.sensors.opened.disconnect(self._on_source_opened)
         visit.changed_elsewhere.disconnect(self._on_changed_elsewhere)
         visit.deleted_elsewhere.disconnect(self._show_message)
         visit.refused.disconnect(self._on_refused)
@@ -386,6 +394,7 @@ class Wizard(QWidget):
 
     def _on_settings_changed(self) -> None:
         sounds.set_on(self._settings.has_sound)
+        prompter.is_on = self._settings.has_prompts
         self.shell.strip.set_from_behind(self._settings.is_from_behind)
         if (page := self.shell.page) is not None:
             self._turn(page)
@@ -464,13 +473,20 @@ class Wizard(QWidget):
 
     def _on_step_done(self) -> None:
         if self.sender() is self.current and self._current is not StepId.REPORT:
-            if self._current in (StepId.STAND_STILL, StepId.FREE_MOTION):  # which end by themselves
+            ended = {StepId.STAND_STILL, StepId.FREE_MOTION}  # by themselves
+            ended |= {StepId.SENSORS} if self._visit is not None and self._visit.placement_before else set()
+            if self._current in ended:
                 self._deaf_until_s = time.monotonic() + DEAF_S
             self.go_to(StepId(self._current.value + 1))
 
     def _on_visit_changed(self) -> None:
         self._show()
         self.asked.go_on()
+
+    def _on_source_opened(self) -> None:
+        choice = self._visit.sensors.choice if self._visit is not None else None
+        if choice is not None:
+            self._settings.latest_source = choice.key
 
     def _on_asked(self, question: EditQuestion) -> None:
         visit = self.sender()
@@ -515,6 +531,9 @@ class Wizard(QWidget):
             self._go_to(StepId.SENSORS)
         else:
             self._go_to(StepId.RESULTS if all(walk.is_decided for walk in walks) else StepId.WALKING)
+            if self._is_for_report and self._current is StepId.RESULTS:
+                self.go_to(StepId.REPORT)
+        self._is_for_report = False
 
     def _on_room_changed(self, is_compact: bool, width: float, height: float) -> None:
         page = self.current.page if self.current is not None else None

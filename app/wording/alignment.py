@@ -3,6 +3,7 @@
 from collections.abc import Iterable, Mapping, Sequence
 
 from app.wording.numbers import MINUS
+from app.wording.recordings import name_in_words
 from app.wording.translation import capitalised, figure_text, later, tr, within_sentence
 from core.alignment import AlignmentChange, NetChange, PartChange, ProsthesisPart, net_of
 
@@ -111,7 +112,7 @@ def since_in_words(change: AlignmentChange | None) -> str:
     stated = change_in_words(change)
     if not change.since:
         return tr("Changed: {changes}").format(changes=stated)
-    return tr("Changed from {condition}: {changes}").format(condition=change.since, changes=stated)
+    return tr("Changed from {condition}: {changes}").format(condition=name_in_words(change.since), changes=stated)
 
 
 def to_do_in_words(changes: Sequence[NetChange]) -> str:

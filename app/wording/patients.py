@@ -3,11 +3,22 @@
 import datetime
 from typing import TYPE_CHECKING
 
-from app.wording.dates import date
-from app.wording.translation import tr
+from app.wording.dates import date, short_date
+from app.wording.translation import later, tr, within_sentence
 
 if TYPE_CHECKING:
     from core.session import Patient
+
+
+AIDS = {  # as they stand in files
+    "shoes": later("Shoes"),
+    "barefoot": later("Barefoot"),
+    "stick": later("Stick"),
+    "crutches": later("Crutches"),
+    "walker": later("Walker"),
+    "parallel bars": later("Parallel bars"),
+    "AFO": later("AFO"),
+}
 
 
 def day_of_session(started: str, now: datetime.datetime) -> datetime.date | None:
@@ -38,6 +49,13 @@ def person(patient: "Patient") -> str:
     return " · ".join(filter(None, [born, side]))
 
 
+def aids_in_words(aids: str) -> str:
+    """Say which aids were worn: those that we offer in the user's language, others as they were typed."""
+    known = {aid.lower(): within_sentence(tr(words)) for aid, words in AIDS.items()}
+    known["afo"] = tr(AIDS["AFO"])  # an abbreviation stays one
+    return ", ".join(known.get(aid.strip().lower(), aid.strip()) for aid in aids.split(","))
+
+
 def about_and_device(patient: "Patient") -> str:
     """What the clinic typed of a patient, in one line beside the code."""
     return " · ".join(filter(None, [person(patient), patient.device]))
@@ -57,6 +75,13 @@ def when(started: str, now: datetime.datetime) -> str:
     if days == 0:
         return tr("today {time}").format(time=f"{at:%H:%M}")
     return tr("yesterday") if days == 1 else date(at.date())
+
+
+def when_in_brief(started: str, now: datetime.datetime) -> str:
+    """The same without the year, where that is this year."""
+    day = day_of_session(started, now)
+    is_plain = day is not None and day.year == now.year and (now.date() - day).days > 1
+    return short_date(day) if day is not None and is_plain else when(started, now)
 
 
 def length(seconds: float) -> str:

@@ -4,15 +4,17 @@ A walk is called by the letter of its condition and the condition.
 
 A recording's own name ("walk 3") is its identity in a session's folder, in tables and for programs; nobody has to know
 it. On the screen and on paper a walk is called "A Barefoot", and "A2 Barefoot" where it is the second of its condition:
-the letter that represents the condition in every comparison, the words that somebody chose or typed.
+the letter that represents the condition in every comparison, the words that somebody chose or typed. Labels that we
+propose are read in the user's language, whichever they were stored in.
 """
 
 import re
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
+from functools import cache
 from itertools import accumulate
 
-from app.wording.translation import tr
+from app.wording.translation import languages, later, spoken_in, tr
 from core.findings import Finding
 from core.session import Recording, RecordingKind
 
@@ -22,6 +24,8 @@ OWN_NAMES = {  # in files, numbered by `SessionRecordings`
     RecordingKind.FREE_MOTION: "free motion",
     RecordingKind.WALKING: "walk",
 }
+OWN_LABELS = (later("Barefoot"), later("Shoes"), later("AFO"), later("Shoes, stick"))
+ALIGNMENT = later("Alignment {letter}")
 _OWN_NAME = re.compile(rf"({'|'.join(OWN_NAMES.values())})(?: (\d+))?")
 
 
@@ -61,7 +65,7 @@ def shown_names(recordings: Sequence[Recording]) -> dict[str, ShownName]:
     walked: dict[tuple[str, int], int] = {}
     found = {}
     for one in recordings:
-        letter, words = letters.get(one.name, ""), one.condition or name_in_words(one.name)
+        letter, words = letters.get(one.name, ""), name_in_words(one.condition or one.name)
         if (condition := conditions.get(one.name)) is not None:
             walked[condition] = walked.get(condition, 0) + 1
             number = str(walked[condition]) if walked[condition] > 1 else ""
@@ -71,12 +75,25 @@ def shown_names(recordings: Sequence[Recording]) -> dict[str, ShownName]:
 
 
 def name_in_words(name: str) -> str:
-    """Put a name that we gave into the user's language; one that somebody gave stays."""
+    """Put a name or a condition that we proposed into the user's language; one that somebody gave stays."""
+    if (label := _own_labels().get(name.casefold())) is not None:
+        own_words = tr(label[0]).format(letter=label[1])
+        return name if own_words.casefold() == name.casefold() else own_words
     own = _OWN_NAME.fullmatch(name)
     if own is None:
         return name
     words = {"standing": tr("standing"), "free motion": tr("free motion"), "walk": tr("walk")}
     return f"{words[own[1]]} {own[2] or ''}".rstrip()
+
+
+@cache
+def _own_labels() -> dict[str, tuple[str, str]]:
+    """Each label that we propose in any language, and which one it is, with the letter of an alignment."""
+    found: dict[str, tuple[str, str]] = {}
+    for spoken in map(spoken_in, languages()):
+        found |= {spoken(label).casefold(): (label, "") for label in OWN_LABELS}
+        found |= {spoken(ALIGNMENT).format(letter=one).casefold(): (ALIGNMENT, one) for one in LETTERS}
+    return found
 
 
 def with_shown_names(finding: Finding, names: Mapping[str, ShownName]) -> Finding:

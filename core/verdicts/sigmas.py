@@ -101,8 +101,8 @@ _STRAPPED_AGAIN: Mapping[QuantityKind, Sigma] = {
     _Q.FOOT_PITCH: Sigma(_TWO_VISITS, 2.0),
     _Q.HEEL_RISE: Sigma(_TWO_VISITS, 3.2),
     _Q.FOOT_FLAT: Sigma(_TWO_VISITS, 4.8),
-    # 4.3: with 4.0 the range and stance to swing of 144 simulated pairs on two days differed by 1.06 of what it gives,
-    # and these two alone made sentences on page one where nothing differs (tests.benchmarks.null_differences)
+    # 4.3: with 4.0 range and stance to swing of 144 simulated pairs on two days differed by 1.06 SD (root mean square),
+    # with 4.3 by 1.01 (tests.benchmarks.null_differences)
     _Q.KNEE_SHAPE: Sigma(_KNEES, 1.2, 4.3),
     _Q.KNEE_HEIGHT: Sigma(_KNEES, 2.2, 4.0),
     _Q.KNEE_STRAIGHTENING: Sigma(_KNEES, 2.4),

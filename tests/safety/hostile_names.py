@@ -119,8 +119,8 @@ def named(plain_visit: AnalysedVisit, name: str) -> ReportRequest:
 def numbers_and_figures(data: dict[str, Any]) -> list[Any]:
     """Give what nobody typed: every table's cells, every picture, what page one reports but of whom."""
     first = data["first_page"]
-    found: list[Any] = [first[name] for name in ("readable", "curves", "quality")]
-    for block in (*first["key_numbers"], *(block for page in data["pages"] for block in page)):
+    found: list[Any] = [first[name] for name in ("summary", "caution", "tiles", "charts", "table", "quality", "source")]
+    for block in (block for page in data["pages"] for block in page):
         if block["kind"] == "table" and block["columns"][0]["title"] == "":  # of what is compared, by its names
             found.append([[cell for k, cell in enumerate(row["cells"]) if k != 1] for row in block["rows"]])
         elif block["kind"] == "table":

@@ -57,6 +57,7 @@ THEMES = ("light", "dark")
 TRACED = ("-f", "--seccomp-bpf", "-e", "trace=connect,sendto,sendmsg,sendmmsg,bind", "-e", "signal=none")
 INSIDE = (sys.executable, str(Path(__file__).resolve().with_name("tour_inside.py")))
 MOST_S = 300.0  # of the application's stopwatch
+MOST_COUNTED = {"new": (40, 300.0), "returning": (10, 90.0)}  # actions, and seconds of the stopwatch
 LOOK_EVERY_S = 0.2
 MOST_TABS = 60  # more stops than any page has
 KEY_PAUSE_S = 0.08  # between keys: nobody is faster, and what a key opens has to be there for the next
@@ -131,7 +132,7 @@ def main(arguments: list[str]) -> None:
                 application.ask(f"speak {required.lang}")
                 application.ask("begin")  # the window is another
             try:
-                stopwatch_s = lead(application, TOURS[tour], required.out.resolve(), looks)
+                led = lead(application, TOURS[tour], required.out.resolve(), looks)
             except TourError as end:
                 sys.exit(str(end))
         if required.manual:
@@ -140,7 +141,12 @@ def main(arguments: list[str]) -> None:
                 MANUAL.get(tour, {}),
                 PICTURES if required.lang == "en" else HELP / required.lang / "pictures",
             )
-        print(f"{len(TOURS[tour])} stops by {tour} alone, {stopwatch_s:.0f} s of the application's stopwatch.")
+        print(f"{len(TOURS[tour])} stops by {tour} alone, {led.stopwatch_s:.0f} s of the application's stopwatch.")
+        if led.actions:
+            print(f"Counted: {led.actions} actions, {led.counted_s:.0f} s of the application's stopwatch.")
+        most = MOST_COUNTED.get(tour)
+        if most is not None and (led.actions > most[0] or led.counted_s > most[1]):
+            sys.exit(f"At most {most[0]} actions and {most[1]:.0f} s are allowed.")
 
 
 def _give_pictures(out: Path, required: Mapping[str, str], pictures: Path) -> None:
@@ -152,8 +158,17 @@ def _give_pictures(out: Path, required: Mapping[str, str], pictures: Path) -> No
             subprocess.run(["convert", taken, "-dither", "None", "-colors", "256", f"PNG8:{given}"], check=True)
 
 
-def lead(application: Application, stops: Sequence[Stop], out: Path, looks: Sequence[str]) -> float:
-    """Go from stop to stop, and give what the application's own stopwatch states of the session.
+@dataclass(slots=True)
+class Led:
+    """What a tour took: the longest that the stopwatch showed; of the stops that are counted, keys and clicks too."""
+
+    stopwatch_s: float = 0.0
+    actions: int = 0
+    counted_s: float = 0.0
+
+
+def lead(application: Application, stops: Sequence[Stop], out: Path, looks: Sequence[str]) -> Led:
+    """Go from stop to stop, and give what that took.
 
     Parameters
     ----------
@@ -165,37 +180,44 @@ def lead(application: Application, stops: Sequence[Stop], out: Path, looks: Sequ
     TourError
         A stop was not reached in time, or the session took too long.
     """
-    stopwatch_s = 0.0
+    led = Led()
     application.ask(f"look {looks[0]}")
     for stop in stops:
         seen = _wait_for(application, stop)
-        stopwatch_s = max(stopwatch_s, seen.stopwatch_s)
+        led.stopwatch_s = max(led.stopwatch_s, seen.stopwatch_s)
+        if stop.is_counted and led.actions:
+            led.counted_s = max(led.counted_s, seen.stopwatch_s)
         time.sleep(stop.lingers_s)
         for look in looks:
             application.picture(look, out / look.replace(" ", "-") / f"{stop.name}.png")
         if len(looks) > 1:
             application.ask(f"look {looks[0]}")
         for deed in stop.does:
-            _do(application, stop, deed)
+            count = _do(application, stop, deed)
+            led.actions += count if stop.is_counted else 0
         for files, words in stop.leaves:
             if not any(words in file.read_text("utf-8") for file in application.home.glob(files)):
                 raise TourError(f"{stop.name}: no file {files} says “{words}”.")
-    if stopwatch_s > MOST_S:
-        raise TourError(f"The session took {stopwatch_s:.0f} s of the application's stopwatch, {MOST_S:.0f} s at most.")
-    return stopwatch_s
+    if led.stopwatch_s > MOST_S:
+        stated = f"The session took {led.stopwatch_s:.0f} s of the application's stopwatch, {MOST_S:.0f} s at most."
+        raise TourError(stated)
+    return led
 
 
-def _do(application: Application, stop: Stop, deed: str) -> None:
+def _do(application: Application, stop: Stop, deed: str) -> int:
+    """Do it, and give how many keys and clicks it took: typing takes one for each letter."""
     verb, _, words = deed.partition(" ")
+    actions = 1
     match verb:
         case "press":
             application.hand("key", words)
         case "type":
             application.hand("type", "--delay", "40", words.format(home=application.home))
+            actions = len(words)
         case "copy":
             application.hand("type", "--delay", "20", _recovery_key(application.seen()))
         case "to":
-            _tab_to(application, stop, words)
+            actions = _tab_to(application, stop, words)
         case "click":
             application.hand("mousemove", *_place_of(application, stop, words), "click", "1")
         case "await":
@@ -206,6 +228,7 @@ def _do(application: Application, stop: Stop, deed: str) -> None:
             what, _, where = words.partition(" to ")
             _drag(application, _place_of(application, stop, what), _place_of(application, stop, where))
     time.sleep(KEY_PAUSE_S)
+    return actions
 
 
 def _recovery_key(seen: Seen) -> str:
@@ -217,10 +240,10 @@ def _recovery_key(seen: Seen) -> str:
     raise TourError(f"No recovery key is shown.\n{_in_words(seen)}")
 
 
-def _tab_to(application: Application, stop: Stop, name: str) -> None:
-    for _ in range(MOST_TABS):
+def _tab_to(application: Application, stop: Stop, name: str) -> int:
+    for tabs in range(MOST_TABS):
         if any(one.startswith(name) for one in application.seen().focus):
-            return
+            return tabs
         application.hand("key", "Tab")
         time.sleep(KEY_PAUSE_S)
     raise TourError(f"{stop.name}: Tab never comes to “{name}”.\n{_in_words(application.seen())}")

@@ -3,7 +3,7 @@
 By keyboard, by mouse, at the bench, and with a seventh sensor on the pelvis.
 """
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
 
 PATIENCE_S = 30.0
@@ -48,6 +48,8 @@ class Stop:
         by its title), "raise Gaitwright" (before all others).
     lingers_s
         Before the pictures, for what moves.
+    is_counted
+        Whether keys and clicks here count as what the session takes.
     leaves
         Files of the tour's own folder, by a pattern, and words that one of them must hold then.
     """
@@ -58,6 +60,7 @@ class Stop:
     lingers_s: float = 0.5
     patience_s: float = PATIENCE_S
     leaves: tuple[tuple[str, str], ...] = ()
+    is_counted: bool = False
 
 
 def at(screen: str) -> Callable[[Seen], bool]:
@@ -171,7 +174,7 @@ KEYBOARD: tuple[Stop, ...] = (
     Stop("13f-whole-walk", offers("Published"), ("press Right",), lingers_s=2.0),
     Stop("13g-strides", states("Excluded strides stay in the files with the reason"), ("press ctrl+7",), lingers_s=1.0),
     Stop("14a-report", at_step("ReportStep"), ("press ctrl+s",), lingers_s=1.0),
-    Stop("14b-where", offers("Save"), ("press ctrl+a", "type {home}/results", "press Return"), lingers_s=1.0),
+    Stop("14b-where", offers("Save"), ("press ctrl+a", "type {home}/report.pdf", "press Return"), lingers_s=1.0),
     Stop("14c-saved", states("Saved as"), ("press F1",), lingers_s=1.0),
     Stop("15-manual", offers("Search the help"), ("press Escape",), lingers_s=1.0),
     Stop("16-leave", at_step("ReportStep"), ("to Step 7", "press Down", "press Return")),
@@ -202,10 +205,10 @@ MOUSE: tuple[Stop, ...] = (
     Stop(
         "13g-strides",
         states("Excluded strides stay in the files with the reason"),
-        ("click Go to the report",),
+        ("click Write report",),
         lingers_s=1.0,
     ),
-    Stop("14a-report", at_step("ReportStep"), ("click Save the report",), lingers_s=1.0),
+    Stop("14a-report", at_step("ReportStep"), ("click Save report",), lingers_s=1.0),
     Stop("14b-where", offers("Save"), ("click Save",), lingers_s=1.0),
     Stop("14c-saved", states("Saved as"), ("click Help",), lingers_s=1.0),
     Stop("15-manual", offers("Search the help"), ("click Back",), lingers_s=1.0),
@@ -214,33 +217,80 @@ MOUSE: tuple[Stop, ...] = (
 )
 SECOND_BY_KEYS: tuple[Stop, ...] = (  # the same patient comes back: nothing is typed, one condition is walked
     Stop("21-second-visit", offers("New session"), ("press Return",), lingers_s=1.0),
-    Stop("22-patient", offers("Use last visit's set-up"), ("to Use last visit's set-up", "press space"), lingers_s=1.0),
-    Stop("23-source", at_step("SensorsStep"), ("press Return",), lingers_s=1.0),
-    Stop("23a-placed", states("All six sensors are assigned and connected"), ("press Return",), lingers_s=1.0),
-    Stop("24a-stand-still", at_step("StandStillStep"), ("press space",), lingers_s=1.0),
+    Stop("22-patient", offers("Use last visit's set-up"), ("press Return",), lingers_s=1.0),
+    Stop("24a-standing", lambda seen: at_step("StandStillStep")(seen) and seen.is_recording),  # all by itself
     Stop("24b-free-motion", lambda seen: at_step("FreeMotionStep")(seen) and seen.is_recording, lingers_s=7.0),
     *walk(15, ("press 1", "press space"), "press space"),
     Stop("24d-keep", offers("Include 1"), ("press i",), lingers_s=1.0),
     Stop("24e-kept", offers("Results"), ("press Return",), lingers_s=1.0),
     Stop("25a-results", offers("Legs", "Data"), ("press ctrl+7",), lingers_s=2.0, patience_s=60.0),
     Stop("26a-report", shows_pages, ("press ctrl+s",), lingers_s=2.0, patience_s=60.0),
-    Stop("26b-where", offers("Save"), ("press ctrl+a", "type {home}/second", "press Return"), lingers_s=1.0),
+    Stop("26b-where", offers("Save"), ("press ctrl+a", "type {home}/second.pdf", "press Return"), lingers_s=1.0),
     Stop("26c-saved", states("Saved as"), ("to Step 7", "press Down", "press Return"), lingers_s=1.0),
     Stop("27-home-again", offers("New session"), lingers_s=2.0),
+)
+BRISK_S = 0.5  # nobody looks round where keys are counted; a page that turned by itself takes none before
+
+
+def counted(stops: Sequence[Stop]) -> tuple[Stop, ...]:
+    """The same stops without lingering, and with their keys counted."""
+    return tuple(replace(stop, lingers_s=BRISK_S, is_counted=True) for stop in stops)
+
+
+# a new patient with two walks, and one who comes back: with the fewest keys, each counted
+NEW: tuple[Stop, ...] = (
+    *(stop for stop in KEYBOARD if stop.name < "05"),
+    *counted(
+        (
+            Stop("05-home", offers("New patient"), ("press ctrl+n",)),
+            Stop("06-patient", at_step("PatientStep"), ("type DEMO-7",)),
+            Stop("07-patient-typed", offers("Attach sensors"), ("press Return",)),
+            Stop("07a-source", at_step("SensorsStep"), ("press Return",)),
+            Stop("07b-sensors", offers("Detect from movement"), PLACED_BY_KEYS),
+            Stop("07c-placed", states("All six sensors are assigned and connected"), ("press Return",)),
+            Stop("08a-stand-still", at_step("StandStillStep"), ("press space",)),
+            Stop("09-free-motion", lambda seen: at_step("FreeMotionStep")(seen) and seen.is_recording, patience_s=60.0),
+            *walk(1, ("press space",), "press space"),
+            *walk(2, ("press space",), "press space"),  # the first is kept, and the second begun, by one key
+            Stop("12d-keep", offers("Include 1"), ("press i",)),
+            Stop("12e-kept", offers("Results"), ("press Return",)),
+            Stop("13a-results", offers("Write report"), ("press Return",), patience_s=60.0),
+            Stop("14a-report", shows_pages, ("press Return",), patience_s=60.0),
+            Stop("14b-where", offers("Save"), ("press Return",)),
+            Stop("14c-saved", states("Saved as")),
+        )
+    ),
+)
+RETURNING: tuple[Stop, ...] = (
+    *(replace(stop, is_counted=False) for stop in NEW),
+    Stop("16-leave", at_step("ReportStep"), ("to Step 7", "press Down", "press Return")),
+    *counted(
+        (
+            Stop("21-second-visit", offers("New session"), ("press Return",)),
+            Stop("22-patient", offers("Use last visit's set-up"), ("press Return",)),
+            Stop("24a-standing", lambda seen: at_step("StandStillStep")(seen) and seen.is_recording),
+            Stop("24b-free-motion", lambda seen: at_step("FreeMotionStep")(seen) and seen.is_recording),
+            *walk(15, ("press space",), "press space"),
+            Stop("24d-keep", offers("Include 1"), ("press i",)),
+            Stop("24e-kept", offers("Results"), ("press Return",)),
+            Stop("25a-results", offers("Write report"), ("press Return",), patience_s=60.0),
+            Stop("26a-report", shows_pages, ("press Return",), patience_s=60.0),
+            Stop("26b-where", offers("Save"), ("press Return",)),
+            Stop("26c-saved", states("Saved as")),
+        )
+    ),
 )
 SECOND_BY_MOUSE: tuple[Stop, ...] = (
     Stop("21-second-visit", offers("New session"), ("click New session",), lingers_s=1.0),
     Stop("22-patient", offers("Use last visit's set-up"), ("click Use last visit's set-up",), lingers_s=1.0),
-    Stop("23-source", at_step("SensorsStep"), ("click Simulated patient",), lingers_s=1.0),
-    Stop("23a-placed", states("All six sensors are assigned and connected"), ("click Stand still",), lingers_s=1.0),
-    Stop("24a-stand-still", at_step("StandStillStep"), ("click Start countdown",), lingers_s=1.0),
+    Stop("24a-standing", lambda seen: at_step("StandStillStep")(seen) and seen.is_recording),
     Stop("24b-free-motion", lambda seen: at_step("FreeMotionStep")(seen) and seen.is_recording, lingers_s=7.0),
     *walk(15, ("click Shoes", "click Start walk"), "click Stop walk"),
     Stop("24d-keep", offers("Include 1"), ("click Include 1",), lingers_s=1.0),
     Stop("24e-kept", offers("Results"), ("click Results",), lingers_s=1.0),
     Stop("25a-results", offers("Legs", "Data"), ("click Compare",), lingers_s=2.0, patience_s=60.0),
-    Stop("25b-compare", offers("Differences"), ("click Go to the report",), lingers_s=1.0),
-    Stop("26a-report", at_step("ReportStep"), ("click Save the report",), lingers_s=2.0),
+    Stop("25b-compare", offers("Differences"), ("click Write report",), lingers_s=1.0),
+    Stop("26a-report", at_step("ReportStep"), ("click Save report",), lingers_s=2.0),
     Stop("26b-where", offers("Save"), ("click Save",), lingers_s=1.0),
     Stop("26c-saved", states("Saved as"), ("click All patients",), lingers_s=1.0),
     Stop("27-home-again", offers("New session"), lingers_s=2.0),
@@ -292,7 +342,7 @@ BENCH: tuple[Stop, ...] = (  # three alignments of one prosthesis, by keys
     Stop("38-back-to-a", states("Back to A"), ("press ctrl+z", "to Include C", "press Return"), lingers_s=1.0),
     Stop("39-c-kept", offers("Results"), ("to Results", "press Return"), lingers_s=1.0),
     Stop("40-results", offers("Legs", "Data"), ("press ctrl+7",), lingers_s=1.0, patience_s=60.0),
-    Stop("41-report", at_step("ReportStep"), ("press ctrl+s",), lingers_s=1.0, patience_s=60.0),
+    Stop("41-report", at_step("ReportStep"), ("to Export data", "press space"), lingers_s=1.0, patience_s=60.0),
     Stop("42-where", offers("Save"), ("press ctrl+a", "type {home}/results", "press Return"), lingers_s=1.0),
     Stop(
         "43-saved",
@@ -318,7 +368,7 @@ TIMED: tuple[Stop, ...] = (  # ten metres, timed by the motion, then sit to stan
     Stop("57-broken-off", lambda seen: not seen.is_recording, ("press x",), lingers_s=2.0, patience_s=60.0),
     Stop("58-discarded", offers("Results"), ("to Results", "press Return"), lingers_s=2.0),
     Stop("59-results", offers("Legs", "Data"), ("press ctrl+7",), lingers_s=1.0, patience_s=60.0),
-    Stop("60-report", at_step("ReportStep"), ("press ctrl+s",), lingers_s=1.0, patience_s=60.0),
+    Stop("60-report", at_step("ReportStep"), ("to Export data", "press space"), lingers_s=1.0, patience_s=60.0),
     Stop("61-where", offers("Save"), ("press ctrl+a", "type {home}/results", "press Return"), lingers_s=1.0),
     Stop("62-saved", states("Saved as"), lingers_s=2.0, leaves=(("results*/**/timed_test.csv", "10 m"),)),
 )
@@ -326,7 +376,7 @@ REVIEWED: tuple[Stop, ...] = (  # the demonstration up to its results, which Rer
     *(stop for stop in MOUSE if stop.name < "13a"),
     Stop("51-results", offers("Legs", "Review in Rerun"), ("click Review in Rerun", "await Rerun"), patience_s=90.0),
     Stop("52-rerun", offers("Legs", "Review in Rerun"), ("raise Gaitwright",), lingers_s=20.0),
-    Stop("53-report", offers("Go to the report"), ("click Go to the report",), lingers_s=1.0),
+    Stop("53-report", offers("Write report"), ("click Write report",), lingers_s=1.0),
     *(stop for stop in MOUSE if stop.name.startswith("14")),
 )
 SOURCE = next(k for k, stop in enumerate(KEYBOARD) if stop.name == "07a-source")
@@ -343,7 +393,7 @@ PELVIS: tuple[Stop, ...] = (  # seven sensors, by keys
     Stop("59-keep", offers("Include 1"), ("press i",), lingers_s=1.0),
     Stop("60-kept", offers("Results"), ("press Return",), lingers_s=1.0),
     Stop("61-results", offers("Legs", "Data"), ("press ctrl+7",), lingers_s=2.0, patience_s=60.0),
-    Stop("62-report", at_step("ReportStep"), ("press ctrl+s",), lingers_s=2.0),
+    Stop("62-report", at_step("ReportStep"), ("to Export data", "press space"), lingers_s=2.0),
     Stop("63-where", offers("Save"), ("press ctrl+a", "type {home}/results", "press Return"), lingers_s=1.0),
     Stop("64-saved", states("Saved as"), lingers_s=2.0, leaves=(("results*/**/angles.csv", "left_hip_deg"),)),
 )
@@ -367,7 +417,7 @@ DEAD_ENDS: tuple[Stop, ...] = (  # what once led nowhere: swapped sensors, a key
     Stop("58-keep", offers("Include 1"), ("press i",), lingers_s=1.0),
     Stop("59-kept", offers("Results"), ("press Return",), lingers_s=1.0),
     Stop("60-results", offers("Legs", "Data"), ("press ctrl+7",), lingers_s=2.0, patience_s=60.0),
-    Stop("61-report", at_step("ReportStep"), ("press ctrl+s",), lingers_s=2.0),
+    Stop("61-report", at_step("ReportStep"), ("to Export data", "press space"), lingers_s=2.0),
     Stop("62-where", offers("Save"), ("press ctrl+a", "type {home}/results", "press Return"), lingers_s=1.0),
     Stop(
         "63-saved",
@@ -378,13 +428,15 @@ DEAD_ENDS: tuple[Stop, ...] = (  # what once led nowhere: swapped sensors, a key
     ),
     *(stop for stop in SECOND_BY_KEYS if stop.name < "26a"),
     Stop("71-report", shows_pages, ("to Compare with", "press Down"), lingers_s=2.0, patience_s=60.0),
-    Stop("72-compared", shows_pages, ("press ctrl+s",), lingers_s=6.0, patience_s=60.0),
+    Stop("72-compared", shows_pages, ("to Export data", "press space"), lingers_s=6.0, patience_s=60.0),
     Stop("73-where", offers("Save"), ("press ctrl+a", "type {home}/second", "press Return"), lingers_s=1.0),
     Stop("74-saved", states("Saved as"), lingers_s=2.0, leaves=(("second*/**/angles.csv", "left_knee_deg"),)),
 )
 TOURS = {
     "keyboard": (*KEYBOARD, *SECOND_BY_KEYS),
     "mouse": (*MOUSE, *SECOND_BY_MOUSE),
+    "new": NEW,
+    "returning": RETURNING,
     "bench": BENCH,
     "timed": TIMED,
     "review": REVIEWED,

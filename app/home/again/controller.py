@@ -20,6 +20,7 @@ from app.widgets.action_bar import BarAction, BarState
 from app.widgets.folder_dialog import ask_for_new_folder
 from app.wizard.resuming import session_to_analyse
 from app.wording.patients import when
+from app.wording.recordings import name_in_words
 from app.wording.translation import tr, tr_n
 from app.workers.library_controller import LibraryController
 
@@ -152,7 +153,7 @@ class AnalysingAgain(QObject):
                 one.id,
                 one.patient_code,
                 when(one.started, now),
-                "; ".join(one.conditions),
+                "; ".join(map(name_in_words, one.conditions)),
                 one.id in current,
                 self._failures.get(one.id, ""),
             )

@@ -12,6 +12,7 @@ from app.cohort.study.groups import (
 )
 from app.cohort.study.measures import measure_words
 from app.wording.numbers import MINUS
+from app.wording.recordings import name_in_words
 from app.wording.translation import figure_text, joined, tr, tr_n, within_sentence
 
 
@@ -38,6 +39,8 @@ def group_name(grouping: Grouping, group: str) -> str:
     if not group:
         return tr("not recorded")
     match grouping:
+        case Grouping.CONDITION:
+            return name_in_words(group)
         case Grouping.AGE:
             return _age_band(int(group))
         case Grouping.SPEED:

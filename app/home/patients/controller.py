@@ -5,14 +5,16 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING
 from uuid import UUID
 
-from PySide6.QtCore import QObject, Signal
+from PySide6.QtCore import QObject, QTimer, Signal
 
 from app.editing.deleted_elsewhere import deleted_by, deletion_message
 from app.home.patients.home_page import HomePage
 from app.home.patients.lines import patient_line
 from app.home.patients.reading import PatientReading, read_patient
 from app.summary.course_lanes import CourseVisit
-from app.wording.patients import person
+from app.summary.progress_words import ProgressWords
+from app.widgets.line_list import PatientLine
+from app.wording.patients import aids_in_words, person
 from app.workers.library_controller import LibraryController
 
 if TYPE_CHECKING:
@@ -20,6 +22,8 @@ if TYPE_CHECKING:
 
     from app.storage import stored
     from app.storage.opened import OpenedLibrary
+
+LOOK_AFTER_MS = 50  # nobody types or scrolls any more
 
 
 @dataclass(frozen=True, slots=True)
@@ -51,7 +55,15 @@ class PatientsAtHome(QObject):
         self._is_forgotten = True
         self._sessions_of: UUID | None = None  # the patient whose sessions are shown, or being read
         self._reading: PatientReading | None = None
+        self._changes: dict[UUID, ProgressWords] = {}
+        self._undecided: frozenset[UUID] = frozenset()
+        self._fresh: set[UUID] = set()  # whose change is of what the library holds now
+        self._is_looking = False
+        self._looking = QTimer(self, singleShot=True, interval=LOOK_AFTER_MS)
+        self._looking.timeout.connect(self._look_for_changes)
         page.patient_chosen.connect(self._on_chosen)
+        page.patients.scrolled.connect(self._looking.start)
+        page.patients.fitted.connect(self._looking.start)
 
     @property
     def patient(self) -> "stored.StoredPatient | None":
@@ -87,7 +99,10 @@ class PatientsAtHome(QObject):
     def forget(self) -> None:
         """Keep nothing of any patient, nor what is still being read."""
         self._is_forgotten = True
+        self._looking.stop()
         self._patients.clear()
+        self._changes.clear()
+        self._fresh.clear()
         self._sessions_of = self._reading = None
         self._page.search.clear()
         self._page.forget_patients()
@@ -100,8 +115,10 @@ class PatientsAtHome(QObject):
         if patients.deleted_by and before is not None:
             self.refused.emit(*deletion_message(before.details.code, patients.deleted_by))
         self._patients = {patient.id: patient for patient in patients.every}
-        lines = [patient_line(patient, _now(), patient.id in patients.undecided) for patient in patients.every]
-        self._page.show_patients(lines, patients.required)
+        self._undecided = patients.undecided
+        self._fresh.clear()
+        now = _now()
+        self._page.show_patients([self._line(patient, now) for patient in patients.every], patients.required)
         self._on_chosen(self._page.patient_id)
 
     def _on_chosen(self, patient_id: UUID | None) -> None:
@@ -114,7 +131,7 @@ class PatientsAtHome(QObject):
             return
         reported = patient.details
         self._page.show_patient(
-            reported.code, " · ".join(filter(None, [person(reported), reported.device, reported.aids]))
+            reported.code, " · ".join(filter(None, [person(reported), reported.device, aids_in_words(reported.aids)]))
         )
         own = patient.id
         if own != self._sessions_of:  # what is there is another patient's
@@ -135,7 +152,55 @@ class PatientsAtHome(QObject):
         self._reading = reading
         patient = self.patient
         self._page.panel.say_none_yet(is_awaited=patient is not None and self._is_awaited(patient.details.code))
-        self._page.show_sessions(reading.lines(now), reading.visits(now), reading.next_step(now), reading.goals)
+        self._page.show_sessions(
+            reading.lines(now),
+            reading.visits(now),
+            reading.next_step(now),
+            reading.goals,
+            is_simulated=reading.is_simulated,
+        )
+        self._show_change(reading)
+
+    def _line(self, patient: "stored.StoredPatient", now: datetime.datetime) -> PatientLine:
+        return patient_line(patient, now, patient.id in self._undecided, self._changes.get(patient.id))
+
+    def _look_for_changes(self) -> None:
+        """Read what has changed of the patients in sight, one at a time: somebody may choose one meanwhile.
+
+        Of all thousands it would take minutes.
+        """
+        seen = [line.id for line in self._page.patients.in_sight]
+        one = next((own for own in seen if own in self._patients and own not in self._fresh), None)
+        if one is None or self._is_looking or self._is_forgotten:
+            return
+        if not self._patients[one].sessions:
+            self._fresh.add(one)
+            self._looking.start()
+            return
+        self._is_looking = True
+
+        def read(opened: "OpenedLibrary") -> PatientReading:
+            return read_patient(opened, one)
+
+        self._controller.run(read, self._on_change_read, self._on_no_change, self)
+
+    def _on_change_read(self, reading: PatientReading) -> None:
+        self._is_looking = False
+        if self._is_forgotten:
+            return
+        self._show_change(reading)
+        self._look_for_changes()
+
+    def _on_no_change(self, _what: str, _remedy: str) -> None:
+        """Who chooses the patient is told why; the list goes without."""
+        self._is_looking = False
+
+    def _show_change(self, reading: PatientReading) -> None:
+        patient, now = self._patients.get(reading.patient_id), _now()
+        self._fresh.add(reading.patient_id)
+        if patient is not None:
+            self._changes[reading.patient_id] = reading.progress(now)
+            self._page.change_patient(self._line(patient, now))
 
     def _on_refused(self, what: str, remedy: str) -> None:
         self.refused.emit(what, remedy)

@@ -5,7 +5,7 @@ from uuid import UUID
 
 from PySide6.QtCore import QEvent, QModelIndex, QObject, QRectF, QSize, Qt, Signal
 from PySide6.QtGui import QFontMetrics, QKeyEvent, QKeySequence, QPainter, QPaintEvent
-from PySide6.QtWidgets import QApplication, QHBoxLayout, QLineEdit, QSizePolicy, QVBoxLayout, QWidget
+from PySide6.QtWidgets import QApplication, QFrame, QHBoxLayout, QLineEdit, QScrollArea, QSizePolicy, QVBoxLayout, QWidget
 
 from app.home.patients.home_empty import EmptyLibrary
 from app.home.patients.patient_panel import PatientPanel
@@ -13,20 +13,20 @@ from app.summary.course_lanes import CourseVisit
 from app.summary.course_words import NextStep
 from app.theme.icons import Icon, paint_icon
 from app.theme.notifier import ThemeNotifier
-from app.widgets.card import Card
-from app.widgets.line_list import Line, LineList, PatientLine, SessionLine
+from app.widgets.line_list import PATIENT_ROW, Line, LineList, PatientLine, SessionLine
 from app.widgets.segmented import Segmented
 from app.widgets.text import MEDIUM, SEMIBOLD, Text
 from app.widgets.themed import Themed
 from app.wording.translation import tr, tr_n
 from core.goals import Goal
 
-SEARCH_HEIGHT = 48
-EDGE, GUTTER = 24, 16
-LIST, PANEL = 344, 656  # of the picture's 1016, without the gutter
-ONE_BELOW = 860  # px of the design: the list or the patient
-LIST_WIDTH_AT_LEAST = 280
-LIST_AT_LEAST = 236  # three lines
+SEARCH_HEIGHT = 44
+EDGE, GUTTER = 24, 24
+LIST, WIDE_LIST = 260, 320
+WIDE_FROM = 1400  # px of the design: the list takes more
+ONE_BELOW = 860  # the list or the patient
+PANEL_AT_LEAST = 320
+WIDEST = 16_777_215  # Qt's own
 PATIENTS, PATIENT = "patients", "patient"
 
 
@@ -50,14 +50,15 @@ class HomePage(Themed):
         super().__init__()
         self._look = look
         self._patients: Sequence[PatientLine] | None = None  # not read yet
-        self._is_single = False
+        self._is_single, self._list_width = False, LIST
         self._title = Text(look, tr("Patients"), size=26, weight=SEMIBOLD)
         self._count = Text(look, tone="ink2")
         self.search = _Search(look)
-        self.patients = LineList(look, tr("Patients"))
+        self.patients = LineList(look, tr("Patients"), row=PATIENT_ROW, chosen_on="surface")
         self.nobody = Text(look, tr("No patient found. Shorten the search, or add a new patient."), wraps=True)
         self.empty = EmptyLibrary(look)
         self.panel = PatientPanel(look)
+        self._panel_room = _PanelRoom(self.panel)
         self.view = Segmented(look, tr("View"), [(PATIENTS, tr("Patients"), ""), (PATIENT, tr("Patient"), "")])
         self._build()
         self._connect()
@@ -94,6 +95,11 @@ class HomePage(Themed):
         self._filter(None)
         self.forget_sessions()
 
+    def change_patient(self, line: PatientLine) -> None:
+        """Show one patient's line as it is now, wherever it stands."""
+        self._patients = tuple(line if one.id == line.id else one for one in self._patients or ())
+        self.patients.replace_line(line)
+
     def forget_sessions(self) -> None:
         """Show no session, and do not say that there is none: those of another patient are still to be read."""
         self.show_sessions(())
@@ -121,9 +127,11 @@ class HomePage(Themed):
         visits: Sequence[CourseVisit] = (),
         step: NextStep | None = None,
         goals: Sequence[Goal] = (),
+        *,
+        is_simulated: bool = False,
     ) -> None:
         """Show sessions, the course over those that are visits with a day, what is next, and what was agreed."""
-        self.panel.show_sessions(lines)
+        self.panel.show_sessions(lines, is_simulated=is_simulated)
         self.panel.show_course(visits, goals)
         self.panel.show_next(step)
 
@@ -131,8 +139,10 @@ class HomePage(Themed):
         """Lay out for a page of this width, in px of the design."""
         self._is_single = is_compact or width < ONE_BELOW
         self.empty.set_room(width)
+        self._list_width = WIDE_LIST if width >= WIDE_FROM else LIST
         inside = width - 2 * EDGE
-        self.panel.set_room(inside if self._is_single else (inside - GUTTER) * PANEL / (LIST + PANEL))
+        self.panel.set_room(inside if self._is_single else inside - GUTTER - self._list_width)
+        self._on_look_changed()
         self._show_parts()
 
     def event(self, event: QEvent) -> bool:
@@ -172,20 +182,18 @@ class HomePage(Themed):
         heading = QHBoxLayout()
         heading.addWidget(self._title, 1)
         heading.addWidget(self._count, 0, Qt.AlignmentFlag.AlignBottom)
-        self._list_card = Card(self._look, padding=0)
-        self._list_card.column.addWidget(self.patients, 1)
-        self._list_card.column.addWidget(self.nobody, 1, Qt.AlignmentFlag.AlignCenter)
         self._left_room = QWidget()
         self._left = QVBoxLayout(self._left_room)
         self._left.setContentsMargins(0, 0, 0, 0)
         self._left.addLayout(heading)
         self._left.addWidget(self.search)
-        self._left.addWidget(self._list_card, 1)
+        self._left.addWidget(self.patients, 1)
+        self._left.addWidget(self.nobody, 1)
         self._both = QWidget()
         self._columns = QHBoxLayout(self._both)
         self._columns.setContentsMargins(0, 0, 0, 0)
-        self._columns.addWidget(self._left_room, LIST)
-        self._columns.addWidget(self.panel, PANEL)
+        self._columns.addWidget(self._left_room)
+        self._columns.addWidget(self._panel_room, 1)
         self._empty_title = Text(self._look, tr("Patients"), size=26, weight=SEMIBOLD)
         self._page = QVBoxLayout(self)
         self._page.addWidget(self.view, 0, Qt.AlignmentFlag.AlignLeft)
@@ -200,7 +208,7 @@ class HomePage(Themed):
         self.patients.clicked.connect(self._on_patient_clicked)
         self.view.chosen.connect(self._show_parts)
         self.sessions.opened.connect(self.session_opened)
-        self.panel.next_requested.connect(self.session_opened)
+        self.sessions.selectionModel().currentRowChanged.connect(self._panel_room.show_row)
         self.panel.course.visit_opened.connect(self.session_opened)
         self.panel.course.computing_requested.connect(self.computing_requested)
         self.panel.delete_patient_requested.connect(self._on_delete_patient)
@@ -220,7 +228,7 @@ class HomePage(Themed):
         self.view.setVisible(is_single and has_any)
         self._title.setVisible(not is_single)
         self._left_room.setVisible(not is_single or self.view.choice == PATIENTS)
-        self.panel.setVisible(not is_single or self.view.choice == PATIENT)
+        self._panel_room.setVisible(not is_single or self.view.choice == PATIENT)
 
     def _filter(self, chosen: UUID | None, *, stays: bool = False) -> None:
         required = self.search.text().strip().casefold().split()
@@ -263,13 +271,34 @@ class HomePage(Themed):
 
     def _on_look_changed(self) -> None:
         px = self._look.theme.px
-        self._page.setContentsMargins(px(EDGE), px(16), px(EDGE), px(8))
+        self._page.setContentsMargins(px(EDGE), px(12), px(EDGE), px(12))
         self._page.setSpacing(px(12))
         self._columns.setSpacing(px(GUTTER))
         self._left.setSpacing(px(12))
-        self._left_room.setMinimumWidth(px(LIST_WIDTH_AT_LEAST))
-        for one in (self.patients, self.nobody):
-            one.setMinimumHeight(px(LIST_AT_LEAST))
+        self._left_room.setMinimumWidth(px(self._list_width))
+        self._left_room.setMaximumWidth(WIDEST if self._is_single else px(self._list_width))
+        self._panel_room.setMinimumSize(px(PANEL_AT_LEAST), px(PANEL_AT_LEAST))
+
+
+class _PanelRoom(QScrollArea):
+    """The patient, who is scrolled as one."""
+
+    def __init__(self, panel: PatientPanel) -> None:
+        super().__init__()
+        self._panel = panel
+        self.setWidgetResizable(True)
+        self.setFrameShape(QFrame.Shape.NoFrame)
+        self.setFocusPolicy(Qt.FocusPolicy.NoFocus)
+        self.setHorizontalScrollBarPolicy(Qt.ScrollBarPolicy.ScrollBarAlwaysOff)
+        self.setWidget(panel)
+
+    def show_row(self, index: QModelIndex, _before: QModelIndex) -> None:
+        """Have the visit in force in sight, where somebody moves among them."""
+        table = self._panel.sessions
+        if index.isValid() and table.hasFocus():
+            row = table.visualRect(index)
+            centre = table.viewport().mapTo(self._panel, row.center())
+            self.ensureVisible(centre.x(), centre.y(), 0, row.height())
 
 
 class _Search(QLineEdit):

@@ -1,6 +1,7 @@
-"""The patient who is chosen: who it is, the course over the visits, the sessions, and what is to be done next."""
+"""The patient who is chosen: who it is, what has changed, what is to be done next, progress, and the visits."""
 
 from collections.abc import Sequence
+from dataclasses import replace
 
 from PySide6.QtCore import QPoint, Qt, Signal
 from PySide6.QtGui import QAction
@@ -8,42 +9,48 @@ from PySide6.QtWidgets import QHBoxLayout, QMenu, QSizePolicy, QVBoxLayout, QWid
 
 from app.plots.course import CourseCard
 from app.summary.course_lanes import (
-    MOST_TOGETHER,
+    KNEE_LANE,
+    SPEED_LANE,
+    CourseLane,
     CourseVisit,
     conditions_of_visits,
     kinds_of_tests,
     lanes,
+    usual_condition,
     without_lane,
 )
-from app.summary.course_words import NextStep
+from app.summary.course_words import NextKind, NextStep, value_in_words
+from app.summary.progress_words import progress_words
 from app.summary.visits import condition_in_words
 from app.theme.icons import Icon
 from app.theme.notifier import ThemeNotifier
 from app.widgets.button import Button, ButtonKind
 from app.widgets.card import Card
 from app.widgets.choice import Choice
-from app.widgets.icons import IconMark
+from app.widgets.header import Tag
 from app.widgets.line_list import LineList, SessionLine
 from app.widgets.segmented import Segmented
+from app.widgets.tall_page import TallPage
 from app.widgets.text import SEMIBOLD, Text
-from app.widgets.themed import Themed
-from app.wording.measures import goal_in_words
+from app.wording.measures import goal_in_words, measure_name, short_unit
 from app.wording.translation import tr, tr_n
+from core.body import Side
 from core.goals import Goal, held
+from core.parameters import SPEED
 
-SESSION_ROW = 48
-SESSIONS_SEEN, SESSIONS_AT_LEAST = 3, 2  # the others are scrolled to
-ALL = "\N{ASTERISK}"  # no condition is called so
+VISIT_ROW, VISIT_HEAD = 58, 38
+CONDITION = 36  # high, in the head of the card
 WALKING, TESTS = "walking", "tests"
+ICONS = {NextKind.REVIEW: Icon.WARNING, NextKind.REPORT: Icon.EDIT, NextKind.GOALS: Icon.GOAL, NextKind.SESSION: Icon.PLAY}
 
 
-class PatientPanel(Themed):
-    """Passive: it is shown visits, lines and what is next.
+class PatientPanel(TallPage):
+    """Passive: it is shown visits, lines and what is next. It is as high as all of them, and whoever holds it scrolls.
 
     Signals
     -------
     next_requested
-        The session that the next step is about.
+        The next step, which is to be taken.
     """
 
     next_requested = Signal(object)
@@ -56,26 +63,32 @@ class PatientPanel(Themed):
         super().__init__()
         self._look = look
         self._visits: tuple[CourseVisit, ...] = ()
+        self._lines: tuple[SessionLine, ...] = ()
         self._agreed: tuple[Goal, ...] = ()
         self._next: NextStep | None = None
         self.code = Text(look, size=26, weight=SEMIBOLD, is_code=True, wraps=True)
         self.person = Text(look, tone="ink2", wraps=True)
+        self.simulated = Tag(look, tr("SIMULATED"))
         self.more = Button(look, tr("More"), ButtonKind.QUIET, height=36)
         self.menu = QMenu(self)
         self.delete_patient = QAction(tr("Delete patient"), self.menu)
         self.delete_session = QAction(tr("Delete session"), self.menu)
         self.analyse_again = QAction(tr("Analyse sessions again"), self.menu)
         self.menu.addActions([self.analyse_again, self.delete_session, self.delete_patient])
+        self.sentence = Text(look, size=22, weight=SEMIBOLD, wraps=True)
+        self.second = Text(look, tone="ink2", wraps=True)
+        self.go = Button(look, "", ButtonKind.SECONDARY, Icon.EDIT, tr("W"), height=44)
+        self.reason = Text(look, tone="ink2", wraps=True)
         self.shown = Segmented(look, tr("Progress of"), [(WALKING, tr("Walking"), ""), (TESTS, tr("Timed tests"), "")])
         self.condition = Choice(look, tr("Condition"))
-        self.count = Text(look, tone="ink2", wraps=True)
-        self.goals = Button(look, tr("Goals"), ButtonKind.SECONDARY, Icon.GOAL, height=44)
+        self.condition.let_shrink(100, 200)
+        self.condition.set_height(CONDITION)
+        self.count = Text(look, size=12, tone="ink2", wraps=True)
+        self.goals = Button(look, tr("Goals"), ButtonKind.QUIET, Icon.GOAL, height=36)
         self.course = CourseCard(look)
-        self.sessions = LineList(look, tr("Sessions"), is_opened_by_click=True, row=SESSION_ROW)
+        self.sessions = LineList(look, tr("Visits"), is_opened_by_click=True, row=VISIT_ROW, head=VISIT_HEAD)
         self.none_yet = Text(look, tone="ink2", wraps=True)
-        self.say_none_yet(is_awaited=False)
-        self.next = Text(look, wraps=True)
-        self.go = Button(look, "", ButtonKind.QUIET, Icon.NEXT, height=36)
+        self.none_yet.setText(tr("No visit yet."))
         self._build()
         self._connect()
         self._on_look_changed()
@@ -84,13 +97,14 @@ class PatientPanel(Themed):
     def tab_order(self) -> list[QWidget]:
         return [
             self.more,
+            self.go,
             *self.shown.segments,
             self.condition,
             self.goals,
+            self.course.info,
             self.course,
             self.course.compute,
             self.sessions,
-            self.go,
         ]
 
     def set_room(self, width: float) -> None:
@@ -102,83 +116,101 @@ class PatientPanel(Themed):
         self.code.setText(code)
         self.person.setText(person)
         self.more.setVisible(bool(code))
-        self._sessions_card.setVisible(bool(code))
-        self._above.setVisible(bool(code))
+        self.visits_card.setVisible(bool(code))
 
-    def show_sessions(self, lines: Sequence[SessionLine]) -> None:
-        line = self.sessions.line  # the same patient's, read again, or none
-        self.sessions.show_lines(lines, line.id if line is not None else None, stays=line is not None)
+    def show_sessions(self, lines: Sequence[SessionLine], *, is_simulated: bool = False) -> None:
+        self._lines = tuple(lines)
+        self.simulated.setVisible(is_simulated)
         self.sessions.setVisible(bool(lines))
         self.none_yet.setVisible(not lines)
         self.delete_session.setEnabled(self.sessions.line is not None)
-        self._on_look_changed()
 
     def say_none_yet(self, *, is_awaited: bool) -> None:
-        """What is shown in place of sessions where there are none; `is_awaited`: they come by themselves."""
+        """What is shown in place of visits where there are none; `is_awaited`: they come by themselves."""
         words = (
-            tr("Visits of this patient are being recorded and will appear here.")
-            if is_awaited
-            else tr("No sessions yet.")
+            tr("Visits of this patient are being recorded and will appear here.") if is_awaited else tr("No visit yet.")
         )
         self.none_yet.setText(words)
 
     def show_course(self, visits: Sequence[CourseVisit], goals: Sequence[Goal] = ()) -> None:
-        """Show the course over visits, which are in order of time; of the condition that is chosen, else of all."""
+        """Show the course over visits, which are in order of time; of the condition that is chosen, else the usual."""
         self._visits, self._agreed = tuple(visits), tuple(goals)
-        found, before = conditions_of_visits(visits), self.condition.currentData()
+        found = conditions_of_visits(visits)
+        before = self.condition.currentData()
         self.condition.blockSignals(True)
         self.condition.clear()
-        if len(found) <= MOST_TOGETHER:
-            self.condition.addItem(tr("All conditions"), ALL)
         for name in found:
             self.condition.addItem(condition_in_words(name), name)
-        self.condition.setCurrentIndex(max(self.condition.findData(before), 0))
+        self.condition.setCurrentIndex(
+            max(self.condition.findData(before if before in found else usual_condition(visits)), 0)
+        )
         self.condition.blockSignals(False)
         self.condition.setVisible(len(found) > 1)
         self.condition.updateGeometry()
         self.shown.setVisible(bool(kinds_of_tests(visits, goals)))
-        self.count.setText(_counted(found, visits, goals))
-        self.course.setVisible(bool(visits))
+        self.course.setVisible(bool(visits or goals))
         self._show_lanes()
 
     def show_next(self, step: NextStep | None) -> None:
+        """The next step as a button with its reason beside it; nothing where nothing is next."""
         self._next = step
-        self._next_card.setVisible(step is not None)
+        self.next_room.setVisible(step is not None)
         if step is not None:
-            self.next.setText(tr("Next: {what}").format(what=step.sentence))
             self.go.setText(step.verb)
-            self.go.setAccessibleName(f"{step.verb}, {step.sentence}")
-            self.go.setVisible(bool(step.verb))
+            self.go.set_face(icon=ICONS[step.kind])
+            self.go.setAccessibleName(f"{step.verb}, {step.reason}")
+            self.reason.setText(step.reason)
+
+    def take_next(self) -> None:
+        """Take the next step, as a click on its button does."""
+        if self._next is not None and self.isVisible():
+            self.next_requested.emit(self._next)
 
     def _build(self) -> None:
         self._who = QHBoxLayout()
         self._who.addWidget(self.code)
         self._who.addWidget(self.person, 1)
+        self._who.addWidget(self.simulated)
         self._who.addWidget(self.more)
-        self._above = QWidget()
-        self._above_row = QHBoxLayout(self._above)
-        self._above_row.setContentsMargins(0, 0, 0, 0)
-        self._above_row.addWidget(self.shown)
-        self._above_row.addWidget(self.condition)
-        self._above_row.addWidget(self.count, 1)
-        self._above_row.addWidget(self.goals)
-        self._sessions_card = Card(self._look, padding=0)
-        self._sessions_card.column.addWidget(self.sessions, 1)
-        self._sessions_card.column.addWidget(self.none_yet, 0, Qt.AlignmentFlag.AlignHCenter)
-        self._next_card = Card(self._look)
-        self._next_row = QHBoxLayout()
-        self._next_row.addWidget(IconMark(self._look, Icon.ARROW))
-        self._next_row.addWidget(self.next, 1)
+        self.next_room = QWidget()
+        self._next_row = QHBoxLayout(self.next_room)
+        self._next_row.setContentsMargins(0, 0, 0, 0)
         self._next_row.addWidget(self.go)
-        self._next_card.column.addLayout(self._next_row)
-        self._column = QVBoxLayout(self)
-        self._column.setContentsMargins(0, 0, 0, 0)
-        self._column.addLayout(self._who)
-        self._column.addWidget(self._above)
-        self._column.addWidget(self.course, 1)
-        self._column.addWidget(self._sessions_card)
-        self._column.addWidget(self._next_card)
-        self._column.addStretch(0)
+        self._next_row.addWidget(self.reason, 1)
+        head = self.course.head
+        title = Text(self._look, tr("Progress"), size=16, weight=SEMIBOLD)
+        for number, part in enumerate((title, self.shown, self.condition, self.count, self.goals)):
+            head.insertWidget(number, part, int(part is self.count))
+        self.sessions.setVerticalScrollBarPolicy(Qt.ScrollBarPolicy.ScrollBarAlwaysOff)
+        self.sessions.setSizePolicy(QSizePolicy.Policy.Expanding, QSizePolicy.Policy.Fixed)
+        self.sessions.fitted.connect(self._fit_sessions)
+        self.visits_card = Card(self._look, padding=0)
+        self.visits_card.column.addWidget(self.sessions)
+        self.visits_card.column.addWidget(self.none_yet, 0, Qt.AlignmentFlag.AlignHCenter)
+        self._statement = QVBoxLayout()
+        self._statement.addWidget(self.sentence)
+        self._statement.addWidget(self.second)
+        self.column.setContentsMargins(0, 0, 0, 0)
+        self.column.addLayout(self._who)
+        self.column.addLayout(self._statement)
+        self.column.addWidget(self.next_room)
+        self.column.addWidget(self.course)
+        self.column.addWidget(self.visits_card)
+        self.column.addStretch(1)
+
+    def _on_look_changed(self) -> None:
+        px = self._look.theme.px
+        self.column.setSpacing(px(12))
+        self._statement.setSpacing(px(2))
+        for row in (self._who, self._next_row):
+            row.setSpacing(px(16))
+        self.none_yet.setMinimumHeight(px(72))
+        self._fit_sessions()
+
+    def _fit_sessions(self) -> None:
+        """As high as all lines are: it is the panel that scrolls."""
+        rows = sum(self.sessions.rowHeight(row) for row in range(len(self.sessions.lines)))
+        self.sessions.setFixedHeight(rows + self.sessions.horizontalHeader().height())
 
     def _connect(self) -> None:
         self.more.clicked.connect(self._on_more)
@@ -188,20 +220,44 @@ class PatientPanel(Themed):
         self.goals.clicked.connect(self.goals_requested)
         self.condition.currentIndexChanged.connect(self._show_lanes)
         self.shown.chosen.connect(self._show_lanes)
-        self.sessions.fitted.connect(self._fit_sessions)
         self.sessions.chosen.connect(self._on_session_chosen)
-        self.go.clicked.connect(self._on_next)
+        self.go.clicked.connect(self.take_next)
 
     def _show_lanes(self) -> None:
-        chosen = self.condition.currentData()
+        """All of the condition that is chosen: one value of one measure in sentence, progress and visits."""
+        condition = self.condition.currentData() or usual_condition(self._visits)
         kinds = kinds_of_tests(self._visits, self._agreed) if self.shown.choice == TESTS else ()
-        shown = lanes(self._visits, None if chosen in (ALL, None) else chosen, self._agreed, kinds or None)
-        self.course.show_course(self._visits, shown, list(conditions_of_visits(self._visits)))
-        has_lanes = any(lane.lines for lane in shown)  # without any there is a line of words, and no room is taken
-        self._column.setStretchFactor(self.course, int(has_lanes))
-        self._column.setStretch(self._column.count() - 1, int(not has_lanes))
-        policy = QSizePolicy.Policy.Preferred if has_lanes else QSizePolicy.Policy.Maximum
-        self.course.setSizePolicy(QSizePolicy.Policy.Preferred, policy)
+        shown = lanes(self._visits, condition, self._agreed, kinds or None)
+        self.course.show_course(self._visits, shown)
+        self.count.setText(_counted(condition, self._visits, self._agreed, has_choice=self.condition.count() > 1))
+        words = progress_words(self._visits, condition, self._agreed)
+        self.sentence.setText(words.sentence)
+        self.second.setText(words.second)
+        for one in (self.sentence, self.second):
+            one.setVisible(bool(one.text()))
+        self._show_lines(lanes(self._visits, condition, self._agreed, (SPEED_LANE, KNEE_LANE)))
+
+    def _show_lines(self, shown: Sequence[CourseLane]) -> None:
+        """The sessions with their values under the condition that is chosen."""
+        speed, knee = shown
+        numbers = {visit.id: number for number, visit in enumerate(self._visits)}
+        lines = [
+            replace(
+                line,
+                speed=_values_at(numbers.get(line.id), speed, short_unit(SPEED)),
+                knee=_values_at(numbers.get(line.id), knee, "°"),
+            )
+            for line in self._lines
+        ]
+        sides = [one.side for one in knee.lines if one.side is not None]
+        head = {(): "", (Side.LEFT,): tr("Left knee"), (Side.RIGHT,): tr("Right knee")}.get(tuple(sides), tr("Knee"))
+        table, before = self.sessions, self.sessions.line
+        table.show_lines(
+            lines,
+            before.id if before is not None else None,
+            stays=before is not None,
+            head=(measure_name(SPEED) if speed.lines else "", head),
+        )
 
     def _on_more(self) -> None:
         self.menu.popup(self.more.mapToGlobal(QPoint(0, self.more.height())))
@@ -209,31 +265,25 @@ class PatientPanel(Themed):
     def _on_session_chosen(self, session_id: object) -> None:
         self.delete_session.setEnabled(session_id is not None)
 
-    def _on_next(self) -> None:
-        if self._next is not None and self._next.session_id is not None:
-            self.next_requested.emit(self._next.session_id)
-        elif self._next is not None:
-            self.goals_requested.emit()
 
-    def _on_look_changed(self) -> None:
-        px = self._look.theme.px
-        self._column.setSpacing(px(12))
-        for row in (self._who, self._above_row, self._next_row):
-            row.setSpacing(px(12))
-        self.none_yet.setMinimumHeight(px(72))
-        self._above.setMinimumHeight(px(48))
-        self._fit_sessions()
-
-    def _fit_sessions(self) -> None:
-        """Have the first lines whole, however many rows of words each takes."""
-        heights = [self.sessions.rowHeight(row) for row in range(min(len(self.sessions.lines), SESSIONS_SEEN))]
-        self.sessions.setMinimumHeight(sum(heights[:SESSIONS_AT_LEAST]))
-        self.sessions.setMaximumHeight(sum(heights) or self._look.theme.px(SESSION_ROW))
+def _values_at(number: int | None, lane: CourseLane, unit: str) -> str:
+    """What a visit has of a lane, of both legs with their letters; empty where it has nothing."""
+    points = [
+        (line.side, point) for line in lane.lines for point in line.points if number is not None and point.visit == number
+    ]
+    if points and not any(point.is_reported for _, point in points):
+        return tr("not reported")
+    return "  ".join(
+        (f"{side.letter} " if side is not None and len(points) > 1 else "")
+        + (value_in_words(point.value, lane) + unit if point.is_reported else "\N{EN DASH}")
+        for side, point in points
+    )
 
 
-def _counted(found: dict[str, int], visits: Sequence[CourseVisit], goals: Sequence[Goal]) -> str:
-    """How many visits there are, and of each condition but the most frequent one; goals that are not seen below."""
-    stated = [tr_n("{count} visit", "{count} visits", len(visits)).format(count=len(visits))] if visits else []
-    stated += [f"{condition_in_words(name)}: {count}" for name, count in list(found.items())[1:]]
+def _counted(condition: str, visits: Sequence[CourseVisit], goals: Sequence[Goal], *, has_choice: bool) -> str:
+    """The condition, how many visits have it, and goals that are not seen below."""
+    count = conditions_of_visits(visits).get(condition, 0)
+    stated = [condition_in_words(condition)] if condition and not has_choice else []
+    stated += [tr_n("{count} visit", "{count} visits", count).format(count=count)] if count else []
     unseen = without_lane(goals) if any(visit.course is not None for visit in visits) else held(goals)
-    return " · ".join([*stated, *map(goal_in_words, unseen)])
+    return ", ".join([*stated, *map(goal_in_words, unseen)])

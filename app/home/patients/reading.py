@@ -11,13 +11,14 @@ from app.home.patients.lines import session_line
 from app.storage.journal.header import JournalRefusedError
 from app.storage.stored import LibraryError, SessionSummary
 from app.summary.course import Course
-from app.summary.course_lanes import CourseVisit
+from app.summary.course_lanes import CourseVisit, usual_condition
 from app.summary.course_words import LatestVisit, NextStep, next_step, undecided_step
 from app.summary.goals import reached_at
+from app.summary.progress_words import ProgressWords, progress_words
 from app.system.progress import Report
 from app.widgets.line_list import SessionLine
 from app.wizard.resuming import current_courses, read_analysed
-from app.wording.patients import day_of_session, time_of_session
+from app.wording.patients import day_of_session, time_of_session, when
 from core.goals import Goal, held
 
 if TYPE_CHECKING:
@@ -50,6 +51,16 @@ class PatientReading:
                 found.append(CourseVisit(session.id, at.date(), course, f"{at:%H:%M}"))
         return tuple(sorted(found, key=lambda visit: visit.day))
 
+    @property
+    def is_simulated(self) -> bool:
+        """Whether one of the sessions is."""
+        return any(one.is_simulated for one in self.sessions)
+
+    def progress(self, now: datetime.datetime) -> ProgressWords:
+        """The last change, under the usual condition."""
+        visits = self.visits(now)
+        return progress_words(visits, usual_condition(visits), self.goals)
+
     def lines(self, now: datetime.datetime) -> list[SessionLine]:
         return [
             session_line(one, now, self.undecided, self.courses.get(one.id), is_reported=one.id in self.reported)
@@ -70,7 +81,8 @@ class PatientReading:
         has_walk = last.course is not None and bool(conditions)
         before = [goal for goal in held(self.goals) if goal.is_chosen_before(last.day)]
         reached = reached_at(before, last.course) if last.course is not None else ()
-        latest = LatestVisit(last.id, last.day, tuple(not_reported), has_walk, last.id in self.reported, reached)
+        at = next(when(one.started, now) for one in self.sessions if one.id == last.id)
+        latest = LatestVisit(last.id, last.day, at, tuple(not_reported), has_walk, last.id in self.reported, reached)
         return next_step(undecided, latest, now.date())
 
 

@@ -127,6 +127,7 @@ class SettingsController(QObject):
         page.side_chosen.connect(self._on_side_chosen)
         page.motion_chosen.connect(self._on_motion_chosen)
         page.sound_chosen.connect(self._on_sound_chosen)
+        page.prompts_chosen.connect(self._on_prompts_chosen)
         page.passphrase_requested.connect(self._on_passphrase_requested)
         page.recovery_key_requested.connect(self._on_recovery_key_requested)
         page.print_requested.connect(self._on_print_requested)
@@ -150,6 +151,7 @@ class SettingsController(QObject):
             self._look.theme.scale,
             is_from_behind=kept.is_from_behind,
             has_sound=kept.has_sound,
+            has_prompts=kept.has_prompts,
             has_less_motion=kept.has_less_motion,
         )
 
@@ -170,6 +172,9 @@ class SettingsController(QObject):
 
     def _on_sound_chosen(self, has_sound: bool) -> None:
         self._settings.has_sound = has_sound
+
+    def _on_prompts_chosen(self, has_prompts: bool) -> None:
+        self._settings.has_prompts = has_prompts
 
     def _on_passphrase_requested(self, old: str, new: str) -> None:
         def change(opened: "OpenedLibrary") -> None:

@@ -49,6 +49,7 @@ class SettingsPage(TallPage):
     side_chosen = Signal(bool)  # from behind
     motion_chosen = Signal(bool)  # less
     sound_chosen = Signal(bool)
+    prompts_chosen = Signal(bool)
     passphrase_requested = Signal(str, str)  # old, new
     recovery_key_requested = Signal()
     print_requested = Signal(str)
@@ -91,6 +92,7 @@ class SettingsPage(TallPage):
             *self.side.segments,
             *self.motion.segments,
             self.sound,
+            self.prompts,
             *(field.line_edit for field in (self.old, self.new, self.again)),
             self.change,
             self.renew,
@@ -105,7 +107,15 @@ class SettingsPage(TallPage):
         self.language.focus()
 
     def show_screen(
-        self, language: str, scheme: str, scale: float, *, is_from_behind: bool, has_sound: bool, has_less_motion: bool
+        self,
+        language: str,
+        scheme: str,
+        scale: float,
+        *,
+        is_from_behind: bool,
+        has_sound: bool,
+        has_prompts: bool,
+        has_less_motion: bool,
     ) -> None:
         self.language.choose(language)
         self.scheme.choose(scheme)
@@ -114,6 +124,7 @@ class SettingsPage(TallPage):
         self.side.choose(BEHIND if is_from_behind else FRONT)
         self.motion.choose(LESS_MOTION if has_less_motion else AS_SYSTEM)
         self.sound.setChecked(has_sound)
+        self.prompts.setChecked(has_prompts)
 
     def show_library(
         self,
@@ -197,6 +208,7 @@ class SettingsPage(TallPage):
             [(AS_SYSTEM, tr("System setting"), ""), (LESS_MOTION, tr("Reduced"), "")],
         )
         self.sound = Toggle(look, tr("Sounds"), "", is_on=True)
+        self.prompts = Toggle(look, tr("Spoken prompts"), "", is_on=False)
         self._screen = self._card(tr("Screen and sound"))
         for label, control in (
             (tr("Language"), self.language),
@@ -208,6 +220,9 @@ class SettingsPage(TallPage):
             self._screen.fill(Text(look, label, weight=MEDIUM))
             self._screen.add_left(control)
         self._screen.add_left(self.sound)
+        self._screen.add_left(self.prompts)
+        hint = tr("Speaks each instruction, so you can watch the patient.")
+        self._screen.fill(Text(look, hint, tone="ink2", wraps=True))
 
     def _build_access(self) -> None:
         look = self._look
@@ -307,6 +322,7 @@ class SettingsPage(TallPage):
         self.side.chosen.connect(self._on_side_chosen)
         self.motion.chosen.connect(self._on_motion_chosen)
         self.sound.toggled.connect(self.sound_chosen)
+        self.prompts.toggled.connect(self.prompts_chosen)
         self.change.clicked.connect(self._on_change)
         self.renew.clicked.connect(self.recovery_key_requested)
         self.print.clicked.connect(self._on_print)

@@ -33,6 +33,7 @@ from app.summary.request import ReportRequest
 from app.summary.visits import by_condition, condition_in_words
 from app.wording.alignment import NO_PROOF, change_in_words
 from app.wording.measures import measure_name, name_with_unit
+from app.wording.recordings import name_in_words
 from app.wording.translation import capitalised, joined, tr
 from app.wording.verdicts import verdict_alone, verdict_word
 from core.body import JointKind, Side
@@ -91,7 +92,7 @@ def not_compared_page(request: ReportRequest) -> list[Block]:
 
 
 def _condition_typed(condition: str) -> str:
-    return typed(condition, CONDITION_LENGTH) if condition else condition_in_words("")
+    return typed(name_in_words(condition), CONDITION_LENGTH) if condition else condition_in_words("")
 
 
 def _day_of(started: str) -> str:
@@ -146,7 +147,7 @@ def _parts_table(comparison: Comparison) -> Block:
         rows.append(
             [
                 Cell(part.letter, picture=panels.pair_swatch(part.letter, looks)),
-                typed(part.name, CONDITION_LENGTH),
+                typed(name_in_words(part.name), CONDITION_LENGTH),
                 strides,
                 fixed(part.of_both("speed_m_s"), 2),
                 *map(verdict_alone, worst_of),

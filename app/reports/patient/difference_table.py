@@ -25,7 +25,7 @@ from core.verdicts.model import Verdict
 
 MOST_ROWS = 5
 HIP = "hip_range_deg"
-MARK, STRIP, STRIP_HEIGHT = 7.0, 22 * MM, 12.0
+MARK, STRIP, STRIP_HEIGHT = 7.0, 20 * MM, 12.0
 ZONES, HALVES = 2.3, 1.6  # half a drawing: so many times healthy people's difference, else half of the interval
 FILLED, HOLLOW = 2.4, 2.0  # radii
 
@@ -52,22 +52,22 @@ def difference_table(facts: Facts) -> dict[str, object] | None:
 
 
 def _rows(facts: Facts) -> list[LegsRow]:
-    """As on the screen; the last is a hip's, else one not reported, where neither is among the first."""
-    rows = without_family(what_differs(facts))
+    """As on the screen; the last gives way to a hip's, else to one of a leg that is not reported, the knee's first."""
+    rows = [row for row in without_family(what_differs(facts)) if row.values]
     if len(facts.gait) < len(Side):
-        columns = {row.column for row in rows if row.values}
-        rows = [row for row in rows if row.values and FAMILIES.get(row.column) not in columns]
+        columns = {row.column for row in rows}
+        rows = [row for row in rows if FAMILIES.get(row.column) not in columns]
     shown, rest = rows[:MOST_ROWS], rows[MOST_ROWS:]
-    for is_wanted in (
-        lambda row: row.column == HIP and row.values,
-        lambda row: row.column == KNEE and Verdict.NOT_REPORTED in row.verdicts.values(),
-        lambda row: Verdict.NOT_REPORTED in row.verdicts.values(),
-    ):
-        if any(map(is_wanted, shown)):
-            return shown
-        if found := next(filter(is_wanted, rest), None):
-            return [*shown[:-1], found]
-    return shown
+    if not any(map(_is_missing, shown)):
+        rest.sort(key=lambda row: (row.column != HIP, not _is_missing(row), row.column != KNEE))
+        shown += [row for row in rest[:1] if row.column == HIP or _is_missing(row)]
+    else:
+        shown += [row for row in rest if row.column == HIP]
+    return [*shown[: MOST_ROWS - 1], shown[-1]] if len(shown) > MOST_ROWS else shown
+
+
+def _is_missing(row: LegsRow) -> bool:
+    return Verdict.NOT_REPORTED in row.verdicts.values()
 
 
 def _row(facts: Facts, row: LegsRow, sides: Sequence[Side], *, has_last: bool) -> dict[str, object]:

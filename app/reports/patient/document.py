@@ -13,10 +13,10 @@ from app.reports.patient.comparison_page import comparison_of, comparison_page, 
 from app.reports.patient.curves_page import curves_page
 from app.reports.patient.first_page import first_page
 from app.reports.patient.method_page import words_page
-from app.reports.patient.patient_page import patient_page
 from app.reports.patient.time_page import time_page
 from app.reports.patient.timed_page import timed_page
 from app.reports.patient.trend_page import trend_page
+from app.summary.comment_draft import comment_draft
 from app.summary.facts import Facts
 from app.summary.plain_text import isolated, plain, shortened
 from app.summary.report_dates import day
@@ -90,6 +90,13 @@ class ReportPreview:
             )
         return list(pages)
 
+    def comment_draft(self, request: ReportRequest) -> str:
+        """Draft a clinical comment from what the pages show."""
+        with self._lock:
+            self._data(request)
+            assert self._known is not None  # just made
+            return comment_draft(self._known[1], comparison_of(request))
+
     def _data(self, request: ReportRequest) -> dict[str, Any]:
         if self._known is None or not _differ_in_words_only(self._known[0], request):
             self._known = request, facts_of(request), report_data(request)
@@ -107,17 +114,7 @@ def _differ_in_words_only(one: ReportRequest, other: ReportRequest) -> bool:
     are_same = one.visit.session is other.visit.session and one.visit.analysis is other.visit.analysis
     if not (are_same and one.earlier is other.earlier and one.made_at.date() == other.made_at.date()):
         return False
-    named = (
-        "walks",
-        "software_version",
-        "operator",
-        "clinic",
-        "paper",
-        "course",
-        "patient_language",
-        "comment_by",
-        "thin",
-    )
+    named = ("walks", "software_version", "operator", "clinic", "paper", "course", "comment_by", "thin")
     return all(getattr(one, name) == getattr(other, name) for name in named)
 
 
@@ -141,7 +138,6 @@ def report_data(request: ReportRequest) -> dict[str, Any]:
         *([comparison_page(comparison, facts)] if comparison is not None else []),
         *([alone] if (alone := not_compared_page(request)) else []),
         *([course] if (course := trend_page(request.course, condition, facts)) else []),
-        *([[patient_page(request, facts)]] if request.patient_language else []),
     ]
     title = ", ".join(
         filter(

@@ -123,9 +123,6 @@ def evidence_table(facts: Facts) -> list[Block]:
         ]
         for gate, label, stated, limit in gates
     ]
-    for label, part in ((tr("ROM, shape"), "shape"), (tr("Absolute angle"), "height")):
-        words = [verdict_alone(getattr(facts.verdicts.joint(joint), part).verdict) for joint in joints]
-        rows.append([Cell(label, is_bold=True), *(Cell(word, is_bold=True) for word in words), ""])
     return [heading(tr("Basis of each rating")), table(columns, rows, is_dense=True)]
 
 

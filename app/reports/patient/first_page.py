@@ -17,6 +17,8 @@ from app.summary.quality_line import in_order, quality_sentence
 from app.summary.request import ReportRequest
 from app.summary.tiles import Tile, TileValue, tiles_of
 from app.wording.body import side_name
+from app.wording.patients import aids_in_words
+from app.wording.recordings import name_in_words
 from app.wording.translation import capitalised, tr
 from core.body import Side
 from core.parameters import KNEE, STANCE
@@ -54,9 +56,9 @@ def who(request: ReportRequest) -> str:
         f"{fixed(patient.mass_kg, 0)}\u00a0kg" if patient.mass_kg is not None else "",
         _side_in_words(side, is_prosthetic=is_prosthetic),
         patient.device,
-        tr("no walking aids") if patient.aids == "none" else patient.aids,
+        tr("no walking aids") if patient.aids == "none" else aids_in_words(patient.aids),
         session.surface,
-        tr(request.visit.condition_of(request.shown)),
+        name_in_words(request.visit.condition_of(request.shown)),
     ]
     return " · ".join(typed(one, CONDITION_LENGTH) for one in known if one)
 

@@ -78,7 +78,7 @@ def _remarks(request: ReportRequest, facts: Facts) -> list[Block]:
     causes = quality.caveats(facts)
     names = request.visit.shown_names
     noticed = [plain(sentence(with_shown_names(finding, names))) for finding in _joined(reported)]
-    stated = [*(causes if len(causes) > 1 else []), *noticed]
+    stated = [*causes, *noticed]
     return [heading(tr("Data quality findings")), bullets(stated)] if stated else []
 
 

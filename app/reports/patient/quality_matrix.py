@@ -6,7 +6,7 @@ from app.summary.facts import Facts, joint_of
 from app.summary.panels import dot
 from app.wording.body import name_of, side_name
 from app.wording.translation import capitalised, tr
-from app.wording.verdicts import verdict_alone
+from app.wording.verdicts import verdict_alone, verdict_word
 from core.body import Side
 from core.verdicts.model import Verdict, worst
 
@@ -38,12 +38,12 @@ def quality_matrix(facts: Facts) -> list[Block]:
         wide.append((tr("Left vs right"), facts.verdicts.between.verdict))
     if facts.gait:
         wide.append((tr("Distance"), worst(facts.verdicts.leg(side).distance.verdict for side in facts.gait)))
-    rows += [[Cell(label, span=len(columns) - 1), _dotted(verdict)] for label, verdict in wide]
+    both = [f"{label}: {verdict_word(verdict)}." for label, verdict in wide]
     used = "; ".join(f"{label}: {value}" for label, value in quality.cells(facts))
     return [
         {**heading(tr("Data quality")), "label": "quality"},
         *([table(columns, rows, is_dense=True)] if rows else []),
-        note(f"{tr('Data used')}. {used}."),
+        note(" ".join([*both, f"{tr('Data used')}: {used}."])),
     ]
 
 

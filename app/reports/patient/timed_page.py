@@ -10,6 +10,7 @@ from app.summary.numbers_in_words import NOTHING, dagger_note, fixed
 from app.summary.plain_text import CONDITION_LENGTH, isolated, plain, typed
 from app.summary.request import ReportRequest
 from app.summary.visits import condition_in_words
+from app.wording.recordings import name_in_words
 from app.wording.timed_tests import (
     course_sentence,
     error_words,
@@ -68,7 +69,7 @@ def _course(request: ReportRequest, facts: Facts) -> list[Block]:
     charts = charts_of_tests(request.course, condition, facts)
     if not charts:
         return []
-    stated = typed(condition, CONDITION_LENGTH) if condition else condition_in_words("")
+    stated = typed(name_in_words(condition), CONDITION_LENGTH) if condition else condition_in_words("")
     wording = [tr("Condition: {condition}. Several attempts: mean shown.").format(condition=stated)]
     error = error_between_visits(COLUMNS[TimedProtocol.TEN_METRES])
     if TimedProtocol.TEN_METRES in charts:

@@ -18,6 +18,7 @@ from app.summary.trend_lines import TrendLine, trend_columns, trend_lines, walke
 from app.summary.visits import condition_in_words
 from app.wording.dates import date, short_date
 from app.wording.measures import least_span, name_with_unit
+from app.wording.recordings import name_in_words
 from app.wording.translation import tr
 from core.body import Side
 from core.goals import Goal, GoalOf
@@ -50,7 +51,7 @@ def trend_page(visits: Sequence[CourseVisit], condition: str, facts: Facts) -> l
     title = tr("Progress over {count} visits, {first} to {last}").format(
         count=len(walked), first=date(days[0]), last=date(days[-1])
     )
-    stated = typed(condition, CONDITION_LENGTH) if condition else condition_in_words("")
+    stated = typed(name_in_words(condition), CONDITION_LENGTH) if condition else condition_in_words("")
     wording = [
         tr("Condition: {condition}. Sensors reattached at each visit.").format(condition=stated),
         tr("Error bar: half the measurement error of a change. Bars that do not overlap show a change beyond error."),

@@ -9,6 +9,7 @@ from app.summary.plain_text import CONDITION_LENGTH, typed
 from app.summary.report_dates import moment
 from app.summary.request import ReportRequest
 from app.wording.body import name_of, side_name
+from app.wording.recordings import name_in_words
 from app.wording.translation import capitalised, figure_text, joined, tr, tr_n
 from core.body import JointKind
 
@@ -32,7 +33,8 @@ def what(request: ReportRequest, facts: Facts, comparison: Comparison | None) ->
     ]
     stated = [" · ".join(filter(None, parts))]
     if comparison is not None:
-        names = " · ".join(f"{part.letter}\u00a0{typed(part.name, CONDITION_LENGTH)}" for part in comparison.parts)
+        called = [(part.letter, name_in_words(part.name)) for part in comparison.parts]
+        names = " · ".join(f"{letter}\u00a0{typed(name, CONDITION_LENGTH)}" for letter, name in called)
         stated.append(tr("Compared: {parts} (shown: {last})").format(parts=names, last=comparison.parts[-1].letter))
     return ". ".join(stated)
 

@@ -30,30 +30,32 @@ def hint_for(missing: Missing, prosthetic_sides: frozenset[Side] = frozenset()) 
     is_circle = missing.movement is Movement.CIRCLE
     sentence = _circle(missing.site) if is_circle else _bend(missing.site)
     icon = Icon.REPEAT if is_circle else Icon.BEND
+    phrase = f"{'circle' if is_circle else 'bend'}-{missing.site}"
     if missing.site.side in prosthetic_sides:
         how = (
             tr("The therapist moves the limb. Reverse direction from time to time.")
             if is_circle
             else tr("The therapist moves the limb.")
         )
-        return Hint(sentence, how, tr("The therapist moves the limb."), icon)
+        return Hint(sentence, how, tr("The therapist moves the limb."), icon, phrase)
     if is_circle:
         how = tr("Reverse direction from time to time. The patient may sit or stand; move the limb by hand if needed.")
-        return Hint(sentence, how, tr("Reverse direction from time to time. The patient may sit."), icon)
+        return Hint(sentence, how, tr("Reverse direction from time to time. The patient may sit."), icon, phrase)
     how = tr("Back and forth, as far as comfortable. Moving the leg by hand is fine.")
-    return Hint(sentence, how, tr("Back and forth. You may move the limb by hand."), icon)
+    return Hint(sentence, how, tr("Back and forth. You may move the limb by hand."), icon, phrase)
 
 
 def first_hint() -> Hint:
     """Before anything moves, or while nobody knows who is where."""
     how = tr("One leg, then the other. The patient may sit, lie or stand; move the leg by hand if needed.")
-    return Hint(tr("Move either leg"), how, tr("One leg, then the other. The patient may sit."))
+    short = tr("One leg, then the other. The patient may sit.")
+    return Hint(tr("Move either leg"), how, short, phrase="move-either-leg")
 
 
 def unplaced_hint() -> Hint:
     """While the motion is to show which sensor is where: the leg that moves first is the left one."""
     how = tr("Then the right leg. The movement identifies the sensor positions.")
-    return Hint(tr("Move the left leg first"), how, tr("Then the right leg."))
+    return Hint(tr("Move the left leg first"), how, tr("Then the right leg."), phrase="move-left-leg-first")
 
 
 def judged(motion: FreeMotionState, prosthetic_sides: frozenset[Side]) -> dict[Joint, GaugeState]:
@@ -99,16 +101,18 @@ def last_hint(motion: FreeMotionState, prosthetic_sides: frozenset[Side] = froze
             with_axes = tr("Walking determines the ankle axes and, with a turn, calibrates the hips.")
             finds = with_axes if ankles else hips
         how = " ".join(filter(None, [then, finds]))
-        return Hint(tr("Enough movement"), how, tr("Walking is next."), Icon.CHECK)
+        return Hint(tr("Enough movement"), how, tr("Walking is next."), Icon.CHECK, "enough-movement")
     loose = [joint for joint, state in states.items() if state is GaugeState.LOOSE]
     if loose and all(state.is_closed for state in motion.joints.values()):
         sentence = tr("{joint}: not a hinge").format(joint=capitalised(name_of(loose[0])))
+        phrase = f"loose-{loose[0]}"
         if len(loose) > 1:
             sentence = tr("{count} joints: not hinges").format(count=len(loose))
+            phrase = "loose-several"
         angle = tr("The angle is the rotation about the main axis.")
-        return Hint(sentence, f"{angle} {then}", tr("Walking is next."), Icon.WARNING)
+        return Hint(sentence, f"{angle} {then}", tr("Walking is next."), Icon.WARNING, phrase)
     how = tr("Continue to walking, or repeat one leg.")
-    return Hint(tr("Uncertainty no longer falls"), how, how, Icon.INFO)
+    return Hint(tr("Uncertainty no longer falls"), how, how, Icon.INFO, "no-longer-falls")
 
 
 def open_hip(motion: FreeMotionState) -> Joint | None:
@@ -120,26 +124,26 @@ def open_hip(motion: FreeMotionState) -> Joint | None:
 def hip_hint() -> Hint:
     """Ask for what shows the hips: they accelerate little while one leg circles."""
     how = tr("Or do lunges, left and right. Circling the legs does not calibrate the hips; walking does.")
-    return Hint(tr("Walk 15 s, with a turn"), how, tr("Or do lunges, left and right."), Icon.NEXT)
+    return Hint(tr("Walk 15 s, with a turn"), how, tr("Or do lunges, left and right."), Icon.NEXT, "walk-with-turn")
 
 
 def played_hint(has_played: bool) -> Hint:
     """When a replayed patient moves no more, or never did."""
     if not has_played:
         how = tr("Joints are calibrated from the walks, with more uncertainty. Continue to walking.")
-        return Hint(tr("Replay has no free motion"), how, tr("Continue to walking."), Icon.INFO)
+        return Hint(tr("Replay has no free motion"), how, tr("Continue to walking."), Icon.INFO, "replay-without")
     how = tr("Record again to replay from the start, or continue with the data so far.")
-    return Hint(tr("The replay has ended"), how, tr("Record again, or continue."), Icon.INFO)
+    return Hint(tr("The replay has ended"), how, tr("Record again, or continue."), Icon.INFO, "replay-ended")
 
 
 def recorded_hint(motion: FreeMotionState, prosthetic_sides: frozenset[Side] = frozenset()) -> Hint:
     """Once it is recorded: what came of it, as far as that is known; of an earlier day it is not."""
     how = tr("Continue to walking, or repeat one leg.")
     if not motion.joints:
-        return Hint(tr("Free motion recorded"), how, how, Icon.CHECK)
+        return Hint(tr("Free motion recorded"), how, how, Icon.CHECK, "recorded")
     if motion.is_done:
         return replace(last_hint(motion, prosthetic_sides), how=how, how_short=how)
-    return Hint(tr("Stopped early"), how, how, Icon.INFO)
+    return Hint(tr("Stopped early"), how, how, Icon.INFO, "stopped-early")
 
 
 def absent_note(joint: Joint, worn: Collection[Site], without_ankle: Collection[Side]) -> str:

@@ -44,8 +44,8 @@ class Swapped:
 class FreeMotionFace:
     """What the motion looks like now. `emphasised` is the limb to move; `elapsed_s` None before it is recorded.
 
-    `hips` is empty without a sensor on the pelvis. `swapped` takes the hint's place; `moves_to`: by a sensor's site, the
-    one that it moves like.
+    `hips` is empty without a sensor on the pelvis. `swapped` takes the hint's place; `moves_to`: by a sensor's site,
+    the one that it moves like.
     """
 
     gauges: Mapping[Joint, GaugeFace] = field(default_factory=dict)

@@ -10,6 +10,7 @@ from app.acquisition.live_sensors import live_sensors
 from app.editing.session_recording import SessionRecording
 from app.storage.stored import RecordingState
 from app.system import sounds
+from app.system.prompts import prompter
 from app.system.sounds import Sound
 from app.theme.icons import Icon
 from app.theme.notifier import ThemeNotifier
@@ -153,6 +154,7 @@ class FreeMotionStep(Step):
 
     def leave(self) -> None:
         self._is_in_sight, self._worn_before = False, {}
+        prompter.end()
         self._settled.stop()
         if self._is_recording and not self._visit.recordings.is_stopping:  # not to its end
             self._break_off()
@@ -481,6 +483,8 @@ class FreeMotionStep(Step):
             return
         self._show_question()
         asked, sensors = self._asked(), self._visit.sensors
+        if self._is_in_sight:
+            prompter.speak(asked.hint.phrase)
         self._page.show_state(
             FreeMotionFace(
                 gauges=gauge_faces(self._visit, self._motion, asked.joint),
@@ -514,7 +518,7 @@ class FreeMotionStep(Step):
     def _asked(self) -> Asked:
         acquisition, sensors = self._visit.sensors.acquisition, self._visit.sensors
         if self.labels.is_in_doubt:
-            return Asked(Hint(""))  # the banner is in its place
+            return Asked(Hint("", phrase="swapped"))  # the banner is in its place
         if not self._is_recording:
             prosthetic = self._visit.prosthetic_sides
             return Asked(recorded_hint(self._motion, prosthetic) if self._has_moved else first_hint())

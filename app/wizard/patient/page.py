@@ -27,11 +27,11 @@ from app.widgets.segmented import Segmented
 from app.widgets.text import MEDIUM, SEMIBOLD, Text
 from app.widgets.themed import Themed
 from app.wizard.patient.cards import BandCard, LastVisit, LastVisitCard, TakenCard
+from app.wording.patients import AIDS
 from app.wording.translation import tr
 from core.body import Side
 from core.session import Patient
 
-AIDS = ("shoes", "barefoot", "stick", "crutches", "walker", "parallel bars", "AFO")  # as they stand in files
 ONE_COLUMN_BELOW = 620  # room for the form, where a row of three fields still reads well
 BAND_CARD_WIDTH = 328
 WIDEST = 1240  # further apart, labels and cards no longer belong together
@@ -111,10 +111,8 @@ class PatientPage(Themed):
             Side.LEFT: Chips(look, tr("Left prosthetic foot"), [("none", tr("Left foot has no ankle joint"))]),
             Side.RIGHT: Chips(look, tr("Right prosthetic foot"), [("none", tr("Right foot has no ankle joint"))]),
         }
-        words = (
-            tr("Shoes"), tr("Barefoot"), tr("Stick"), tr("Crutches"), tr("Walker"), tr("Parallel bars"), tr("AFO"),
-        )  # fmt: skip
-        self.aids = Chips(look, tr("Aids and footwear"), zip(AIDS, words, strict=True), rivals=("shoes", "barefoot"))
+        aids = [(aid, tr(words)) for aid, words in AIDS.items()]
+        self.aids = Chips(look, tr("Aids and footwear"), aids, rivals=("shoes", "barefoot"))
         self._band = BandCard(look, reference_curves())
         self._taken = TakenCard(look)
         self._last = LastVisitCard(look)
@@ -427,4 +425,5 @@ def _aids_in(patient: Patient) -> tuple[str, ...]:
     known = {aid.lower(): aid for aid in AIDS}
     reported = [aid.strip() for aid in patient.aids.split(",") if aid.strip()]
     named = [known.get(aid.lower(), aid) for aid in reported]
-    return tuple(sorted(dict.fromkeys(named), key=lambda aid: AIDS.index(aid) if aid in AIDS else len(AIDS)))
+    order = [*AIDS]
+    return tuple(sorted(dict.fromkeys(named), key=lambda aid: order.index(aid) if aid in AIDS else len(order)))

@@ -15,6 +15,7 @@ from app.wizard.patient.page import PatientDraft, PatientPage
 from app.wizard.step import Step, StepId
 from app.wording.body import name_of
 from app.wording.dates import date
+from app.wording.recordings import name_in_words
 from app.wording.translation import tr
 from core.body import LEG_JOINTS, Side
 from core.session import Patient, RecordingKind, Session
@@ -93,7 +94,11 @@ class PatientStep(Step):
             note = tr("Not saved: {code} is another patient's code.").format(code=self._taken_code)
         can_go_on = has_code and not self._taken_code
         go_on = BarAction(tr("Attach sensors"), self._go_on, tr("Enter"), is_enabled=can_go_on)
-        return BarState(primary=go_on, note=note)
+        if self._last is None or not self._last.placements or self._visit.session is not None:
+            return BarState(primary=go_on, note=note)
+        words = tr("Use last visit's set-up")
+        again = BarAction(words, self._on_same_set_up_pressed, tr("Enter"), is_enabled=can_go_on)
+        return BarState(primary=again, others=(replace(go_on, key="", is_requested=False),), note=note)
 
     def _go_on(self) -> None:
         patient = self._visit.patient
@@ -144,6 +149,7 @@ class PatientStep(Step):
         self._last = session
         if self._page is not None:
             self._page.show_last_visit(None if session is None else _last_visit(session))
+        self.changed.emit()
 
     def _on_edited(self, draft: PatientDraft) -> None:
         self._shown_without = draft.without_ankle
@@ -238,8 +244,9 @@ def _last_visit(session: "StoredSession") -> LastVisit:
     except ValueError:
         day = reported.started
     walks = [one for one in reported.recordings if one.kind is RecordingKind.WALKING and one.is_kept]
+    called = dict.fromkeys(name_in_words(walk.condition or walk.name) for walk in walks)
     facts = [
-        (tr("Walks"), ", ".join(dict.fromkeys(walk.condition or walk.name for walk in walks)) or tr("none included")),
+        (tr("Walks"), ", ".join(called) or tr("none included")),
         (tr("Standing angle (goniometer)"), _zero_in_words(reported)),
     ]
     if session.placements:

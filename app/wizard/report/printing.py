@@ -7,20 +7,21 @@ from PySide6.QtGui import QImage, QPageLayout, QPageSize, QPainter
 from PySide6.QtPrintSupport import QPrintDialog, QPrinter
 from PySide6.QtWidgets import QWidget
 
-from app.wording.translation import tr
+from app.storage.audit import LETTER_FORMAT
+from app.summary.request import ReportRequest
 
 PRINTED_PPI = 300.0
 PAGE_SIZES = {"a4": QPageSize.PageSizeId.A4, "letter": QPageSize.PageSizeId.Letter}
 
 
 class ReportPrinter(QObject):
-    """`confirmed` is emitted once somebody has chosen a printer; `put` then puts the pages on it."""
+    """`confirmed` is emitted once somebody has chosen a printer; `put` then puts the pages of `document` on it."""
 
     confirmed = Signal()
 
-    def __init__(self, window: QWidget) -> None:
+    def __init__(self, window: QWidget, title: str, document: str) -> None:
         super().__init__(window)
-        self._window = window
+        self._window, self._title, self.document = window, title, document
         self._printer: QPrinter | None = None
         self.dialog: QPrintDialog | None = None
 
@@ -28,7 +29,7 @@ class ReportPrinter(QObject):
         """Ask for a printer; `name` is the document's."""
         self._printer = make_printer(name, paper)
         self.dialog = QPrintDialog(self._printer, self._window)
-        self.dialog.setWindowTitle(tr("Print the report"))
+        self.dialog.setWindowTitle(self._title)
         self.dialog.setAttribute(Qt.WidgetAttribute.WA_DeleteOnClose)
         self.dialog.setWindowModality(Qt.WindowModality.WindowModal)
         self.dialog.accepted.connect(self.confirmed)
@@ -38,6 +39,17 @@ class ReportPrinter(QObject):
         """Put pages, each a PNG, on the printer that was chosen; whether it took them."""
         printer, self._printer = self._printer, None
         return printer is not None and paint_pages(printer, pages)
+
+
+def printed_pages(document: str, request: ReportRequest, language: str) -> list[bytes]:
+    """Draw the report, or the letter in a language, as fine as it is printed."""
+    if document == LETTER_FORMAT:
+        from app.reports.patient.letter import letter_pages
+
+        return letter_pages(request, language, PRINTED_PPI)
+    from app.reports.patient.document import ReportPreview
+
+    return ReportPreview().pages(request, PRINTED_PPI)
 
 
 def make_printer(name: str, paper: str) -> QPrinter:

@@ -4,20 +4,18 @@ import logging
 from collections.abc import Mapping
 from dataclasses import replace
 from datetime import datetime
-from itertools import combinations
 from pathlib import Path
 from typing import TYPE_CHECKING
 from uuid import UUID
 
 from PySide6.QtCore import QObject, QUrl
 from PySide6.QtGui import QDesktopServices
-from PySide6.QtWidgets import QFileDialog, QStackedWidget
+from PySide6.QtWidgets import QFileDialog
 
 from app.exports.proposed_names import free_name, session_name
-from app.storage.audit import REPORT_FORMAT, about
+from app.storage.audit import LETTER_FORMAT, REPORT_FORMAT, about
 from app.storage.operators import CLINIC
-from app.storage.pseudonyms import Typed
-from app.storage.stored import Action, LibraryError
+from app.storage.stored import Action
 from app.summary.course_lanes import CourseVisit
 from app.summary.report_dates import day
 from app.summary.request import AnalysedVisit, ReportRequest, default_walks
@@ -26,21 +24,22 @@ from app.system.progress import Report
 from app.theme.icons import Icon
 from app.theme.notifier import ThemeNotifier
 from app.widgets.action_bar import BarAction, BarState
-from app.widgets.folder_dialog import ask_for_new_folder
+from app.widgets.folder_dialog import ask_for_new_file, ask_for_new_folder
 from app.widgets.rail_row import StepState
-from app.widgets.sentence_page import SentencePage
 from app.wizard.keys import Intent, KeyAction
+from app.wizard.report.comment_control import CommentControl
+from app.wizard.report.frame import ReportFrame
 from app.wizard.report.leaving_dialog import LeavingDialog
-from app.wizard.report.page import ReportPage
-from app.wizard.report.printing import PRINTED_PPI, ReportPrinter
+from app.wizard.report.page import LETTER
+from app.wizard.report.printing import ReportPrinter, printed_pages
+from app.wizard.report.saving import OTHERS, Export, exporting, file_name, previews, saving_report
 from app.wizard.resuming import course_to, courses_before, read_analysed
 from app.wizard.step import Step, StepId
-from app.wording.translation import capitalised, filled, tr
+from app.wording.recordings import name_in_words
+from app.wording.translation import tr
 from app.workers.background import Work
 from app.workers.library_controller import LibraryController
 from core.session import RecordingKind
-from devices.decoders import DECODERS
-from devices.files.refusal import FileRefusedError
 
 if TYPE_CHECKING:
     from app.reports.patient.document import ReportPreview
@@ -52,7 +51,6 @@ if TYPE_CHECKING:
 _log = logging.getLogger(__name__)
 
 MOST_LINES = 3  # of what was not written: a banner holds no more
-OTHERS = ("xlsx", "c3d", "mot", "fhir")
 
 
 class ReportStep(Step):
@@ -63,31 +61,34 @@ class ReportStep(Step):
     ) -> None:
         super().__init__(look, visit, parent)
         self._controller = controller
-        self._frame: _ReportFrame | None = None
+        self._frame: ReportFrame | None = None
         self.dialog: QFileDialog | None = None
-        self.saved: Path | None = None
+        self.saved: Path | None = None  # the report
+        self.exported: Path | None = None  # the folder of the data
         self.is_saving = False
         self._kept: frozenset[str] = frozenset()  # of what was typed freely: leaves with the files without a name
-        self._shown_comment = ""  # as it was last shown on the page, or passed on from there
         self._clinic = ""
         self._earlier: tuple[UUID, AnalysedVisit] | None = None  # as was read last
         self._before: tuple[CourseVisit, ...] = ()  # earlier visits of the course, in order of time
         self._has_failed = False  # the preview, so that no page is in sight
         self._preview: ReportPreview | None = None  # of its threads
+        self.comments = CommentControl(visit, self)
+        self.comments.changed.connect(self._on_comment_changed)
         visit.preview.done.connect(self._on_previewed)
         visit.preview.failed.connect(self._on_preview_failed)
         visit.evaluation.done.connect(self._show)
-        visit.changed.connect(self._on_visit_changed)
 
     @property
-    def page(self) -> "_ReportFrame":
+    def page(self) -> "ReportFrame":
         if self._frame is None:
-            self._frame = _ReportFrame(self._look)
-            self._frame.report.comment_edited.connect(self._on_comment_edited)
+            self._frame = ReportFrame(self._look)
+            self.comments.show_on(self._frame.report.editor)
             self._frame.report.options_changed.connect(self._on_options_changed)
             self._frame.report.sharper_required.connect(self._draw)
-            self.printer = ReportPrinter(self._frame)
-            self.printer.confirmed.connect(self._on_print_confirmed)
+            self.printer = ReportPrinter(self._frame, tr("Print the report"), REPORT_FORMAT)
+            self.letter_printer = ReportPrinter(self._frame, tr("Print the patient letter"), LETTER_FORMAT)
+            for printer in (self.printer, self.letter_printer):
+                printer.confirmed.connect(self._on_print_confirmed)
         return self._frame
 
     @property
@@ -108,37 +109,64 @@ class ReportStep(Step):
 
     @property
     def comment(self) -> str:
-        return self._visit.record.comment
+        return self.comments.words
 
     def enter(self) -> None:
-        self._show_comment()
+        self.comments.begin()
         self._read_choices()
         self._show()
 
     def leave(self) -> None:
-        self.page.report.flush()
+        self.comments.flush()
         self._visit.preview.stop()
 
     def bar(self) -> BarState:
-        can_save = self.can_save()
-        save = BarAction(tr("Save the report"), self._save, tr("Ctrl S"), Icon.FOLDER, is_enabled=can_save)
-        put = BarAction(tr("Print"), self.print, tr("Ctrl P"), Icon.PRINT, is_requested=False, is_enabled=can_save)
-        if self.saved is None:
-            return BarState(primary=save, others=(put,), note=tr("The report shows the patient code only, no name."))
-        note = tr("Saved as {folder}. Saving again asks for the folder.").format(folder=self.saved.name)
-        show = BarAction(tr("Open the folder"), self._open_folder, is_requested=False)
-        return BarState(primary=replace(save, is_requested=False), others=(put, show), note=note)
+        can = self.can_save()
+        save = BarAction(tr("Save report"), self._save, tr("Ctrl S"), Icon.FOLDER, is_enabled=can)
+        export = BarAction(tr("Export data"), self._export, is_requested=False, is_enabled=can)
+        letter = BarAction(tr("Patient letter"), self.print_letter, "", Icon.PRINT, is_enabled=can)
+        put = BarAction(tr("Print"), self.print, tr("Ctrl P"), Icon.PRINT, is_enabled=can)
+        quiet, written = (put, letter), self.saved or self.exported
+        if written is None:
+            return BarState(primary=save, others=(export,), quiet=quiet, note=self._note())
+        show = BarAction(tr("Open the folder"), self._open_folder)
+        note = tr("Saved as {folder}.").format(folder=written.name)
+        is_first = self.saved is None
+        return BarState(primary=replace(save, is_requested=is_first), others=(export,), quiet=(*quiet, show), note=note)
+
+    def _note(self) -> str:
+        if self.comments.is_unconfirmed:
+            return tr("The clinical comment is not confirmed, so it is not printed.")
+        return tr("The report shows the patient code only, no name.")
 
     def _save(self) -> None:
+        """Ask where the report's PDF is to be."""
+        if not self.can_save() or self.is_saving or self._visit.session is None:
+            return
+        self.comments.flush()
+        self.dialog = ask_for_new_file(self.page, tr("Save report"), self._file_proposed_in, self.save_report)
+
+    def _file_proposed_in(self, place: Path) -> str:
+        return free_name(place, self._proposed_name(), ".pdf")
+
+    def save_report(self, file: str) -> None:
+        """Write the report as one PDF; `saved` names it once it is there."""
+        request, stored = self.request(), self._visit.session
+        if request is not None and stored is not None:
+            self.is_saving = True
+            work = saving_report(request, stored.id, Path(file))
+            self._controller.run_long(work, self._on_saved, self._on_refused, None, self)
+
+    def _export(self) -> None:
         if not self.can_save() or self.is_saving:
             return
-        self.page.report.flush()
+        self.comments.flush()
         session = self._visit.session
         if session is None or not set(OTHERS) & set(self.page.report.formats.chosen):
             self._ask_where()
             return
         session_id = session.id
-        self._controller.run(lambda opened: _previews(opened, session_id), self._on_previews, self._on_refused, self)
+        self._controller.run(lambda opened: previews(opened, session_id), self._on_previews, self._on_refused, self)
 
     def _on_previews(self, previews: "Mapping[frozenset[str], Rows]") -> None:
         """Show what leaves without the name before anybody states where to."""
@@ -151,18 +179,22 @@ class ReportStep(Step):
         self._ask_where()
 
     def _ask_where(self) -> None:
-        title = tr("Save the report and the results in a new folder")
+        title = tr("Export report and results into a new folder")
         self.dialog = ask_for_new_folder(self.page, title, self._proposed_in, self.save_in)
 
     def _proposed_in(self, place: Path) -> str:
+        return free_name(place, self._proposed_name())
+
+    def _proposed_name(self) -> str:
         if self._visit.session is None:
             return ""
         reported = self._visit.session.details
-        return free_name(place, session_name(reported.patient.code, reported.started))
+        return session_name(reported.patient.code, reported.started)
 
     def _open_folder(self) -> None:
-        if self.saved is not None:
-            QDesktopServices.openUrl(QUrl.fromLocalFile(str(self.saved)))
+        folder = self.saved.parent if self.saved is not None else self.exported
+        if folder is not None:
+            QDesktopServices.openUrl(QUrl.fromLocalFile(str(folder)))
 
     def on_intent(self, intent: Intent) -> bool:
         if intent.action is KeyAction.SAVE:
@@ -175,30 +207,36 @@ class ReportStep(Step):
 
     def print(self) -> None:
         """Ask for a printer, and put the pages on it as they are shown."""
-        if not self.can_save() or self._visit.session is None:
-            return
-        self.page.report.flush()
-        reported = self._visit.session.details
-        self.printer.ask(session_name(reported.patient.code, reported.started), self.page.report.paper.choice)
+        self._ask_printer(self.printer)
+
+    def print_letter(self) -> None:
+        """Ask for a printer, and put the patient letter on it."""
+        self._ask_printer(self.letter_printer, LETTER)
+
+    def _ask_printer(self, printer: ReportPrinter, what: str = "") -> None:
+        if self.can_save() and self._visit.session is not None:
+            self.comments.flush()
+            name = file_name(self._visit.session, what).removesuffix(".pdf")
+            printer.ask(name, self.page.report.paper.choice)
 
     def _on_print_confirmed(self) -> None:
-        request, stored = self._request(), self._visit.session
-        if request is None or stored is None:
+        printer, request, stored = self.sender(), self.request(), self._visit.session
+        if request is None or stored is None or not isinstance(printer, ReportPrinter):
             return
-        session_id = stored.id
+        session_id, document, language = stored.id, printer.document, self.page.report.language.choice
 
-        def work(opened: "OpenedLibrary", _report: Report) -> list[bytes]:
-            from app.reports.patient.document import ReportPreview
-
-            opened.library.audit.note(Action.PRINT, about("session", session_id), format=REPORT_FORMAT)
-            return ReportPreview().pages(request, PRINTED_PPI)
+        def work(opened: "OpenedLibrary", _report: Report) -> tuple[str, list[bytes]]:
+            opened.library.audit.note(Action.PRINT, about("session", session_id), format=document)
+            return document, printed_pages(document, request, language)
 
         self._controller.run_long(work, self._on_printable, self._on_refused, None, self)
 
-    def _on_printable(self, pages: list[bytes]) -> None:
-        if not self.printer.put(pages):
+    def _on_printable(self, found: tuple[str, list[bytes]]) -> None:
+        document, pages = found
+        printer = self.printer if document == REPORT_FORMAT else self.letter_printer
+        if not printer.put(pages):
             self.reported.emit(
-                tr("The printer did not accept the report."), tr("Save the report, then print the file.")
+                tr("The printer did not accept the pages."), tr("Save or export them, then print the file.")
             )
 
     def can_save(self) -> bool:
@@ -222,7 +260,8 @@ class ReportStep(Step):
             self._frame.setCurrentWidget(self._frame.sentence)
         self.changed.emit()
 
-    def _request(self) -> ReportRequest | None:
+    def request(self) -> ReportRequest | None:
+        """What the report shows now; None where there is no walk, or the visit to compare with is not read."""
         evaluation = self._visit.evaluation
         if evaluation.session is None or evaluation.analysis is None or self._lacks_earlier:
             return None
@@ -230,18 +269,18 @@ class ReportStep(Step):
         walks = default_walks(visit)
         if not walks:
             return None
-        chosen = self.page.report.added.chosen
+        chosen, (comment, comment_by) = self.page.report.added.chosen, self.comments.printed
         return ReportRequest(
             visit=visit,
             walks=walks,
             made_at=datetime.now().astimezone(),
             software_version=version_of("gaitwright"),
-            comment=self.comment,
+            comment=comment,
+            comment_by=comment_by,
             operator=evaluation.session.operator,
             clinic=self._clinic,
             earlier=self._earlier_chosen(),
             course=self._course(visit) if "course" in chosen else (),
-            patient_language=self.page.report.patient_language,
             paper=self.page.report.paper.choice,
         )
 
@@ -252,21 +291,24 @@ class ReportStep(Step):
 
     def _draw(self) -> None:
         """Set the pages again, beside the screen."""
-        request = self._request()
+        request = self.request()
         if request is not None:
-            self._visit.preview.start(self._previewing(request, self.page.report.pages_ppi))
+            self._visit.preview.start(self._previewing(request, self.page.report.pages_ppi, not self.comment))
 
-    def _previewing(self, request: ReportRequest, ppi: float) -> Work:
+    def _previewing(self, request: ReportRequest, ppi: float, is_draft_required: bool) -> Work:
         def work(_report: Report) -> object:
             from app.reports.patient.document import ReportPreview
 
             self._preview = self._preview or ReportPreview()
-            return self._preview.pages(request, ppi)
+            pages = self._preview.pages(request, ppi)
+            return pages, self._preview.comment_draft(request) if is_draft_required else ""
 
         return work
 
-    def _on_previewed(self, pages: list[bytes]) -> None:
+    def _on_previewed(self, found: tuple[list[bytes], str]) -> None:
+        pages, draft = found
         self.page.report.show_pages(pages)
+        self.comments.take_draft(draft)
         if self._has_failed:
             self._has_failed = False
             self.reported.emit("", "")
@@ -278,22 +320,10 @@ class ReportStep(Step):
         self.page.report.show_pages([])
         self.reported.emit(tr("The report cannot be shown."), tr("See the log for details."))
 
-    def _on_comment_edited(self, comment: str) -> None:
-        shown, self._shown_comment = self._shown_comment, comment
-        self._visit.record.set_comment(comment, shown)
-        self._draw()
-
-    def _show_comment(self) -> None:
-        self._shown_comment = self.comment
-        self.page.report.show_comment(self.comment)
-
-    def _on_visit_changed(self) -> None:
-        """Show the words of another station, unless somebody types."""
-        frame = self._frame
-        if frame is not None and self.comment != self._shown_comment and not frame.report.is_typing:
-            self._show_comment()
-            if frame.isVisible():
-                self._draw()
+    def _on_comment_changed(self) -> None:
+        if self._frame is not None and self._frame.isVisible():
+            self._draw()
+        self.changed.emit()
 
     def _on_options_changed(self) -> None:
         chosen = self.page.report.chosen_visit
@@ -352,63 +382,25 @@ class ReportStep(Step):
         self.changed.emit()
 
     def save_in(self, folder: str) -> None:
-        """Write the report and the results into a new folder; `saved` names it once they are there."""
+        """Write the report and the chosen files into a new folder; `exported` names it once they are there."""
         session, analysis = self._visit.evaluation.session, self._visit.evaluation.analysis
-        stored, request = self._visit.session, self._request()
+        stored = self._visit.session
         if session is None or analysis is None or stored is None:
             return
-        out, session_id = Path(folder), stored.id
-        chosen, kept = self.page.report.formats.chosen, self._kept
-        name = f"{session_name(stored.details.patient.code, stored.details.started)}.pdf"
+        page = self.page.report
+        chosen, language = tuple(page.formats.chosen), page.language.choice
+        export = Export(session, analysis, self.request(), chosen, self._kept, language)
         self.is_saving = True
-
-        def save(opened: "OpenedLibrary", report: Report) -> tuple[Path, list[str]]:
-            from app.exports.exports import Format, export_from_library
-            from app.exports.result_folder import LOG, check_place, write_results, written_beside
-            from app.reports.patient.document import make_report
-            from app.reports.patient.report_file import write_visits
-
-            typed, lines = [Typed(one) for one in sorted(kept)], list[str]()
-            report(0.0, tr("writing"))
-            try:
-                check_place(out, opened.folder)
-                subject, is_document = about("session", session_id), request is not None
-                exporting = opened.library.audit.exporting(subject, format=REPORT_FORMAT, is_document=is_document)
-                with exporting, written_beside(out) as beside:
-                    if "csv" in chosen or "rrd" in chosen:
-                        write_results(session, analysis, beside)
-                    if "rrd" in chosen:
-                        from app.review.rerun_log import write_log  # Rerun takes longer to load than to write
-
-                        write_log(session, analysis, beside / LOG)
-                    if request is not None:
-                        (beside / name).write_bytes(make_report(request))
-                        if "csv" in chosen:
-                            write_visits(request, beside)
-                    formats = [Format(name) for name in OTHERS if name in chosen]
-                    if formats:
-                        lines = export_from_library(
-                            opened,
-                            session_id,
-                            formats,
-                            beside,
-                            DECODERS,
-                            report,
-                            analysed=lambda _session: analysis,
-                            kept=typed,
-                        )
-            except FileRefusedError as refusal:
-                what, remedy = (filled(stated, refusal.values) for stated in (refusal.what, refusal.remedy))
-                raise LibraryError(capitalised(what), remedy) from refusal
-            except OSError as problem:
-                what = tr("{folder} is not writable").format(folder=out.name)
-                raise LibraryError(what, tr("Choose another folder; the recordings are unchanged")) from problem
-            return out, lines
-
-        self._controller.run_long(save, self._on_saved, self._on_refused, None, self)
+        work = exporting(export, stored, Path(folder))
+        self._controller.run_long(work, self._on_exported, self._on_refused, None, self)
 
     def _on_saved(self, found: tuple[Path, list[str]]) -> None:
-        self.is_saving, (self.saved, lines) = False, found
+        self.is_saving, (self.saved, _) = False, found
+        self.reported.emit("", "")
+        self.changed.emit()
+
+    def _on_exported(self, found: tuple[Path, list[str]]) -> None:
+        self.is_saving, (self.exported, lines) = False, found
         self.reported.emit(tr("Not every file was written.") if lines else "", "\n".join(lines[:MOST_LINES]))
         self.changed.emit()
 
@@ -417,37 +409,6 @@ class ReportStep(Step):
         self.reported.emit(what, remedy)
 
 
-def _previews(opened: "OpenedLibrary", session_id: UUID) -> "dict[frozenset[str], Rows]":
-    """For each choice of what was typed freely all that then leaves without the name, beside the figures."""
-    from app.exports.exports import preview_from_library
-
-    choices = [chosen for count in range(len(Typed) + 1) for chosen in combinations(Typed, count)]
-    return {
-        frozenset(map(str, chosen)): [
-            (name, str(value)) for name, value in preview_from_library(opened, session_id, chosen)
-        ]
-        for chosen in choices
-    }
-
-
 def _words_of(line: "SessionSummary") -> str:
     """A visit in a list: its day, and under which conditions the patient walked."""
-    return ", ".join([day(line.started), *filter(None, dict.fromkeys(line.conditions))])
-
-
-class _ReportFrame(QStackedWidget):
-    """The report, or what is in its place."""
-
-    def __init__(self, look: ThemeNotifier) -> None:
-        super().__init__()
-        self.sentence = SentencePage(look)
-        self.report = ReportPage(look)
-        for page in (self.sentence, self.report):
-            self.addWidget(page)
-
-    def set_room(self, width: float, height: float) -> None:
-        self.report.set_room(width, height)
-
-    def focus(self) -> None:
-        if self.currentWidget() is self.report:
-            self.report.focus()
+    return ", ".join([day(line.started), *filter(None, dict.fromkeys(map(name_in_words, line.conditions)))])

@@ -115,7 +115,7 @@ class ResultsStep(Step):
     def bar(self) -> BarState:
         if self._shown is None or not self._kept_walks:
             return BarState()
-        go_on = BarAction(tr("Go to the report"), self.done.emit, tr("Enter"), Icon.CHEVRON)
+        go_on = BarAction(tr("Write report"), self.done.emit, tr("Enter"), Icon.CHEVRON)
         if self._part is not Shown.RESULTS:
             return BarState(primary=go_on, has_back=self._part is not Shown.BEHIND)
         correct = BarAction(tr("Correct"), self._correct, icon=Icon.REPEAT)

@@ -8,6 +8,7 @@ from PySide6.QtCore import QObject
 from app.theme.icons import Icon
 from app.theme.notifier import ThemeNotifier
 from app.widgets.action_bar import BarAction, BarState
+from app.widgets.battery import LOW
 from app.widgets.rail_row import StepState
 from app.widgets.sensor_tile import SILENT_FROM_S
 from app.wizard.keys import Intent, KeyAction
@@ -32,6 +33,7 @@ if TYPE_CHECKING:
     from app.wizard.visit import Visit
 
 REPLAY = "replay"
+REMEMBERED_LOOKS = 4  # a second: time to see who wears what
 TRACE_TICKS, ROW_TICKS = 3, 8  # of 30 a second: traces ten times a second, rows and sources four times
 
 
@@ -50,6 +52,8 @@ class SensorsStep(Step):
         self._without_light: set[str] = set()
         self._traces = TraceValues()
         self._silent_site: Site | None = None
+        self._is_source_awaited = self._has_gone_on = False
+        self._remembered_looks = 0  # in a row at which all sensors of the last visit were received
         self._reported_of = ""  # the choice of which it was stated whom it asks on the network
         self.telling = ColumnsTelling(self)
         self.telling.changed.connect(self.changed)
@@ -133,6 +137,8 @@ class SensorsStep(Step):
         self._is_in_sight = True
         self._visit.record.begin()
         self._begin_estimator()
+        self._is_source_awaited = bool(self._visit.placement_before) and self._visit.sensors.acquisition is None
+        self._remembered_looks = 0
         self._show()
         self.page.focus()
 
@@ -174,6 +180,7 @@ class SensorsStep(Step):
         if self._ticks % ROW_TICKS == 0:
             self._show_sources()  # a search beside the screen may have found some
             self.telling.tick()
+            self._open_last_source()
         if self._visit.sensors.acquisition is None or self._is_asking:
             return
         if self._estimator is not None:
@@ -187,6 +194,37 @@ class SensorsStep(Step):
             self._show_traces()
         if self._ticks % ROW_TICKS == 0:
             self._show_rows()
+            self._go_on_with_remembered()
+
+    def _open_last_source(self) -> None:
+        """Open the source of the last visit where its set-up is used again, as soon as it is found."""
+        key, sensors = self._visit.source_before, self._visit.sensors
+        is_free = not (self._is_asking or sensors.is_searching) and sensors.acquisition is None
+        if self._is_source_awaited and is_free and key in {one.key for one in self._visit.choices}:
+            self._on_source_chosen(key)
+
+    def _go_on_with_remembered(self) -> None:
+        """Leave the page by itself once all sensors of the last visit have been received at their places for a while.
+
+        Whoever comes back to it stays.
+        """
+        self._remembered_looks = self._remembered_looks + 1 if self._are_all_remembered else 0
+        if self._remembered_looks >= REMEMBERED_LOOKS and not self._has_gone_on:
+            self._has_gone_on = True
+            self.done.emit()
+
+    @property
+    def _are_all_remembered(self) -> bool:
+        sensors, before = self._visit.sensors, self._visit.placement_before
+        if not before or sensors.site_of != before or sensors.are_loose or sensors.detected:
+            return False
+        received = sensors.status
+        if not before.keys() <= received.keys():
+            return False
+        bar, status = self._of_open(), [received[name] for name in before]
+        is_whole = bar.primary is not None and bar.primary.is_enabled and bar.primary.is_requested and not bar.note
+        is_charged = all(one.details.battery is None or one.details.battery >= LOW for one in status)
+        return is_whole and is_charged and all(one.silent_s < SILENT_FROM_S and one.received_hz > 0 for one in status)
 
     def bar(self) -> BarState:
         if self.telling.is_on:
@@ -391,6 +429,7 @@ class SensorsStep(Step):
             self.reported.emit(self.memories.cannot_leave, "")
             self._show_sources()
             return
+        self._is_source_awaited = False
         sensors = self._visit.sensors
         known = (*self._visit.choices, *([sensors.choice] if sensors.choice is not None else []))
         choice = next((one for one in known if one.key == key), None)

@@ -14,6 +14,7 @@ from app.widgets.folder_dialog import ask_for_folder
 from app.widgets.line_list import PatientLine
 from app.wizard.sensors.replays import Replays
 from app.wording.patients import when
+from app.wording.recordings import name_in_words
 from app.wording.translation import tr, tr_n
 
 if TYPE_CHECKING:
@@ -137,5 +138,5 @@ class StoredReplay(QObject):
 
 def _stored_line(line: "SessionSummary", now: datetime.datetime) -> PatientLine:
     amount = tr_n("{count} recording", "{count} recordings", line.recordings).format(count=line.recordings)
-    conditions = ", ".join(line.conditions)
+    conditions = ", ".join(map(name_in_words, line.conditions))
     return PatientLine(line.id, line.patient_code, conditions, when(line.started, now), amount, searched="")

@@ -8,6 +8,7 @@ from PySide6.QtCore import QObject, QTimer
 
 from app.editing.session_recording import SessionRecording
 from app.system import sounds
+from app.system.prompts import prompter
 from app.system.sounds import Sound
 from app.theme.icons import Icon
 from app.theme.notifier import ThemeNotifier
@@ -28,6 +29,7 @@ if TYPE_CHECKING:
 SHOWN_MS = 600  # the check mark, before the next step comes by itself
 TICKS = 3  # of 30 Hz: ten looks a second
 SLACK_S = 0.1
+STILL_BEFORE_S = 2.0  # before a count that begins by itself: who stops in passing does not begin it
 
 
 class StandStillStep(Step):
@@ -96,6 +98,8 @@ class StandStillStep(Step):
     def enter(self) -> None:
         self._is_entered = True
         self._phase = self._settled_phase()
+        if self._phase is StandPhase.READY:
+            prompter.speak("stand-still")
         self._watch()
         self._show_zero()
         self._show()
@@ -107,6 +111,7 @@ class StandStillStep(Step):
 
     def leave(self) -> None:
         self._is_entered = False
+        prompter.end()
         self._shown.stop()
         if self._is_recording:  # not to its end
             self._visit.recordings.stop(is_kept=False)
@@ -121,6 +126,8 @@ class StandStillStep(Step):
             self._moved = standing.moved or self._moved
             self._sound(standing.required_s - standing.still_s)
             is_counting = self._phase is StandPhase.COUNTING
+            if self.begins_by_itself and standing.still_s >= STILL_BEFORE_S:
+                self._start()
             if is_counting and standing.is_done and self._is_recording and self._visit.recordings.has_begun:
                 self._finish()
             self._show()
@@ -135,7 +142,8 @@ class StandStillStep(Step):
             return BarState(primary=go_on, others=(again,))
         if self._phase is StandPhase.SKIPPED:
             return BarState(primary=go_on)
-        return BarState(primary=BarAction(tr("Start countdown"), self._start, space, Icon.PLAY))
+        note = tr("Starts by itself when the patient stands still.") if self.begins_by_itself else ""
+        return BarState(primary=BarAction(tr("Start countdown"), self._start, space, Icon.PLAY), note=note)
 
     def on_intent(self, intent: Intent) -> bool:
         if intent.action is not KeyAction.RUN or self._phase is StandPhase.SKIPPED:
@@ -144,6 +152,12 @@ class StandStillStep(Step):
         return True
 
     # what happens
+
+    @property
+    def begins_by_itself(self) -> bool:
+        """Whether stillness begins the count: as at the last visit, and none has been begun in this one."""
+        is_ready = self._phase is StandPhase.READY and not self._visit.recordings.is_recording
+        return is_ready and bool(self._visit.placement_before) and not self._visit.recordings.every
 
     @property
     def _is_recording(self) -> bool:

@@ -16,6 +16,7 @@ from app.wizard.walking.bench_view import BenchState
 from app.wizard.walking.bench_words import SPEED, bench_answer
 from app.wizard.walking.walk_labels import is_alignment, new_alignment
 from app.wording.alignment import change_lines, to_do_in_words
+from app.wording.recordings import name_in_words
 from app.wording.translation import tr
 from core.alignment import AlignmentChange
 from core.body import Side
@@ -226,12 +227,12 @@ class Bench(QObject):
             if part.is_again(base):
                 since = tr("Repeat {letter}").format(letter=base.letter)
             elif part.alignment is not None:
-                of_since = base.letter if base.name == part.alignment.since else part.alignment.since
+                of_since = base.letter if base.name == part.alignment.since else name_in_words(part.alignment.since)
                 since = tr("{base}, changed").format(base=of_since)
             speed = part.of_both(SPEED)
             strides = part.strides(side) if side is not None else 0
             note = tr("{strides} strides · {speed} m/s").format(strides=strides, speed=fixed(speed, 2))
             role = RowRole.SHOWN if part is shown else RowRole.BESIDE if part is beside else RowRole.NONE
-            title = since or (tr("Starting point") if part is parts[0] else part.name)
+            title = since or (tr("Starting point") if part is parts[0] else name_in_words(part.name))
             rows.append(AlignmentRow(part.letter, title, note, tuple(change_lines(part.alignment)), role))
         return rows

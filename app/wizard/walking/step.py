@@ -21,11 +21,12 @@ from app.wizard.walking.live_preview import LivePreview
 from app.wizard.walking.memory_control import MemoryControl
 from app.wizard.walking.patient_feedback import PatientFeedback
 from app.wizard.walking.timed_control import TimedControl
-from app.wizard.walking.walk_labels import label_after, labels_for
+from app.wizard.walking.walk_labels import label_after, labels_for, stored_label
 from app.wizard.walking.walk_notice import WalkNotice, asked_walk
 from app.wizard.walking.walk_rows import facts_of, ongoing_walk, rows_of
 from app.wizard.walking.walk_start import WalkStart
 from app.wizard.walking.walking_bar import WalkingBar
+from app.wording.recordings import name_in_words
 from app.wording.translation import tr
 from core.session import RecordingKind
 from core.targets import TargetTally, with_tallies
@@ -192,7 +193,7 @@ class WalkingStep(Step):
 
     def bar(self) -> BarState:
         bar = WalkingBar(self, self._visit, self._next, self.bench, self._timed, self.memory)
-        return bar.state(self._label)
+        return bar.state(name_in_words(self._label))
 
     # what its bar does
 
@@ -390,7 +391,7 @@ class WalkingStep(Step):
         facts = facts_of(self._visit, asked, cadence) if asked is not None else ""
         self._page.show_walks(rows_of(self._visit), facts)
         self._page.show_bench(self.bench.state() if self.bench.is_shown and ongoing is None else None)
-        self._page.show_labels(labels_for(self._visit.patient.details, conditions), self._label)
+        self._page.show_labels(labels_for(self._visit.patient.details, conditions), name_in_words(self._label))
         self._page.show_tests(self._timed.protocol, self._timed.result(), self._timed.before(self._label))
         self._page.show_memory(self.memory.shown)
         self.changed.emit()
@@ -428,7 +429,7 @@ class WalkingStep(Step):
 
     @Slot(str)
     def _on_label_chosen(self, label: str) -> None:
-        self._label = label
+        label = self._label = stored_label(label, self._used)
         self.page.next.test.show_before(self._timed.before(label))
         self.changed.emit()
 

@@ -16,6 +16,7 @@ from app.wizard.walking.timed_result import TimedAttempt, TimedResult
 from app.wizard.walking.timed_view import TimedViewState
 from app.wording.dates import short_date
 from app.wording.measures import decimals, short_unit
+from app.wording.recordings import name_in_words
 from app.wording.timed_tests import name_of_test
 from app.wording.translation import tr
 from core.body import Segment
@@ -165,7 +166,7 @@ class TimedControl(QObject):
             return None
         earlier = sum(one.protocol is self._live.planned.protocol and one.is_kept for one in self.attempts())
         attempt = tr("attempt {number}").format(number=earlier + 1)
-        note = ", ".join(filter(None, [ongoing.details.condition, attempt]))
+        note = ", ".join(filter(None, [name_in_words(ongoing.details.condition), attempt]))
         return TimedViewState(self._live.state, note, self.now_s, self.end_s)
 
     def result(self) -> TimedResult | None:

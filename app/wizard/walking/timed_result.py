@@ -112,7 +112,7 @@ class TimedResultView(Themed):
         self.attempts.show_rows(*_attempts(state))
         self.course.setVisible(state.lane is not None)
         if state.lane is not None:
-            self.course.show_course(state.visits, [state.lane], [line.condition for line in state.lane.lines])
+            self.course.show_course(state.visits, [state.lane])
         parts = _parts(found) if found is not None else []
         self._parts_card.setVisible(bool(parts))
         if parts:

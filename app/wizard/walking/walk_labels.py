@@ -2,7 +2,7 @@
 
 from collections.abc import Sequence
 
-from app.wording.recordings import LETTERS
+from app.wording.recordings import ALIGNMENT, LETTERS, name_in_words
 from app.wording.translation import tr
 from core.session import Patient
 
@@ -11,13 +11,14 @@ ALIGNMENTS = 3
 
 
 def labels_for(patient: Patient, used: Sequence[str]) -> tuple[str, ...]:
-    """Give the labels to choose from: the usual ones first, then those of this session's walks that are others.
+    """Give the labels to choose from, as they are read: the usual ones first, then those of this session's walks.
 
     Parameters
     ----------
     used
         The labels of the walks so far, in order.
     """
+    used = [name_in_words(label) for label in used]
     count = max(ALIGNMENTS, sum(label in _alignments(len(LETTERS)) for label in set(used)) + 1)
     usual = [tr("Barefoot"), tr("Shoes"), tr("AFO")]
     if patient.prosthetic_side in ("left", "right", "both"):
@@ -31,25 +32,32 @@ def labels_for(patient: Patient, used: Sequence[str]) -> tuple[str, ...]:
 
 def label_after(patient: Patient, used: Sequence[str]) -> str:
     """Give what the next walk is most likely called: the first alignment not walked with, or the label as before."""
-    alignments = _alignments(len(LETTERS))
+    alignments, stored = _alignments(len(LETTERS)), used
+    used = [name_in_words(label) for label in used]
     if used and used[-1] not in alignments:
-        return used[-1]
+        return stored[-1]
     if used or patient.prosthetic_side in ("left", "right", "both"):
         return next((label for label in alignments if label not in used), alignments[-1])
     return tr("Barefoot") if "barefoot" in patient.aids else tr("Shoes")
 
 
+def stored_label(label: str, used: Sequence[str]) -> str:
+    """Give a label as it is stored with this session's walks, which may have been begun in another language."""
+    return next((one for one in used if name_in_words(one) == label), label)
+
+
 def is_alignment(label: str) -> bool:
     """Whether a label is one of ours for an alignment."""
-    return label in _alignments(len(LETTERS))
+    return name_in_words(label) in _alignments(len(LETTERS))
 
 
 def new_alignment(letter: str, used: Sequence[str]) -> str:
     """Give what an alignment is called that was not walked with before: by its letter, or the first label not used."""
-    required = tr("Alignment {letter}").format(letter=letter)
+    used = [name_in_words(label) for label in used]
+    required = tr(ALIGNMENT).format(letter=letter)
     free = [label for label in _alignments(len(LETTERS)) if label not in used]
     return required if required in free else next(iter(free), required)
 
 
 def _alignments(count: int) -> list[str]:
-    return [tr("Alignment {letter}").format(letter=letter) for letter in LETTERS[:count]]
+    return [tr(ALIGNMENT).format(letter=letter) for letter in LETTERS[:count]]

@@ -23,7 +23,7 @@ from app.storage.stored import Action, StoredPatient
 from app.summary.course_lanes import SPEED_LANE
 from app.system.settings import Settings
 from app.theme.notifier import ThemeNotifier, load_fonts
-from app.widgets.line_list import SessionLine
+from app.widgets.line_list import PatientLine, SessionLine
 from app.workers.library_controller import LibraryController
 from core.body import Site
 from core.goals import GOAL_COLUMNS, Goal, GoalOf
@@ -70,17 +70,18 @@ def silent(_share: float, _what: str) -> None:
 def test_the_course_of_the_patient_who_is_chosen_is_beside_the_list(qtbot: QtBot, home: Home) -> None:
     card = home.page.panel.course
     assert [visit.course is not None for visit in card.visits] == [True, False, True, True, True]
-    assert "Walking speed, Shoes: 0.71 metres per second on 20 Jun" in card.accessibleDescription()
+    assert "Walking speed: 0.71 metres per second on 20 Jun" in card.accessibleDescription()
     assert "1 visit is not calculated yet." in card.note.text()
     lines = [line for line in home.page.sessions.lines if isinstance(line, SessionLine)]
-    assert [(line.amount, line.state) for line in lines] == [
-        ("24 strides", "report not saved"),
-        ("24 strides", "report saved"),
-        ("48 strides", "report saved"),
-        ("2 recordings", "report saved"),
-        ("48 strides", "report saved"),
+    assert [(line.speed, line.knee, line.state) for line in lines] == [
+        ("1.12\N{NO-BREAK SPACE}m/s", "49°", "Report pending"),
+        ("1.06\N{NO-BREAK SPACE}m/s", "47°", "Report written"),
+        ("0.97\N{NO-BREAK SPACE}m/s", "44°", "Report written"),
+        ("", "", "Report written"),
+        ("0.71\N{NO-BREAK SPACE}m/s", "38°", "Report written"),
     ]
-    assert home.page.panel.next.text() == "Next: write the report for 14 Nov."
+    assert home.page.panel.sentence.text() == "Since 20 June: knee +11°, speed +0.41\N{NO-BREAK SPACE}m/s."
+    assert home.page.panel.go.text() == "Write report of 14 Nov"
     other = next(line.id for line in home.page.patients.lines if line.id != home.page.patient_id)
     home.page.patients.choose_line(other)
     assert not card.isVisible()  # at once: nobody else's course is under this code
@@ -88,11 +89,39 @@ def test_the_course_of_the_patient_who_is_chosen_is_beside_the_list(qtbot: QtBot
     assert not card.isVisible()
 
 
+def test_w_opens_the_report_step_of_the_visit_but_in_the_search_it_is_typed(qtbot: QtBot, home: Home) -> None:
+    home.activateWindow()
+    qtbot.waitUntil(home.isActiveWindow)
+    home.page.search.setFocus()
+    latest = home.page.sessions.lines[0].id
+    with qtbot.assertNotEmitted(home.report_requested):
+        QTest.keyClick(home.page.search, Qt.Key.Key_W)
+    assert home.page.search.text() == "w"
+    home.page.search.clear()
+    qtbot.waitUntil(home.page.panel.go.isVisible, timeout=WAIT_MS)
+    with qtbot.waitSignal(home.report_requested) as reported:
+        QTest.keyClick(home.page.search, Qt.Key.Key_W, Qt.KeyboardModifier.AltModifier)
+    assert reported.args == [latest]
+    home.page.patients.setFocus()
+    with qtbot.waitSignal(home.report_requested) as reported:
+        QTest.keyClick(home.page.patients, Qt.Key.Key_W)
+    assert reported.args == [latest]
+
+
+def test_the_list_has_the_last_change_of_patients_in_sight(qtbot: QtBot, home: Home) -> None:
+    def stated() -> list[str]:
+        return [line.last for line in home.page.patients.lines if isinstance(line, PatientLine)]
+
+    qtbot.waitUntil(lambda: stated()[0] == "knee +11° since 20 Jun", timeout=WAIT_MS)
+    assert stated()[1:] == ["0 sessions"] * 3
+
+
 def test_nothing_of_a_course_is_left_for_whoever_comes_next(home: Home) -> None:
     home.clear()
     assert home.page.panel.course.visits == ()
     assert not home.page.panel.course.isVisible()
-    assert not home.page.panel.next.isVisible()
+    assert not home.page.panel.go.isVisible()
+    assert not home.page.panel.sentence.isVisible()
 
 
 def test_visits_that_cannot_be_computed_are_stated_and_the_others_stay(qtbot: QtBot, home: Home) -> None:
@@ -152,17 +181,17 @@ def test_what_is_next_of_a_patient(tmp_path: Path) -> None:
 
         def stated() -> str:
             step = read_patient(opened, patient.id).next_step(now)
-            return step.sentence if step is not None else ""
+            return f"{step.verb}: {step.reason}" if step is not None else ""
 
         assert stated() == ""
         first = add_visit(library, patient.id, 0, course_of_visit(0, is_knee_not_reported=True))
-        assert stated() == "check left knee: no values were reported on 20 Jun."
+        assert stated() == "Review visit of 20 Jun: Left knee: not reported. Repeat at the next walk."
         second = add_visit(library, patient.id, 1, course_of_visit(1))
-        assert stated() == "write the report for 11 Jul."
+        assert stated() == "Write report of 11 Jul: Not written yet. Measured yesterday."
         library.audit.note(Action.EXPORT, about("session", second), format=REPORT_FORMAT, is_document=True)
         assert stated() == ""
         now = day_and_time("2026-09-12T09:00:00")
-        assert stated() == "the last visit was 9 weeks ago."
+        assert stated() == "Begin next visit: Last visit 9 weeks ago."
         assert first != second
 
 
@@ -265,8 +294,8 @@ def test_a_reached_goal_is_next_and_leads_to_the_goals(tmp_path: Path) -> None:
             held = library.patients.get(patient.id)
             library.patients.change(held, replace(held.details, goals=(goal,)))
             step = read_patient(opened, patient.id).next_step(now)
-            return step.sentence if step is not None else ""
+            return f"{step.verb}: {step.reason}" if step is not None else ""
 
-        assert stated("2026-07-10", 0.80).startswith("goal reached on 11 Jul: Walking speed: at least 0.80")
+        assert stated("2026-07-10", 0.80).startswith("Agree next goal: Goal reached: Walking speed: at least 0.80")
         assert stated("2026-07-11", 0.80) == ""
         assert stated("2026-07-10", 0.90) == ""

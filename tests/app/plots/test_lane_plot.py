@@ -1,6 +1,7 @@
 """Lanes of a course: where visits and values lie, which dates find room, no word cut."""
 
 import datetime
+from collections.abc import Sequence
 from dataclasses import replace
 from itertools import pairwise
 from uuid import UUID
@@ -14,10 +15,12 @@ from app.summary.course import Course
 from app.summary.course_lanes import KNEE_LANE, CourseVisit, lanes
 from app.summary.course_words import day_of
 from app.theme.notifier import ThemeNotifier
+from app.wording.measures import least_span
 from core.body import Joint
+from core.goals import Goal, GoalOf
 from tests.app.course_material import course, unsure, walked
 
-SHOES, STICK = "shoes", "stick"
+SHOES = "shoes"
 
 
 def visit(day: int, found: Course | None) -> CourseVisit:
@@ -28,12 +31,14 @@ def shoes(knee_deg: float) -> Course:
     return course((walked(knee_deg=knee_deg), SHOES))
 
 
-def knee_plot(qtbot: QtBot, look: ThemeNotifier, *visits: CourseVisit, height: int = 120) -> LanePlot:
+def knee_plot(
+    qtbot: QtBot, look: ThemeNotifier, *visits: CourseVisit, goals: Sequence[Goal] = (), height: int = 121
+) -> LanePlot:
     plot = LanePlot(look)
     qtbot.addWidget(plot)
     plot.resize(400, height)
-    found = next(one for one in lanes(visits) if one.kind is KNEE_LANE)
-    plot.show_lane(found, visits, list(dict.fromkeys(line.condition for line in found.lines)))
+    found = next(one for one in lanes(visits, goals=goals) if one.kind is KNEE_LANE)
+    plot.show_lane(found, visits)
     return plot
 
 
@@ -59,13 +64,6 @@ def test_adjacent_are_joined_and_what_lies_beyond_a_gap_is_not(qtbot: QtBot, loo
     assert is_left(colour_at(apart, apart.x_of(2), apart.y_of(50.0)), look)
 
 
-def test_conditions_are_never_joined(qtbot: QtBot, look: ThemeNotifier) -> None:
-    other = course((walked(knee_deg=50.0), STICK))
-    plot = knee_plot(qtbot, look, visit(0, shoes(50.0)), visit(100, other))
-    at = plot.x_of(0) + 0.25 * (plot.x_of(1) - plot.x_of(0))
-    assert not is_left(colour_at(plot, at, plot.y_of(50.0)), look)
-
-
 def test_visits_lie_as_far_apart_as_their_days(qtbot: QtBot, look: ThemeNotifier) -> None:
     plot = knee_plot(qtbot, look, *(visit(day, shoes(50.0)) for day in (0, 10, 100)))
     first, second, last = (plot.x_of(number) for number in range(3))
@@ -75,27 +73,44 @@ def test_visits_lie_as_far_apart_as_their_days(qtbot: QtBot, look: ThemeNotifier
 
 
 @pytest.mark.parametrize("values", [(50.0, 50.1), (20.0, 75.0), (38.4, 49.3), (4.0, 4.0)])
-def test_all_that_is_drawn_lies_between_round_values(values: tuple[float, ...]) -> None:
+def test_all_that_is_drawn_lies_in_the_plot(values: tuple[float, ...]) -> None:
     visits = [visit(30 * k, shoes(value)) for k, value in enumerate(values)]
     for lane in lanes(visits):
         scale = LaneScale.of(lane)
         assert scale.low <= min(lane.values, default=0.0) + 1e-6
         assert scale.high >= max(lane.values, default=0.0) - 1e-6
-        assert 3 <= len(scale.ticks) <= 5
-        assert all(round(tick, scale.decimals) == pytest.approx(tick) for tick in scale.ticks)
+        assert scale.high - scale.low >= least_span(lane.kind.column)
+
+
+def test_a_visit_that_is_not_reported_has_a_tick_and_no_dot(qtbot: QtBot, look: ThemeNotifier) -> None:
+    reported = unsure(Joint.LEFT_KNEE)
+    gap = course((walked(reported=reported), SHOES), reported=reported)
+    plot = knee_plot(qtbot, look, visit(0, shoes(50.0)), visit(50, gap), visit(100, shoes(50.0)))
+    ground = colour_at(plot, plot.x_of(1) + 30, plot.height() - 4)
+    assert colour_at(plot, plot.x_of(1), plot.height() - 4) != ground
+    assert colour_at(plot, plot.x_of(0), plot.height() - 4) == ground
+
+
+def test_the_last_value_is_filled_and_those_before_are_open(qtbot: QtBot, look: ThemeNotifier) -> None:
+    plot = knee_plot(qtbot, look, visit(0, shoes(40.0)), visit(100, shoes(50.0)))
+    assert is_left(colour_at(plot, plot.x_of(1), plot.y_of(50.0)), look)
+    assert not is_left(colour_at(plot, plot.x_of(0), plot.y_of(40.0)), look)
 
 
 @pytest.mark.parametrize("scale", [0.8, 1.0, 2.0])
-def test_figures_at_the_lines_have_room_and_do_not_touch(qtbot: QtBot, look: ThemeNotifier, scale: float) -> None:
+@pytest.mark.parametrize("value_deg", [30.0, 55.0, 70.0])
+def test_a_goal_is_named_in_the_plot_at_the_end_that_is_free(
+    qtbot: QtBot, look: ThemeNotifier, scale: float, value_deg: float
+) -> None:
     look.set_scale(scale)
-    plot = knee_plot(qtbot, look, visit(0, shoes(38.0)), visit(90, shoes(60.0)))
-    plot.resize(plot.minimumSizeHint())
-    boxes = sorted((text.box for text in plot.painted_texts()), key=lambda box: box.top())
-    assert all(above.bottom() <= below.top() + 1 for above, below in pairwise(boxes))
-    for text in plot.painted_texts():
-        assert text.needed.width() <= text.box.width()
-        assert text.box.top() >= -1
-        assert text.box.bottom() <= plot.height() + 1
+    goal = Goal("knee_stance_to_swing_deg", GoalOf.LEFT, value_deg, datetime.date(2026, 1, 1))
+    plot = knee_plot(qtbot, look, visit(0, shoes(38.0)), visit(90, shoes(60.0)), goals=[goal])
+    plot.resize(round(400 * scale), plot.minimumSizeHint().height())
+    (text,) = plot.painted_texts()
+    assert text.text == f"goal L {value_deg:.0f}°"
+    assert text.needed.width() <= text.box.width()
+    assert text.box.top() >= -1
+    assert text.box.bottom() <= plot.height() + 1
     look.set_scale(1.0)
 
 

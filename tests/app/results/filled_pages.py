@@ -22,7 +22,7 @@ from app.home.settings.operators_card import OperatorLine
 from app.home.settings.settings_page import SettingsPage
 from app.importing.import_drafts import drafts_of
 from app.summary.course_lanes import CourseVisit
-from app.summary.course_words import NextStep
+from app.summary.course_words import NextKind, NextStep
 from app.theme.notifier import ThemeNotifier
 from app.widgets.gauge import GaugeFace, GaugeMeasure, GaugeState
 from app.widgets.hint import Hint
@@ -97,7 +97,8 @@ def home(look: ThemeNotifier) -> QWidget:
     ]
     page.show_patients(lines)
     page.show_patient("P-0100", "1968, male · left prosthetic")
-    step = NextStep(tr("write the report for {day}.").format(day="14 Nov"), tr("Open"), UUID(int=4))
+    reason = tr("Not written yet. Measured {when}.").format(when="14 Nov 2026")
+    step = NextStep(NextKind.REPORT, tr("Write report of {day}").format(day="14 Nov"), reason, UUID(int=4))
     missing = CourseVisit(UUID(int=9), datetime.date(2026, 11, 20), None)
     line = SessionLine(UUID(int=99), "today 14:20", "Alignment A, B, C", "3 recordings")
     page.show_sessions([line], [*VISITS, missing], step)

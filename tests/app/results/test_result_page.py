@@ -6,7 +6,6 @@ from functools import cache
 
 import numpy as np
 import pytest
-from app.results.beside_choice import Beside
 from PySide6.QtCore import Qt
 from PySide6.QtGui import QAccessible
 from PySide6.QtTest import QTest
@@ -96,9 +95,9 @@ def row_named(table: CellTable, name: str) -> int:
     return next(k for k, row in enumerate(table.cells.rows) if row.cells[0].words == name)
 
 
-def test_a_walk_opens_with_its_answer_its_mean_cycle_and_what_differs(page: ResultPage) -> None:
+def test_a_walk_opens_with_headline_tiles_mean_cycle_legs_and_what_differs(page: ResultPage) -> None:
     assert page.view.choice == ANSWER
-    for part in (page.answer, page.cycles, page.differs, page.key_figures, page.door):
+    for part in (page.headline, page.tiles, page.cycles, page.legs, page.differs, page.door):
         assert part.isVisible()
     assert page.differs.table.cells.rowCount() > 2
     assert not page.cycles.peaks.isVisible()
@@ -110,7 +109,7 @@ def test_the_whole_walk_has_its_lanes_and_its_methods(page: ResultPage) -> None:
     page.view.choose(WHOLE)
     assert page.whole.charts.phases.isVisible()
     assert page.whole.methods.isVisible()
-    for part in (page.answer, page.cycles, page.differs):
+    for part in (page.headline, page.tiles, page.cycles, page.legs, page.differs):
         assert not part.isVisible()
 
 
@@ -132,16 +131,34 @@ def test_a_walk_without_strides_states_so_and_shows_the_whole(page: ResultPage, 
     assert page.view.choice == ANSWER
 
 
-def test_where_room_is_short_the_key_figures_join_the_sentence(page: ResultPage) -> None:
+def test_where_room_is_short_curves_and_table_are_shown_one_at_a_time_and_nothing_else_goes(page: ResultPage) -> None:
     page.set_room(*COMPACT)
-    assert not page.key_figures.isVisible()
+    for part in (page.headline, page.tiles, page.part, page.cycles, page.door):
+        assert part.isVisible()
     assert not page.differs.isVisible()
-    assert "Walking speed" in page.headline.text
-    assert page.cycles.isVisible()
-    assert page.door.isVisible()
+    page.part.segments[1].click()
+    assert page.differs.isVisible()
+    assert page.headline.isVisible()
+    assert page.tiles.isVisible()
+    assert not page.cycles.isVisible()
     page.set_room(*WIDE)
-    assert "Walking speed" not in page.headline.text
-    assert page.key_figures.isVisible()
+    assert not page.part.isVisible()
+    assert page.cycles.isVisible()
+    assert page.differs.isVisible()
+
+
+def test_where_room_is_short_the_legs_take_the_ankles_place(page: ResultPage) -> None:
+    page.set_room(*COMPACT)
+    assert not page.legs.isVisible()
+    assert page.cycles.charts.ankle.isVisible()
+    page.focus()
+    QTest.keyClick(page, Qt.Key.Key_G)
+    assert page.legs.isVisible()
+    assert page.cycles.charts.knee.isVisible()
+    assert not page.cycles.charts.ankle.isVisible()
+    page.set_room(*WIDE)
+    assert page.legs.isVisible()  # somebody chose them
+    assert page.cycles.charts.ankle.isVisible()
 
 
 def test_all_figures_take_the_curves_place_and_give_it_back(page: ResultPage) -> None:
@@ -160,7 +177,7 @@ def test_all_figures_take_the_curves_place_and_give_it_back(page: ResultPage) ->
 
 
 def test_the_door_leads_to_what_can_be_read_and_back(page: ResultPage, analysis: Analysis) -> None:
-    assert page.door.words.startswith("Good data quality throughout.")
+    assert page.door.words == "Data quality: good. 11 and 12 strides, sensors synchronised, no strap moved."
     page.focus()
     QTest.keyClick(page, Qt.Key.Key_Q)
     assert page.quality.isVisible()
@@ -170,21 +187,16 @@ def test_the_door_leads_to_what_can_be_read_and_back(page: ResultPage, analysis:
     assert page.cycles.isVisible()
     assert not page.leave_behind()
     show(page, recalibrated(analysis, [Joint.LEFT_ANKLE], axis_sd_rad=np.deg2rad(11.0)))
-    assert (
-        page.door.words
-        == "Left ankle: not reported. Record free motion, or let the patient move longer and in more directions."
-    )
+    assert page.door.words == "Left ankle: not reported. The calibration has an uncertainty of ±11.0° (limit ±9.0°)."
     page.door.click()
     assert page.quality.first.text() == "3 of 4 joints: Good. Not reported: left ankle."
 
 
-def test_beside_leads_to_another_comparison_only_where_there_is_one(page: ResultPage) -> None:
-    offered = [page.beside.itemData(row) for row in range(page.beside.count())]
-    assert offered == [Beside.BAND, Beside.LEGS]  # one walk, and nobody reads earlier visits
-    page.beside.setCurrentIndex(1)
-    assert not page.cycles.charts.knee.chart.has_band
-    page.beside.setCurrentIndex(0)
-    assert page.cycles.charts.knee.chart.has_band
+def test_the_reference_goes_and_comes_back_by_its_key(page: ResultPage) -> None:
+    page.focus()
+    for has_band in (False, True):
+        QTest.keyClick(page, Qt.Key.Key_B)
+        assert [frame.chart.has_band for frame in page.cycles.charts.frames] == [has_band] * 2
 
 
 def test_a_letter_typed_into_a_field_stays_there(qtbot: QtBot, page: ResultPage) -> None:
@@ -318,7 +330,8 @@ def test_a_not_reported_ankle_has_no_number_and_no_curve_and_states_what_to_do(
     not_reported = page.cycles.charts.ankle.not_reported
     assert list(not_reported) == [Side.RIGHT]
     assert not_reported[Side.RIGHT].startswith("Sensor positions could not be confirmed")
-    assert "record free motion" in page.door.words
+    assert "Sensor positions could not be confirmed" in page.door.words
+    assert any("record free motion" in line.to_do for line in page.quality.lines)
     assert "Right ankle: Sensor positions could not be confirmed" in page.cycles.peaks.note.text()
     show(page, analysis)
     assert page.cycles.charts.ankle.not_reported == {}
@@ -334,21 +347,23 @@ def test_one_side_alone_has_its_column_alone(page: ResultPage, analysis: Analysi
     assert page.whole.charts.phases.lanes.lanes.keys() == {Side.RIGHT}
 
 
-def test_the_answer_is_over_the_mean_cycle_and_nothing_scrolls_for_it(page: ResultPage, analysis: Analysis) -> None:
+def test_the_headline_is_over_the_mean_cycle_and_nothing_scrolls_for_it(page: ResultPage, analysis: Analysis) -> None:
     in_wizard = (1064.0, 672.0)  # of a window of 1280 x 800 with its rail
     page.set_room(*in_wizard)
     show(page, analysis)
-    assert page.headline.text.startswith("Left and right are similar: knee flexion, stance to swing ")
+    assert page.headline.text.startswith(
+        "Left and right are similar: knee 59° and 60° from stance to swing. Difference "
+    )
     assert page.headline.text.endswith("° fits.")
-    show(page, with_more(analysis, Side.LEFT, "knee_range_rad", -20.0))
-    assert page.headline.text.startswith("The left knee has 21.3° less range of motion than the right: ")
+    show(page, with_more(analysis, Side.LEFT, "knee_stance_to_swing_rad", -20.0))
+    assert page.headline.text.startswith("Left knee flexes 39° from stance to swing, 21° less than the right.")
     assert page.minimumSizeHint().height() <= in_wizard[1]
     for view in (WHOLE, STRIDES):
         page.view.choose(view)
-        assert not page.answer.isVisible(), view
+        assert not page.headline.isVisible(), view
     show(page, changed(analysis, gait={}))
     page.view.choose(WHOLE)
-    assert page.answer.isVisible()
+    assert page.headline.isVisible()
     assert page.headline.text.startswith("No results for this walk: no foot or shank sensor showed a stride")
 
 
@@ -370,8 +385,9 @@ def test_no_view_scrolls_in_the_windows_of_laptops(
         assert height() <= room[1], view
     page.view.choose(ANSWER)
     page.view.chosen.emit(ANSWER)
-    page.show_legs.click()
     assert page.legs.isVisible()
+    assert height() <= room[1]
+    page.show_legs.click()
     assert height() <= room[1]
 
 
@@ -403,22 +419,32 @@ def test_that_a_living_joint_is_no_hinge_is_no_finding(page: ResultPage, analysi
     assert "more than one axis" not in stated
 
 
-def test_legs_stand_beside_the_curves_in_step_with_their_cursor(page: ResultPage) -> None:
-    page.focus()
-    QTest.keyClick(page, Qt.Key.Key_G)
-    assert page.legs.isVisible()
-    assert not page.differs.isVisible()
+def test_legs_stand_beside_the_curves_each_at_the_cursors_percent_of_its_own_cycle(page: ResultPage) -> None:
     page.legs.show_percent(72.0)
     knee = page.cycles.charts.knee.chart
-    assert knee.readings[Side.LEFT] == pytest.approx(72.0)
-    assert knee.readings[Side.RIGHT] == pytest.approx(22.0, abs=3.0)
+    assert knee.readings == dict.fromkeys(Side, 72.0)
+    QTest.keyClick(page.legs, Qt.Key.Key_Right)
+    assert knee.readings == page.cycles.charts.ankle.chart.readings == dict.fromkeys(Side, 73.0)
     at = knee.at(30.0, 20.0).toPoint()
     QTest.mouseClick(knee, Qt.MouseButton.LeftButton, pos=at)
     assert page.legs.percent == pytest.approx(30.0, abs=1.0)
     page.show_legs.click()
     assert not page.legs.isVisible()
     assert knee.readings == {}
-    assert page.differs.isVisible()
+    page.show_legs.click()
+    assert page.legs.percent == pytest.approx(30.0, abs=1.0)
+    assert set(knee.readings) == set(Side)
+
+
+def test_the_cursor_begins_at_the_headlines_instant_else_where_the_knee_is_bent_most(
+    page: ResultPage, analysis: Analysis
+) -> None:
+    curve_deg = page.cycles.charts.knee.chart.cycles[Side.RIGHT].mean.mean
+    assert page.headline.text.startswith("Left and right are similar")
+    assert page.legs.percent == pytest.approx(np.argmax(curve_deg), abs=1.0)
+    show(page, with_more(analysis, Side.LEFT, "ankle_push_off_rad", -25.0))
+    (marked,) = page.cycles.charts.ankle.chart.deviations
+    assert page.legs.percent == max(marked.points, key=lambda one: one.angle_deg).percent
 
 
 def test_the_views_are_received_before_what_they_show_in_every_room(page: ResultPage) -> None:
@@ -432,6 +458,7 @@ def test_the_views_are_received_before_what_they_show_in_every_room(page: Result
 
 
 def test_a_folded_part_is_reported_as_not_checked_and_is_received_only_unfolded(page: ResultPage) -> None:
+    page.show_legs.click()
     folds = {page.show_legs: page.legs, page.all_figures: page.cycles.peaks.table}
     folds[page.quality.engineering] = page.quality.facts
     for fold, part in folds.items():

@@ -19,11 +19,14 @@ from app.summary.course_lanes import (
     kinds_of_tests,
     lane_kinds,
     lanes,
+    usual_condition,
     without_lane,
 )
 from app.summary.course_words import (
     LatestVisit,
+    NextKind,
     NextStep,
+    change_in_figures,
     changes_since_in_words,
     judged_in_words,
     key_in_words,
@@ -31,7 +34,6 @@ from app.summary.course_words import (
     last_in_words,
     next_step,
     nothing_between,
-    since_last_in_words,
     undecided_step,
     visit_in_words,
 )
@@ -66,18 +68,36 @@ def lane(found: tuple[CourseLane, ...], kind: LaneKind) -> CourseLane:
     return next(one for one in found if one.kind is kind)
 
 
-def test_conditions_are_lines_of_their_own_and_never_joined() -> None:
+def test_a_course_is_of_one_condition_and_by_itself_of_one_that_the_latest_visit_has() -> None:
     both = course((walked(speed_m_s=0.8), SHOES), (walked("walk 2", speed_m_s=0.9), STICK))
     visits = [visit(1, both), visit(2, shoes(speed_m_s=1.0)), visit(3, both)]
     assert conditions_of_visits(visits) == {SHOES: 3, STICK: 2}
     speed = lane(lanes(visits), SPEED_LANE)
-    assert [line.condition for line in speed.lines] == [SHOES, STICK]
-    assert [[point.visit for point in line.points] for line in speed.lines] == [[0, 1, 2], [0, 2]]
-    (change,) = speed.changes  # of the condition that was walked most often
-    assert change.line.condition == SHOES
+    assert [[point.visit for point in line.points] for line in speed.lines] == [[0, 1, 2]]
     only = lane(lanes(visits, STICK), SPEED_LANE)
-    assert [line.condition for line in only.lines] == [STICK]
-    assert only.changes[0].line.condition == STICK
+    assert [[point.visit for point in line.points] for line in only.lines] == [[0, 2]]
+    with_stick = course((walked(), STICK))
+    assert usual_condition(visits) == SHOES
+    assert usual_condition([*visits, visit(4, with_stick), visit(5, None)]) == STICK
+    assert usual_condition([visit(1, None)]) == ""
+
+
+def test_values_are_whole_unless_they_would_not_give_the_change() -> None:
+    even = lane(lanes([visit(1, shoes(40.2)), visit(2, shoes(49.8))]), KNEE_LANE)
+    assert (last_in_words(even, even.changes[0]), change_in_figures(even, even.changes[0])) == ("50°", "+10°")
+    odd = lane(lanes([visit(1, shoes(34.6)), visit(2, shoes(53.4))]), KNEE_LANE)  # 35, 53 and +19
+    assert (last_in_words(odd, odd.changes[0]), change_in_figures(odd, odd.changes[0])) == ("53.4°", "+18.8°")
+    slow, fast = shoes(speed_m_s=0.704), shoes(speed_m_s=1.126)
+    speed = lane(lanes([visit(1, slow), visit(2, fast)]), SPEED_LANE)
+    assert (last_in_words(speed, speed.changes[0]), change_in_figures(speed, speed.changes[0])) == ("1.13", "+0.43")
+
+
+def test_what_healthy_legs_differ_by_is_known_of_stance_between_the_legs_only() -> None:
+    found = lanes([visit(1, shoes())])
+    low, high = lane(found, STANCE_LANE).healthy or (math.nan, math.nan)
+    assert low == -high
+    assert high == pytest.approx(4.0, abs=0.3)
+    assert lane(found, KNEE_LANE).healthy is None
 
 
 def test_the_knee_is_the_affected_sides_else_each_sides() -> None:
@@ -86,7 +106,6 @@ def test_the_knee_is_the_affected_sides_else_each_sides() -> None:
     nobody = course((walked(), SHOES), affected=None)
     each = lane(lanes([visit(1, nobody), visit(2, nobody)]), KNEE_LANE)
     assert [line.side for line in each.lines] == [Side.LEFT, Side.RIGHT]
-    assert each.band is None  # of which leg would it be?
 
 
 def test_a_visit_that_cannot_be_read_is_a_gap_and_the_change_counts_from_the_first_that_can() -> None:
@@ -99,11 +118,9 @@ def test_a_visit_that_cannot_be_read_is_a_gap_and_the_change_counts_from_the_fir
     assert (change.first, change.since_last) == (1, None)
     assert change.since_first is not None
     assert change.since_first.difference == pytest.approx(20.0)
-    low, high = knee.band or (math.nan, math.nan)
-    assert (low + high) / 2 == pytest.approx(40.0)
     assert lane_in_words(knee, visits).startswith(
         "Knee flexion, stance to swing, left: not reported on 20 Feb, 40 degrees on 20 Mar, not reported on 20 Apr, "
-        "60 degrees on 20 May. +20 since 20 Mar, beyond error (7.0)."
+        "60 degrees on 20 May. +20° since 20 Mar, beyond error (7."
     )
 
 
@@ -112,7 +129,7 @@ def test_a_last_visit_that_cannot_be_read_has_no_difference() -> None:
     knee = lane(lanes(visits), KNEE_LANE)
     (change,) = knee.changes
     assert change.since_first is None
-    assert last_in_words(change, KNEE_LANE) == "not reported"
+    assert last_in_words(knee, change) == "not reported"
     assert "since" not in lane_in_words(knee, visits)
 
 
@@ -153,13 +170,7 @@ def test_a_lane_states_every_value_with_its_day_and_unit() -> None:
     )
 
 
-def test_with_two_conditions_each_value_has_its_own() -> None:
-    visits = [visit(1, course((walked(), SHOES), (walked("walk 2"), "")))]
-    stated = lane_in_words(lane(lanes(visits), SPEED_LANE), visits)
-    assert stated == (
-        "Walking speed, shoes: 1.00 metres per second on 20 Feb. Walking speed, no "
-        "condition recorded: 1.00 metres per second on 20 Feb."
-    )
+def test_a_lane_without_a_value_says_so() -> None:
     nothing = lane_in_words(lane(lanes([visit(1, None)]), SPEED_LANE), [visit(1, None)])
     assert nothing == "Walking speed: no value."
 
@@ -190,35 +201,42 @@ def difference(
 )
 def test_each_judgement_has_its_words(found: Difference, stated: str) -> None:
     assert judged_in_words(found, KNEE_LANE) == stated
-    assert since_last_in_words(found, KNEE_LANE) == f"since last visit +3°, {stated.split(' (', maxsplit=1)[0]}"
 
 
 def test_what_is_drawn_is_explained_and_nothing_else() -> None:
     two = lanes([visit(1, shoes(40.0)), visit(2, shoes(60.0))])
-    stated = key_in_words(two)
-    assert stated.startswith("Whisker: half the measurement error of a change. Grey: first visit ± measurement error.")
-    assert key_in_words(lanes([visit(1, shoes())])) == "Whisker: half the measurement error of a change."
-    assert key_in_words(lanes([visit(1, shoes(strides=5))])) == ""  # under ten strides nothing is judged
+    assert key_in_words(two) == (
+        "Means of the strides used at each visit. Filled arrow: beyond measurement error. Outlined: within. Grey: 95 "
+        "of 100 healthy people."
+    )
+    assert "arrow" not in key_in_words(lanes([visit(1, shoes())]))
+    assert "Dotted: goal." in key_in_words(lanes([visit(1, shoes())], goals=[goal(SPEED_LANE.column, GoalOf.WALK, 1.0)]))
 
 
 def latest(days_ago: int = 1, *not_reported: Joint, has_walk: bool = True, has_report: bool = True) -> LatestVisit:
-    return LatestVisit(UUID(int=1), TODAY - datetime.timedelta(days=days_ago), not_reported, has_walk, has_report)
+    day = TODAY - datetime.timedelta(days=days_ago)
+    return LatestVisit(UUID(int=1), day, "yesterday", not_reported, has_walk, has_report)
 
 
 def test_what_is_next_is_the_first_that_holds() -> None:
     recovered = undecided_step(UUID(int=7), datetime.date(2026, 11, 2))
     gated_and_unwritten = latest(90, Joint.LEFT_KNEE, has_report=False)
     assert next_step(recovered, gated_and_unwritten, TODAY) == NextStep(
-        "include or exclude the walk of 2 Nov.", "Review", UUID(int=7)
+        NextKind.REVIEW, "Review walk of 2 Nov", "Recovered. Include or exclude it.", UUID(int=7)
     )
-    assert undecided_step(UUID(int=7), None).sentence == "include or exclude the last walk."
+    assert undecided_step(UUID(int=7), None).verb == "Review last walk"
     assert next_step(None, latest(1, Joint.LEFT_KNEE, Joint.LEFT_ANKLE, has_report=False), TODAY) == NextStep(
-        "check left knee and left ankle: no values were reported on 22 Nov.", "Review", UUID(int=1)
+        NextKind.REVIEW,
+        "Review visit of 22 Nov",
+        "Left knee and left ankle: not reported. Repeat at the next walk.",
+        UUID(int=1),
     )
     assert next_step(None, latest(90, has_report=False), TODAY) == NextStep(
-        "write the report for 25 Aug.", "Open", UUID(int=1)
+        NextKind.REPORT, "Write report of 25 Aug", "Not written yet. Measured yesterday.", UUID(int=1)
     )
-    assert next_step(None, latest(56), TODAY) == NextStep("the last visit was 8 weeks ago.")
+    assert next_step(None, latest(56), TODAY) == NextStep(
+        NextKind.SESSION, "Begin next visit", "Last visit 8 weeks ago."
+    )
     assert next_step(None, latest(55), TODAY) is None
     assert next_step(None, latest(1, has_walk=False, has_report=False), TODAY) is None
     assert next_step(None, None, TODAY) is None
@@ -263,17 +281,18 @@ def test_a_goal_that_is_reached_is_next_after_the_report_and_before_a_long_time(
     reached = reached_at([goal(SPEED_LANE.column, GoalOf.WALK, 0.7)], shoes(speed_m_s=1.0))
     found = next_step(None, replace(latest(90), reached=reached), TODAY)
     assert found == NextStep(
-        "goal reached on 25 Aug: Walking speed: at least 0.70\N{NO-BREAK SPACE}m/s; "
-        "measured 1.00\N{NO-BREAK SPACE}m/s, beyond error.",
-        "Goals",
+        NextKind.GOALS,
+        "Agree next goal",
+        "Goal reached: Walking speed: at least 0.70\N{NO-BREAK SPACE}m/s; measured 1.00\N{NO-BREAK SPACE}m/s, beyond "
+        "error.",
     )
     near = reached_at([goal(SPEED_LANE.column, GoalOf.WALK, 0.95)], shoes(speed_m_s=1.0))
     stated = next_step(None, replace(latest(), reached=near), TODAY)
     assert stated is not None
-    assert stated.sentence.endswith("measured 1.00\N{NO-BREAK SPACE}m/s, within measurement error, so not certain.")
+    assert stated.reason.endswith("measured 1.00\N{NO-BREAK SPACE}m/s, within measurement error, so not certain.")
     unwritten = next_step(None, replace(latest(has_report=False), reached=reached), TODAY)
     assert unwritten is not None
-    assert unwritten.verb == "Open"
+    assert unwritten.kind is NextKind.REPORT
     assert reached_at([goal(SPEED_LANE.column, GoalOf.WALK, 1.05)], shoes(speed_m_s=1.0)) == ()
 
 
@@ -297,14 +316,10 @@ def test_a_test_that_was_done_once_has_a_lane_and_one_that_a_goal_is_of() -> Non
     assert without_lane([required]) == ()
 
 
-def test_the_lane_of_a_test_has_whiskers_and_a_verdict_where_an_error_is_known_only() -> None:
+def test_the_lane_of_a_test_has_a_verdict_where_an_error_is_known_only() -> None:
     visits = [visit(1, with_tests(12.5, 30.0)), visit(2, with_tests(11.0, 24.0)), visit(3, with_tests(8.0, 20.0))]
     ten, up = lanes(visits, kinds=(TEN_METRES, UP_AND_GO))
     assert [point.value for point in ten.lines[0].points] == pytest.approx([0.8, 0.909, 1.25], abs=1e-3)
-    assert [point.whisker for point in ten.lines[0].points] == pytest.approx([0.09009] * 3, abs=1e-4)
-    assert ten.band == pytest.approx((0.8 - 0.18017, 0.8 + 0.18017), abs=1e-4)
-    assert all(not math.isfinite(point.whisker) for point in up.lines[0].points)
-    assert up.band is None
     space = "\N{NO-BREAK SPACE}"
     assert changes_since_in_words(ten, visits) == (
         f"+0.34{space}m/s since 20 Mar, beyond error (0.18). +0.45{space}m/s since 20 Feb, beyond error (0.18)."

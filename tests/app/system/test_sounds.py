@@ -197,3 +197,44 @@ def test_playing_takes_the_screens_thread_less_than_a_millisecond(qtbot: QtBot, 
         took_s.append(perf_counter() - begun_s)
     assert median(took_s) < 1e-3
     qtbot.waitUntil(lambda: played(tmp_path) != [])
+
+
+def phrases(folder: Path) -> list[str]:
+    return [name.removesuffix(".wav") for name in played(folder)]
+
+
+def test_a_new_phrase_cuts_off_the_one_before(qtbot: QtBot, tmp_path: Path) -> None:
+    loudspeaker = Loudspeaker([player(tmp_path, "time.sleep(60) if 'recorded' in sys.argv[-1] else None")])
+    loudspeaker.speak("en/recorded")
+    qtbot.waitUntil(lambda: phrases(tmp_path) == ["recorded"])
+    loudspeaker.speak("de/enough-movement")
+    qtbot.waitUntil(lambda: phrases(tmp_path) == ["recorded", "enough-movement"])
+
+
+def test_a_tone_cuts_off_a_phrase_and_is_cut_off_by_none(qtbot: QtBot, tmp_path: Path) -> None:
+    done = tmp_path / "done"
+    ends = f"time.sleep(60 if 'recorded' in sys.argv[-1] else 0.1); open({str(done)!r}, 'w')"
+    loudspeaker = Loudspeaker([player(tmp_path, ends)])
+    loudspeaker.speak("en/recorded")
+    qtbot.waitUntil(lambda: phrases(tmp_path) == ["recorded"])
+    loudspeaker.play(Sound.START)
+    qtbot.waitUntil(lambda: phrases(tmp_path) == ["recorded", "start"])
+    loudspeaker.speak("en/swapped")
+    qtbot.waitUntil(lambda: phrases(tmp_path) == ["recorded", "start", "swapped"])
+    assert done.exists()
+
+
+def test_a_phrase_takes_no_waiting_tones_place(qtbot: QtBot, tmp_path: Path) -> None:
+    loudspeaker = Loudspeaker([player(tmp_path, "time.sleep(0.1)")])
+    loudspeaker.play(Sound.READY)
+    loudspeaker.speak("en/recorded")
+    qtbot.waitUntil(lambda: phrases(tmp_path) == ["ready", "recorded"])
+
+
+def test_without_a_player_a_phrase_is_no_beep(qtbot: QtBot, beeps: list[threading.Thread]) -> None:
+    loudspeaker = Loudspeaker(NO_PLAYER)
+    loudspeaker.speak("en/recorded")
+    loudspeaker.play(Sound.LOSS)
+    qtbot.waitUntil(lambda: len(beeps) == 1)
+    qtbot.wait(50)
+    assert len(beeps) == 1

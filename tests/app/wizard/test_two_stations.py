@@ -238,7 +238,7 @@ def test_words_of_the_report_typed_at_both_stations_are_asked_about(
     report = step.page.report
     other.say_of_session({"comment": "The left foot drags."})
     report.comment.setPlainText("Keep alignment C.")
-    report.flush()
+    report.editor.flush()
     dialog = dialog_of(qtbot, wizard)
     assert [cell.value for cell in dialog.cells[0]] == ["Keep alignment C.", "The left foot drags."]
     qtbot.waitUntil(lambda: report.comment.toPlainText() == "The left foot drags.", timeout=WAIT_MS)
@@ -382,7 +382,7 @@ def test_words_of_the_report_saved_as_the_session_is_left_are_there_when_it_is_o
     report = report_of(wizard).page.report
     for words in ("Keep", "Keep alignment C."):
         report.comment.setPlainText(words)
-        report.flush()
+        report.editor.flush()
     wizard.show_session(other.session_id)
     visit = wizard.visit
     assert visit is not None
@@ -404,9 +404,9 @@ def test_words_typed_after_a_refusal_are_nobody_elses(
         patched.setattr(SharedEdits, "session", _refuse)
         with qtbot.waitSignal(ours.record.refused, timeout=WAIT_MS):
             report.comment.setPlainText("Keep")
-            report.flush()
+            report.editor.flush()
     report.comment.setPlainText("Keep alignment C.")
-    report.flush()
+    report.editor.flush()
     sessions, session_id = other.library.sessions, other.session_id
     settle(qtbot, ours, other, lambda: sessions.get(session_id).comment == "Keep alignment C.")
     assert wizard.asked.dialog is None

@@ -1,9 +1,12 @@
 """A walk is called the same everywhere: by its condition and the letter that represents this in every comparison."""
 
+from collections.abc import Iterator
 from dataclasses import replace
 
 import pytest
 
+from app.summary.visits import condition_in_words
+from app.wording.patients import aids_in_words
 from app.wording.recordings import (
     LETTERS,
     ShownName,
@@ -13,6 +16,7 @@ from app.wording.recordings import (
     where_shown,
     with_shown_names,
 )
+from app.wording.translation import use_language
 from core.findings import Finding, Severity
 from core.session import Recording, RecordingKind
 
@@ -75,3 +79,49 @@ def test_a_finding_states_where_it_was_found_as_the_reader_knows_it() -> None:
     finding = Finding("gaps", Severity.WARNING, "left_foot, walk 2")
     assert with_shown_names(finding, names).where == "left_foot, A2 Barefoot"
     assert where_shown("walk 1, left_foot", names) == "walk 1, left_foot"
+
+
+@pytest.fixture
+def german() -> Iterator[None]:
+    use_language("de")
+    yield
+    use_language("en")
+
+
+@pytest.mark.usefixtures("german")
+@pytest.mark.parametrize(
+    ("stored", "words"),
+    [
+        ("Shoes", "Schuhe"),
+        ("barefoot", "Barfuß"),
+        ("Alignment B", "Aufbau B"),
+        ("Shoes, stick", "Schuhe, Stock"),
+        ("Schuhe", "Schuhe"),
+        ("barfuß", "barfuß"),  # as it was typed
+        ("shoes with insole", "shoes with insole"),
+        ("walk 3", "Gang 3"),
+    ],
+)
+def test_a_condition_that_we_proposed_is_read_in_german_and_one_that_was_typed_as_typed(
+    stored: str, words: str
+) -> None:
+    assert name_in_words(stored) == words
+    assert called(walk(1, stored)) == [f"A {words}"]
+    assert condition_in_words(stored) == words
+
+
+def test_a_condition_stored_in_german_is_read_in_english() -> None:
+    assert [name_in_words(one) for one in ("Schuhe", "Barfuß", "Aufbau C", "Einlage links")] == [
+        "Shoes",
+        "Barefoot",
+        "Alignment C",
+        "Einlage links",
+    ]
+    assert name_in_words("shoes") == "shoes"  # as it was typed
+
+
+@pytest.mark.usefixtures("german")
+def test_aids_are_read_in_german_and_others_as_typed() -> None:
+    assert aids_in_words("shoes, stick, AFO, rollator") == "Schuhe, Stock, Unterschenkelorthese, rollator"
+    use_language("en")
+    assert aids_in_words("shoes, AFO, rollator") == "shoes, AFO, rollator"

@@ -1,5 +1,6 @@
 """The lists of patients and sessions: quick with thousands, found as typed, no word cut."""
 
+from dataclasses import replace
 from itertools import pairwise
 from time import process_time
 from uuid import UUID, uuid4
@@ -11,8 +12,9 @@ from PySide6.QtWidgets import QApplication
 from pytestqt.qtbot import QtBot
 
 from app.home.patients.home_page import HomePage
+from app.summary.progress_words import Arrow
 from app.theme.notifier import ThemeNotifier
-from app.widgets.line_list import TEXT_ROW, LineCell, PatientLine, SessionCell, SessionColumns, SessionLine
+from app.widgets.line_list import TEXT_ROW, LineCell, PatientLine, SessionLine, VisitCell, VisitColumns
 
 MANY = 5000
 MOST_S = 0.1  # what the screen's thread may take for anything
@@ -124,9 +126,9 @@ def test_no_word_of_a_line_is_cut_or_lies_on_another(
                 assert spans[0][0] >= 0
                 assert spans[-1][1] <= view.word_room
             assert view.rowHeight(at) >= len(rows) * look.theme.px(TEXT_ROW)
-            assert sorted(" ".join(word.text for words in rows for word in words).replace(",", "").split()) == sorted(
-                cell.words.replace(",", "").split()
-            )
+            painted = " ".join(word.text for words in rows for word in words).replace(" \N{MIDDLE DOT}", "")
+            stated = cell.words.replace(" \N{MIDDLE DOT}", "")
+            assert sorted(painted.replace(",", "").split()) == sorted(stated.replace(",", "").split())
 
 
 def test_nothing_is_stated_of_patients_and_sessions_that_are_still_to_be_read(page: HomePage) -> None:
@@ -167,16 +169,44 @@ def test_sessions_that_are_read_again_keep_the_one_that_is_chosen(page: HomePage
     assert page.sessions.line.id == UUID(int=1)
 
 
-def test_long_words_for_strides_and_state_push_a_sessions_columns_apart(look: ThemeNotifier) -> None:
-    states = ("Bericht nicht geschrieben", "Bericht geschrieben")
-    lines = tuple(SessionLine(uuid4(), "20. Sept. 2026", "Shoes", "24 Doppelschritte", state) for state in states)
-    columns = SessionColumns(lines)
+def test_values_and_states_of_visits_stand_under_one_another(look: ThemeNotifier) -> None:
+    states = ("Bericht ausstehend", "Bericht geschrieben")
+    lines = tuple(
+        SessionLine(uuid4(), "20. Sept. 2026", "Shoes", "24", state, is_reported=number > 0, speed=speed, knee=knee)
+        for number, (state, speed, knee) in enumerate(
+            zip(states, ("1,13 m/s", "0,85 m/s"), ("53°", "nicht ausgegeben"), strict=True)
+        )
+    )
+    columns = VisitColumns(lines, ("Gehgeschwindigkeit", "Linkes Knie"))
+    rights = []
     for line in lines:
-        (row,) = SessionCell(line, columns).word_rows(520, look.theme)
-        placed = sorted(row, key=lambda word: word.left)
+        first, second = VisitCell(line, columns).word_rows(660, look.theme)
+        placed = sorted(first, key=lambda word: word.left)
         ends = [word.left + word.width(look.theme) for word in placed]
-        assert [word.text for word in placed] == ["20. Sept. 2026", "Shoes", "24 Doppelschritte", line.state]
+        assert [word.text for word in placed] == ["20. Sept. 2026", line.speed, line.knee, line.state]
+        assert [word.text for word in second] == ["Shoes"]
         assert all(end + 8 < after.left for end, after in zip(ends, placed[1:], strict=False))
-        assert ends[-1] <= 520
-    lefts = [SessionCell(line, columns).word_rows(520, look.theme)[0][1].left for line in lines]
-    assert lefts[0] == lefts[1], "columns are those of the list"
+        assert ends[-1] <= 660
+        rights.append((ends[1], ends[2], placed[3].left))
+    assert rights[0] == rights[1], "columns are those of the list"
+
+
+def test_the_last_change_stands_in_a_patients_line_once_it_is_known(page: HomePage) -> None:
+    page.show_patients([patient(1), patient(2)])
+    page.change_patient(replace(patient(2), change="knee +18° since 1 Jul", arrow=Arrow(is_up=True, is_filled=True)))
+    cells = page.patients.cells
+    stated = [cells.data(cells.index(row, 0), Qt.ItemDataRole.AccessibleTextRole) for row in range(2)]
+    assert [one.rsplit(", ", 1)[1] for one in stated] == ["5 sessions", "knee +18° since 1 Jul"]
+    QTest.keyClicks(page.search, "P-0002")  # what is searched is what was changed
+    line = page.patients.line
+    assert isinstance(line, PatientLine)
+    assert line.change == "knee +18° since 1 Jul"
+    assert page.patient_id == UUID(int=2)
+
+
+def test_only_patients_in_sight_are_asked_for(page: HomePage, qapp: QApplication) -> None:
+    page.show_patients([patient(number) for number in range(MANY)])
+    qapp.processEvents()
+    assert 5 < len(page.patients.in_sight) < 12
+    page.patients.choose(MANY - 1)
+    assert page.patients.in_sight[-1].id == UUID(int=MANY - 1)

@@ -17,18 +17,18 @@ from app.summary.request import AnalysedVisit, ReportRequest
 
 @pytest.fixture
 def report(request_of_demonstration: ReportRequest) -> bytes:
-    """The report of one walk of somebody else than the fixtures' patient, with a page for the patient."""
+    """The report of one walk of somebody else than the fixtures' patient."""
     visit = request_of_demonstration.visit
     patient = replace(visit.session.patient, code="P-0815")
     session = replace(visit.session, patient=patient, started="2026-03-04T10:00:00+01:00")
-    required = replace(request_of_demonstration, visit=AnalysedVisit(session, visit.analysis), patient_language="de")
+    required = replace(request_of_demonstration, visit=AnalysedVisit(session, visit.analysis))
     return make_report(required)
 
 
 def test_every_page_names_its_patient_and_the_day(report: bytes) -> None:
     """So that no sheet of a report gets into another patient's file; and what it is for, and that it is simulated."""
     pages = pypdf.PdfReader(io.BytesIO(report)).pages
-    assert len(pages) == 4 + 1
+    assert len(pages) == 4
     for number, page in enumerate(pages, start=1):
         text = re.sub("[\u2066-\u2069]", "", page.extract_text())
         for stated in ("P-0815", "2026", "Research use. Not a medical device.", "SIMULATED DATA, not a person"):

@@ -15,7 +15,7 @@ from app.exports.summary import write_summary
 from app.reports.patient.comparison_page import comparison_of
 from app.reports.patient.document import facts_of
 from app.reports.patient.first_page import first_page
-from app.reports.patient.patient_page import patient_page
+from app.reports.patient.letter import letter_data
 from app.results.result_page import ResultPage
 from app.summary.course import course_of
 from app.summary.course_lanes import CourseVisit
@@ -61,7 +61,7 @@ def request_of(*visits: AnalysedVisit, earlier: AnalysedVisit | None = None) -> 
     """The report of the last of some visits, with their course and a page for the patient."""
     now = visits[-1]
     course = course_over(*visits)
-    return ReportRequest(now, default_walks(now), MADE_AT, "1", earlier=earlier, course=course, patient_language="en")
+    return ReportRequest(now, default_walks(now), MADE_AT, "1", earlier=earlier, course=course)
 
 
 @pytest.fixture
@@ -101,9 +101,12 @@ def test_a_knee_has_one_value_on_screen_report_course_and_in_files(now: Analysed
     rows = openpyxl.load_workbook(tmp_path / "results.xlsx")["Conditions"].iter_rows(values_only=True)
     values += [float(str(row[4])) for row in rows if (row[0], row[2], row[3]) == (SHOES, "left", KNEE)]
     assert values == pytest.approx([52.4] * 8, abs=0.02)
-    assert "Left knee flexes 52°" in first_page(request, shown, comparison)["summary"]["first"]  # type: ignore[index]  # plain JSON
-    stated = "Your left knee now bends 52 degrees. At your first visit it was 34."
-    assert patient_page(request, shown)["answer"] == stated
+    summary = first_page(request, shown, comparison)["summary"]
+    assert isinstance(summary, dict)
+    assert "Left knee flexes 52°" in summary["first"]
+    letter = letter_data(request, "en")
+    assert letter["number"] == "Your left knee now bends 52\N{NO-BREAK SPACE}degrees."
+    assert letter["beside"][0] == "In July it was 34 degrees."  # type: ignore[index]  # it is a list of sentences
 
 
 def test_two_walks_of_one_condition_that_are_laid_side_by_side_stand_alone(now: AnalysedVisit) -> None:
@@ -113,13 +116,11 @@ def test_two_walks_of_one_condition_that_are_laid_side_by_side_stand_alone(now: 
 
 
 @pytest.mark.parametrize(("first_deg", "is_real"), [(34.0, True), (50.0, False)])
-def test_page_one_and_the_patients_page_judge_the_knee_alike(
-    now: AnalysedVisit, first_deg: float, is_real: bool
-) -> None:
+def test_page_one_and_the_letter_judge_the_knee_alike(now: AnalysedVisit, first_deg: float, is_real: bool) -> None:
     request = request_of(visit_on(FIRST, (first_deg, 12)), now)
     facts = facts_of(request)
-    page_one, patient = headline_of(facts), str(patient_page(request, facts))
-    assert ("° is clearly more than that: this is a real change" in patient) is is_real
+    page_one, patient = headline_of(facts), str(letter_data(request, "en"))
+    assert ("The change is larger than our measuring error." in patient) is is_real
     assert ("up 18° since 1 Jul" in page_one.first) is is_real
     assert ("within measurement error" in page_one.then) is not is_real
 

@@ -5,7 +5,7 @@ import os
 import pytest
 
 from tests.app.wizard.report.test_page import png
-from tests.safety.twenty_reports import ink_heights, sessions, tried, unknown_numbers
+from tests.safety.twenty_reports import contradictions, ink_heights, sessions, tried, unknown_numbers
 
 pytestmark = pytest.mark.endurance
 
@@ -28,3 +28,15 @@ def test_a_number_that_no_file_holds_is_found() -> None:
 
 def test_an_empty_page_is_found() -> None:
     assert ink_heights([png(40)]) == [0.0]
+
+
+def test_two_figures_for_one_measure_are_found() -> None:
+    def page(tile: str) -> dict[str, object]:
+        return {
+            "summary": {"first": "Left knee flexes 53° from stance to swing, up 18° since 1 July."},
+            "tiles": [{"name": "Knee, stance to swing", "values": [{"text": tile, "chip": {"alt": "left"}}]}],
+            "table": {"rows": [{"name": "Knee flexion, stance to swing", "values": ["52.6°", "57.3°"]}]},
+        }
+
+    assert list(contradictions(page("53°"))) == []
+    assert list(contradictions(page("54°"))) == ["Knee flexion, stance to swing, L: 53 and 54"]

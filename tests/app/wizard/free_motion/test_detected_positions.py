@@ -7,13 +7,14 @@ from PySide6.QtCore import Qt
 from PySide6.QtTest import QTest
 from pytestqt.qtbot import QtBot
 
+from app.system.prompts import prompter
 from app.theme.notifier import ThemeNotifier
 from app.widgets.action_bar import VerbButton
 from app.widgets.body_figure import SensorMark
 from app.widgets.gauge import GaugeState
 from app.widgets.rail_row import StepState
 from app.widgets.sensor_tile import marks
-from app.wizard.free_motion.motion_shown import sensor_marks
+from app.wizard.free_motion.motion_shown import gauge_faces, sensor_marks
 from app.wizard.free_motion.step import FreeMotionStep
 from app.wizard.keys import Intent, KeyAction
 from app.wizard.sensors.step import SensorsStep
@@ -77,10 +78,9 @@ def test_positions_that_were_changed_by_one_button_come_back_with_their_doubt_wh
 ) -> None:
     visit.sensors.doubt(MIXED)
     before = dict(visit.sensors.site_of)
+    moved.done.connect(moved.leave)  # as the wizard does
     with qtbot.waitSignal(visit.worn.corrected, timeout=10_000):
         press(moved)
-    moved.leave()
-    moved._worn_before = before  # as after `done`, which the wizard answers by leaving
     with qtbot.waitSignal(visit.worn.corrected, timeout=10_000):
         moved.undo()
     assert (visit.sensors.site_of, visit.sensors.detected) == (before, MIXED)
@@ -124,11 +124,25 @@ def test_sensors_that_look_swapped_take_the_hints_place_and_walking_waits_for_th
     walking.deleteLater()
 
 
+def test_what_the_step_shows_is_spoken_while_it_is_in_sight(
+    visit: Visit, moved: FreeMotionStep, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    asked: list[str] = []
+    monkeypatch.setattr(prompter, "speak", asked.append)
+    moved.enter()
+    visit.sensors.doubt(MIXED)
+    moved.enter()
+    assert asked == ["recorded", "swapped"]
+    moved.leave()
+    for _ in range(9):
+        moved.tick()
+    assert len(asked) == 2
+
+
 def test_gauges_of_swapped_sensors_show_no_figure_but_what_they_need(visit: Visit, moved: FreeMotionStep) -> None:
-    moved._motion = motion({joint: state(0.8, 6.0, None, is_closed=True) for joint in LEG_JOINTS})
+    known = motion({joint: state(0.8, 6.0, None, is_closed=True) for joint in LEG_JOINTS})
     visit.sensors.doubt({SHANK: Site.RIGHT_THIGH, Site.RIGHT_THIGH: SHANK})
-    moved._show()
-    faces = {joint: gauge.face for joint, gauge in moved.page.gauges.items()}
+    faces = gauge_faces(visit, known, None)
     needs = {joint: face.note for joint, face in faces.items() if face.state is GaugeState.NEEDS}
     assert needs == {
         Joint.LEFT_KNEE: "Needs the left shank sensor",
@@ -141,7 +155,7 @@ def test_gauges_of_swapped_sensors_show_no_figure_but_what_they_need(visit: Visi
         assert (centre.figure, centre.share) == ("\N{EN DASH}", 0.0)
     assert faces[Joint.RIGHT_ANKLE].state is GaugeState.CENTRE
     visit.sensors.doubt(MIXED)
-    moved._show()
+    moved.enter()
     assert moved.page.gauges[Joint.LEFT_KNEE].face.note == "Needs both sensors"
 
 
@@ -154,7 +168,7 @@ def test_the_tiles_and_the_figure_show_whose_place_a_swapped_sensor_moves_like(
     assert amber == {SHANK: "moves like R thigh", Site.RIGHT_THIGH: "moves like L shank"}
     assert {site for site, mark in marks(tiles).items() if mark is SensorMark.SWAPPED} == set(amber)
     assert {site for site, mark in sensor_marks(visit.sensors).items() if mark is SensorMark.SWAPPED} == set(amber)
-    moved._show()
+    moved.enter()
     doubted = moved.page.figure.grab().toImage()
     moved.page.figure.show_moves({})
     assert moved.page.figure.grab().toImage() != doubted  # the arrow
@@ -228,11 +242,10 @@ def test_the_keys_on_the_bar_use_and_check_the_positions(wizard: Wizard, monkeyp
     wizard.go_to(StepId.FREE_MOTION)
     visit = wizard.visit
     assert visit is not None
-    visit.sensors.doubt(MIXED)
-    assert set(wizard.shell.bar.keys) == {"Enter", "Space", "P"}
     used: list[None] = []
     monkeypatch.setattr(type(step), "_use_detected", lambda _: used.append(None))
-    wizard._show()
+    visit.sensors.doubt(MIXED)
+    assert set(wizard.shell.bar.keys) == {"Enter", "Space", "P"}
     step.jumped.disconnect()
     step.jumped.connect(gone.append)
     wizard.shell.bar.back.setFocus()

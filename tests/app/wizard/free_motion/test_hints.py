@@ -6,6 +6,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from app.widgets.hint import Hint
 from app.wizard.free_motion.hints import (
     HELD_S,
     LETTERS,
@@ -54,24 +55,27 @@ def motion(joints: Mapping[Joint, ExcitationState]) -> FreeMotionState:
     return FreeMotionState(joints, {}, max(is_open, key=lambda joint: joints[joint].wanting, default=None))
 
 
-def every_hint() -> Iterator[str]:
+def every_hint() -> Iterator[Hint]:
     for site in LEG_SITES:
         for movement in Movement:
-            yield hint_for(Missing(site, movement)).sentence
-    yield first_hint().sentence
-    yield unplaced_hint().sentence
-    yield played_hint(has_played=True).sentence
-    yield played_hint(has_played=False).sentence
-    yield last_hint(motion({Joint.LEFT_KNEE: state(1, 9, None, is_closed=True)})).sentence
-    yield last_hint(motion({Joint.LEFT_KNEE: state(4, 9, is_plateau=True)})).sentence
+            yield hint_for(Missing(site, movement))
+    yield first_hint()
+    yield unplaced_hint()
+    yield played_hint(has_played=True)
+    yield played_hint(has_played=False)
+    yield last_hint(motion({Joint.LEFT_KNEE: state(1, 9, None, is_closed=True)}))
+    yield last_hint(motion({Joint.LEFT_KNEE: state(4, 9, is_plateau=True)}))
     loose = state(0.4, 4, None, is_closed=True, axis_sd_with_floor_rad=float(np.deg2rad(6.0)))
     for joint in (Joint.LEFT_KNEE, Joint.RIGHT_KNEE):
-        yield last_hint(motion({joint: loose}), frozenset(Side)).sentence
-    yield last_hint(motion({Joint.LEFT_KNEE: loose, Joint.RIGHT_KNEE: loose}), frozenset(Side)).sentence
+        yield last_hint(motion({joint: loose}), frozenset(Side))
+    yield last_hint(motion({Joint.LEFT_KNEE: loose, Joint.RIGHT_KNEE: loose}), frozenset(Side))
+    yield hip_hint()
+    for found in ({}, {Joint.LEFT_KNEE: state(9, 40)}):
+        yield recorded_hint(motion(found))
 
 
 def test_every_hint_is_read_from_two_metres() -> None:
-    too_long = [sentence for sentence in every_hint() if len(sentence) > LETTERS]
+    too_long = [hint.sentence for hint in every_hint() if len(hint.sentence) > LETTERS]
     assert too_long == []
 
 

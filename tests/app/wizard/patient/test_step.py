@@ -100,6 +100,27 @@ def test_the_set_up_of_the_last_visit_is_taken_over(
     assert np.rad2deg(visit.details.zero_rad[Joint.LEFT_KNEE]) == pytest.approx(15.0)
 
 
+def test_enter_takes_the_set_up_of_the_last_visit_and_without_one_goes_on_to_attach_sensors(
+    qtbot: QtBot, controller: LibraryController, visit: Visit, step: PatientStep
+) -> None:
+    primary = step.bar().primary
+    assert primary is not None
+    assert (primary.text, primary.key) == ("Attach sensors", "Enter")
+    controller.run(make_with_visit, None, None, step)
+    step.page.open_pressed.emit("DEMO-10")
+
+    def offered() -> tuple[str, str]:
+        primary = step.bar().primary
+        assert primary is not None
+        return primary.text, primary.key
+
+    qtbot.waitUntil(lambda: offered() == ("Use last visit's set-up", "Enter"), timeout=5000)
+    assert [(one.text, one.key) for one in step.bar().others] == [("Attach sensors", "")]
+    with qtbot.waitSignal(step.done, timeout=5000):
+        press(step)
+    assert visit.placement_before == {"0A09": Site.LEFT_THIGH, "0A31": Site.LEFT_SHANK}
+
+
 def test_a_foot_without_an_ankle_joint_is_reported_to_the_visit(visit: Visit, step: PatientStep) -> None:
     page = step.page
     page.side.segments[1].click()

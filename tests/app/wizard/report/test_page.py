@@ -8,7 +8,8 @@ from pytestqt.qtbot import QtBot
 
 from app.theme.notifier import ThemeNotifier
 from app.widgets.sheets import PAPER_INCH
-from app.wizard.report.page import REBUILT_AFTER_MS, ReportPage
+from app.wizard.report.comment_editor import REBUILT_AFTER_MS
+from app.wizard.report.page import ReportPage
 
 
 @pytest.fixture

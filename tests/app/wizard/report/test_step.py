@@ -1,5 +1,6 @@
 """The report step shows what will print, keeps the clinician's words, and saves the files that were chosen."""
 
+import json
 import zipfile
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import replace
@@ -8,16 +9,22 @@ from uuid import UUID, uuid4
 
 import pypdf
 import pytest
+from PySide6.QtCore import Qt
+from PySide6.QtTest import QTest
 from pytestqt.qtbot import QtBot
 
+from app.editing.confirmation import is_confirmed
 from app.exports.proposed_names import free_name, session_name
 from app.reports.patient.document import ReportPreview
 from app.storage.exchange import import_session
 from app.storage.operators import CLINIC
+from app.storage.shared_edits import SharedEdits
 from app.storage.stored import Action, LibraryError
+from app.summary.request import ReportRequest
 from app.theme.notifier import ThemeNotifier
 from app.widgets.rail_row import StepState
 from app.wizard.keys import Intent, KeyAction
+from app.wizard.report.comment_editor import CommentState
 from app.wizard.report.leaving_dialog import LeavingDialog
 from app.wizard.report.printing import PRINTED_PPI
 from app.wizard.report.step import ReportStep
@@ -82,6 +89,152 @@ def test_pages_are_shown_and_made_again_with_the_words(qtbot: QtBot, step: Repor
     qtbot.waitUntil(lambda: sessions.get(session_id).comment == "Keep alignment C.", timeout=WAIT_MS)
 
 
+def test_the_draft_from_the_findings_is_not_printed_and_once_confirmed_it_is_with_who_confirmed_it(
+    qtbot: QtBot, step: ReportStep, visit: Visit
+) -> None:
+    editor = step.page.report.editor
+    qtbot.waitUntil(lambda: editor.state is CommentState.DRAFT, timeout=WAIT_MS)
+    draft = editor.words
+    assert "knee" in draft.lower()
+    assert (request_of(step).comment, request_of(step).comment_by) == ("", "")
+    assert "printed once you confirm it." in editor.note.text()
+    editor.button.click()
+    assert editor.state is CommentState.CONFIRMED
+    state, session = visit.controller.state, visit.session
+    assert state is not None
+    assert session is not None
+    by = state.operator.name
+    assert by
+    assert (request_of(step).comment, request_of(step).comment_by) == (draft, by)
+    assert editor.note.text() == f"Confirmed by {by}. Printed on page one."
+    sessions, session_id = state.library.library.sessions, session.id
+    qtbot.waitUntil(lambda: sessions.get(session_id).comment == draft, timeout=WAIT_MS)
+    assert is_confirmed(draft, sessions.get(session_id).comment_confirmed)
+
+
+def test_words_changed_after_they_were_confirmed_are_not_printed_until_they_are_again(
+    qtbot: QtBot, step: ReportStep
+) -> None:
+    editor = step.page.report.editor
+    editor.field.setPlainText("Keep alignment C.")
+    assert editor.state is CommentState.TYPED
+    editor.flush()
+    assert request_of(step).comment == ""
+    assert step.bar().note == "The clinical comment is not confirmed, so it is not printed."
+    editor.button.click()
+    assert request_of(step).comment == "Keep alignment C."
+    editor.field.setPlainText("Keep alignment C. Pain.")
+    step.page.report.editor.flush()
+    assert (request_of(step).comment, editor.state) == ("", CommentState.TYPED)
+    QTest.keyClick(editor.field, Qt.Key.Key_Return, Qt.KeyboardModifier.ControlModifier)
+    assert request_of(step).comment == "Keep alignment C. Pain."
+
+
+def test_a_draft_that_somebody_cleared_does_not_come_back_while_they_look(qtbot: QtBot, step: ReportStep) -> None:
+    editor = step.page.report.editor
+    qtbot.waitUntil(lambda: editor.state is CommentState.DRAFT, timeout=WAIT_MS)
+    editor.field.setPlainText("")
+    editor.flush()
+    step.comments.take_draft("Another draft.")
+    assert (editor.words, editor.state) == ("", CommentState.EMPTY)
+
+
+def test_a_confirmation_that_the_library_refuses_prints_nothing(
+    qtbot: QtBot, step: ReportStep, visit: Visit, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    def refuse(*_: object) -> None:
+        raise LibraryError("The library is busy", "Try again")
+
+    monkeypatch.setattr(SharedEdits, "session", refuse)
+    step.page.report.editor.field.setPlainText("Keep alignment C.")
+    with qtbot.waitSignal(visit.record.refused, timeout=WAIT_MS):
+        step.page.report.editor.button.click()
+    assert request_of(step).comment == ""
+
+
+def request_of(step: ReportStep) -> ReportRequest:
+    request = step.request()
+    assert request is not None
+    return request
+
+
+def test_save_report_writes_one_pdf_and_nothing_beside_it(
+    qtbot: QtBot, step: ReportStep, visit: Visit, tmp_path: Path
+) -> None:
+    press(step, "Save report")
+    assert step.dialog is not None
+    assert [Path(path).name for path in step.dialog.selectedFiles()] == [report_name(visit)]
+    step.dialog.close()
+    out = tmp_path / "report.pdf"
+    save: Callable[[str], None] = step.save_report
+    save(str(out))
+    qtbot.waitUntil(lambda: step.state is StepState.DONE, timeout=WAIT_MS)
+    assert [file.name for file in tmp_path.iterdir() if file.name != "library"] == ["report.pdf"]
+    assert out.read_bytes().startswith(b"%PDF-")
+    state, session = visit.controller.state, visit.session
+    assert state is not None
+    assert session is not None
+    assert state.library.library.audit.entries(f"session:{session.id}")[-1].action == Action.EXPORT
+    assert session.id in state.library.library.audit.reported([session.id])
+
+
+def test_a_report_replaces_no_other_file_and_is_not_written_into_the_library(
+    qtbot: QtBot, step: ReportStep, visit: Visit, tmp_path: Path
+) -> None:
+    state = visit.controller.state
+    assert state is not None
+    other = tmp_path / "notes.pdf"
+    other.write_text("no PDF")
+    reported: list[str] = []
+    step.reported.connect(lambda what, _remedy: reported.append(what))
+    save: Callable[[str], None] = step.save_report
+    for out in (other, state.library.folder / "report.pdf"):
+        with qtbot.waitSignal(step.reported, timeout=WAIT_MS):
+            save(str(out))
+    assert reported == ["This already exists and is not a PDF.", "This lies inside the library."]
+    assert other.read_text() == "no PDF"
+    assert not (state.library.folder / "report.pdf").exists()
+    assert step.state is StepState.TODO
+
+
+def test_the_letter_is_exported_where_it_was_chosen(
+    qtbot: QtBot, step: ReportStep, visit: Visit, tmp_path: Path
+) -> None:
+    chosen: Callable[[str], None] = step.save_in
+    step.page.report.formats.choose(["letter"])
+    chosen(str(tmp_path / "results"))
+    qtbot.waitUntil(lambda: step.exported is not None, timeout=WAIT_MS)
+    name = report_name(visit).removesuffix(".pdf")
+    assert {file.name for file in (tmp_path / "results").iterdir()} == {f"{name}.pdf", f"{name}_letter.pdf"}
+    text = pypdf.PdfReader(tmp_path / "results" / f"{name}_letter.pdf").pages[0].extract_text()
+    assert "Your walking" in text
+
+
+def test_the_letter_is_printed_by_one_press_in_the_language_chosen_beside_it(
+    qtbot: QtBot, step: ReportStep, visit: Visit, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    drawn: list[tuple[str, float]] = []
+
+    def pages(_request: object, language: str, ppi: float) -> list[bytes]:
+        drawn.append((language, ppi))
+        return []
+
+    monkeypatch.setattr("app.reports.patient.letter.letter_pages", pages)
+    asked: list[str] = []
+    monkeypatch.setattr(step.letter_printer, "ask", lambda name, _paper: asked.append(name))
+    step.page.report.language.choose("de")
+    press(step, "Patient letter")
+    assert asked == [f"{report_name(visit).removesuffix('.pdf')}_letter"]
+    step.letter_printer.confirmed.emit()
+    qtbot.waitUntil(lambda: bool(drawn), timeout=WAIT_MS)
+    assert drawn == [("de", PRINTED_PPI)]
+    state, session = visit.controller.state, visit.session
+    assert state is not None
+    assert session is not None
+    noted = state.library.library.audit.entries(f"session:{session.id}")[-1]
+    assert (noted.action, json.loads(noted.details)["format"]) == (Action.PRINT, "letter")
+
+
 def report_name(visit: Visit) -> str:
     """By the patient's code and the day."""
     assert visit.session is not None
@@ -95,7 +248,7 @@ def test_the_chosen_files_are_saved(qtbot: QtBot, step: ReportStep, visit: Visit
     step.page.report.formats.choose(["csv"])
     chosen: Callable[[str], None] = step.save_in
     chosen(str(out))
-    qtbot.waitUntil(lambda: step.state is StepState.DONE, timeout=WAIT_MS)
+    qtbot.waitUntil(lambda: step.exported is not None, timeout=WAIT_MS)
     assert reported == [("", "")]
     assert [file.name for file in out.glob("*.pdf")] == [report_name(visit)]
     assert (out / report_name(visit)).read_bytes().startswith(b"%PDF-")
@@ -113,7 +266,7 @@ def test_a_file_that_was_not_written_is_named_with_its_reason(
     step.page.report.formats.choose(["mot"])
     chosen: Callable[[str], None] = step.save_in
     chosen(str(tmp_path / "results"))
-    qtbot.waitUntil(lambda: step.state is StepState.DONE, timeout=WAIT_MS)
+    qtbot.waitUntil(lambda: step.exported is not None, timeout=WAIT_MS)
     assert reported == [("Not every file was written.", lines[0])]
 
 
@@ -159,7 +312,7 @@ def test_what_leaves_without_the_name_is_shown_first_and_nothing_typed_but_what_
     visit.record.resume(library.sessions.get(imported.session_id))
     patients.change(patient, replace(patient.details, birth_year=1950, device="Qx1 knee", aids="Qx2 stick"))
     step.page.report.formats.choose(["xlsx", "fhir"])
-    press(step)
+    press(step, "Export data")
     dialog = dialog_of(qtbot, step)
     shown = dict(dialog.shown)
     assert shown["patient"] != patient.details.code
@@ -175,7 +328,7 @@ def test_what_leaves_without_the_name_is_shown_first_and_nothing_typed_but_what_
     out = tmp_path / "results"
     chosen: Callable[[str], None] = step.save_in
     chosen(str(out))
-    qtbot.waitUntil(lambda: step.state is StepState.DONE, timeout=WAIT_MS)
+    qtbot.waitUntil(lambda: step.exported is not None, timeout=WAIT_MS)
     with zipfile.ZipFile(out / "gaitwright.xlsx") as book:
         stated = b"".join(book.read(name) for name in book.namelist()).decode()
     assert shown["patient"] in stated
@@ -186,7 +339,7 @@ def test_what_leaves_without_the_name_is_shown_first_and_nothing_typed_but_what_
 
 def test_nothing_is_asked_where_no_file_leaves_without_the_name(qtbot: QtBot, step: ReportStep, visit: Visit) -> None:
     step.page.report.formats.choose(["csv", "rrd"])
-    press(step)
+    press(step, "Export data")
     assert step.dialog is not None
     assert step.page.findChild(LeavingDialog) is None
     assert visit.session is not None
@@ -209,7 +362,7 @@ def test_of_a_free_motion_alone_no_report_is_offered(step: ReportStep, visit: Vi
 
 def test_whoever_cancels_writes_nothing(qtbot: QtBot, step: ReportStep) -> None:
     step.page.report.formats.choose(["fhir"])
-    press(step)
+    press(step, "Export data")
     dialog = dialog_of(qtbot, step)
     dialog.cancel.click()
     qtbot.waitUntil(lambda: step.page.findChild(LeavingDialog) is None, timeout=WAIT_MS)
@@ -244,7 +397,7 @@ def test_an_earlier_visit_is_compared_with_and_the_clinic_named(
     qtbot.waitUntil(lambda: step.bar().primary.is_enabled, timeout=WAIT_MS)  # type: ignore[union-attr]  # it is still there
     chosen: Callable[[str], None] = step.save_in
     chosen(str(tmp_path / "results"))
-    qtbot.waitUntil(lambda: step.state is StepState.DONE, timeout=WAIT_MS)
+    qtbot.waitUntil(lambda: step.exported is not None, timeout=WAIT_MS)
     text = "".join(page.extract_text() for page in pypdf.PdfReader(tmp_path / "results" / report_name(visit)).pages)
     assert "Comparison of visits" in text
     assert "1 Mar 2020" in text

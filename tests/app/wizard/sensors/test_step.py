@@ -12,7 +12,7 @@ from app.widgets.rail_row import StepState
 from app.wizard.free_motion.step import FreeMotionStep
 from app.wizard.keys import Intent, KeyAction
 from app.wizard.sensors.page import Way
-from app.wizard.sensors.step import REPLAY, SensorsStep
+from app.wizard.sensors.step import REMEMBERED_LOOKS, REPLAY, SensorsStep
 from app.wizard.standing.step import StandStillStep
 from app.wizard.step import StepId
 from app.wizard.visit import Visit
@@ -146,6 +146,52 @@ def test_the_set_up_of_the_last_visit_is_worn_at_once(
     visit.placement_before = {**worn, "gone": Site.LEFT_FOOT}
     open_source(qtbot, visit, step)
     assert visit.sensors.site_of == worn
+
+
+def remember(visit: Visit, step: SensorsStep, places: dict[str, Site]) -> None:
+    """Enter the page with the last visit's set-up."""
+    step.leave()
+    visit.placement_before, visit.source_before = places, visit.known_choices[0].key
+    step.enter()
+
+
+def test_the_source_of_the_last_visit_opens_and_the_page_goes_on_once_all_its_sensors_are_received(
+    qtbot: QtBot, visit: Visit, step: SensorsStep, worn: dict[str, Site]
+) -> None:
+    done: list[bool] = []
+    step.done.connect(lambda: done.append(True))
+    remember(visit, step, worn)
+
+    def went_on() -> bool:
+        tick(step)
+        return bool(done)
+
+    qtbot.waitUntil(went_on, timeout=10_000)
+    assert visit.sensors.site_of == worn
+    for _ in range(REMEMBERED_LOOKS):
+        tick(step)
+    assert done == [True]  # whoever comes back stays
+
+
+def test_the_page_stays_where_a_sensor_of_the_last_visit_is_missing_or_another_set_up_is_worn(
+    qtbot: QtBot, visit: Visit, step: SensorsStep, worn: dict[str, Site]
+) -> None:
+    remember(visit, step, {**worn, "gone": Site.PELVIS})
+    qtbot.waitUntil(lambda: tick(step) or visit.sensors.acquisition is not None, timeout=10_000)
+    with qtbot.assertNotEmitted(step.done):
+        for _ in range(REMEMBERED_LOOKS):
+            tick(step)
+    visit.placement_before = {}
+    with qtbot.assertNotEmitted(step.done):
+        for _ in range(REMEMBERED_LOOKS):
+            tick(step)
+
+
+def test_without_the_last_visits_set_up_no_source_opens_by_itself(visit: Visit, step: SensorsStep) -> None:
+    remember(visit, step, {})
+    tick(step)
+    assert not visit.sensors.is_searching
+    assert visit.sensors.acquisition is None
 
 
 def test_a_real_patient_is_offered_no_simulated_sensors(qtbot: QtBot, visit: Visit) -> None:

@@ -1,6 +1,7 @@
 """Labels of walks: the usual ones with their digits, one's own kept, letters in the order of walking."""
 
-from app.wizard.walking.walk_labels import MOST, label_after, labels_for
+from app.wizard.walking.walk_labels import MOST, is_alignment, label_after, labels_for, stored_label
+from app.wording.translation import use_language
 from core.session import Patient
 
 ANYBODY, PROSTHETIC = Patient(), Patient(prosthetic_side="left")
@@ -29,3 +30,19 @@ def test_the_next_walk_is_called_as_the_last_one() -> None:
     assert label_after(PROSTHETIC, ["Shoes"]) == "Shoes"
     assert label_after(Patient(aids="barefoot"), []) == "Barefoot"
     assert label_after(ANYBODY, []) == "Shoes"
+
+
+def test_a_session_begun_in_english_goes_on_in_german_with_the_same_conditions() -> None:
+    use_language("de")
+    try:
+        assert labels_for(ANYBODY, ["Shoes", "new foot"]) == (
+            "Barfuß", "Schuhe", "Unterschenkelorthese", "Aufbau A", "new foot",
+        )  # fmt: skip
+        assert stored_label("Schuhe", ["Shoes", "new foot"]) == "Shoes"  # as the walks before, to be compared with
+        assert stored_label("Barfuß", ["Shoes"]) == "Barfuß"
+        assert label_after(ANYBODY, ["Shoes"]) == "Shoes"
+        assert label_after(PROSTHETIC, ["Alignment A"]) == "Aufbau B"
+        assert is_alignment("Alignment A")
+        assert not is_alignment("Shoes")
+    finally:
+        use_language("en")

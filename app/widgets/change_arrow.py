@@ -1,0 +1,41 @@
+"""The arrow before a change of the patient: filled beyond measurement error, outlined within."""
+
+from PySide6.QtCore import QPointF, QRectF, QSize, Qt
+from PySide6.QtGui import QColor, QPainter, QPaintEvent, QPolygonF
+from PySide6.QtWidgets import QSizePolicy, QWidget
+
+from app.summary.progress_words import Arrow
+from app.theme.notifier import ThemeNotifier
+from app.theme.theme import Theme
+
+ARROW = 10  # px, wide and high
+
+
+def paint_change_arrow(painter: QPainter, box: QRectF, arrow: Arrow, theme: Theme) -> None:
+    """Draw it into the middle of a box."""
+    half, centre = theme.px(ARROW) / 2, box.center()
+    tip, foot = (-half, half) if arrow.is_up else (half, -half)
+    ends = ((0, 0.9 * tip), (half, 0.9 * foot), (-half, 0.9 * foot))
+    ink = QColor(theme.colours.ink)
+    painter.save()
+    painter.setRenderHint(QPainter.RenderHint.Antialiasing)
+    painter.setPen(theme.pen(ink, 1.25))
+    painter.setBrush(ink if arrow.is_filled else Qt.BrushStyle.NoBrush)
+    painter.drawPolygon(QPolygonF([centre + QPointF(x, y) for x, y in ends]))
+    painter.restore()
+
+
+class ChangeArrow(QWidget):
+    """The arrow beside words that state the change, so a screen reader passes over it."""
+
+    def __init__(self, look: ThemeNotifier, arrow: Arrow) -> None:
+        super().__init__()
+        self._look, self.arrow = look, arrow
+        self.setSizePolicy(QSizePolicy.Policy.Fixed, QSizePolicy.Policy.Fixed)
+
+    def sizeHint(self) -> QSize:
+        side = self._look.theme.px(ARROW + 2)
+        return QSize(side, side)
+
+    def paintEvent(self, _event: QPaintEvent) -> None:
+        paint_change_arrow(QPainter(self), QRectF(self.rect()), self.arrow, self._look.theme)

@@ -1,0 +1,157 @@
+"""Page one: what is on it at a first visit, at a return, of one leg, and where something is not good."""
+
+import datetime
+import io
+import math
+from dataclasses import replace
+from typing import Any
+from uuid import UUID
+
+import pypdf
+
+from app.reports.patient.document import facts_of, make_report
+from app.reports.patient.first_page import first_page
+from app.summary.course import course_of
+from app.summary.course_lanes import CourseVisit
+from app.summary.facts import Facts
+from app.summary.request import AnalysedVisit, ReportRequest
+from core.body import Joint, Side
+from core.session import Patient
+from tests.app.changed_analysis import recalibrated, with_few_strides
+from tests.app.reports.patient.test_what_stands_out import with_more
+
+SMALLEST = 9.0  # points
+LAST = datetime.date(2026, 10, 7)
+
+
+def page(request: ReportRequest) -> Any:
+    return first_page(request, facts_of(request), None)
+
+
+def plain(typed: str) -> str:
+    """Without the marks of direction about what was typed."""
+    return typed.replace("\u2068", "").replace("\u2069", "")
+
+
+def changed(request: ReportRequest, **change: Any) -> ReportRequest:
+    """With the left knee's axis changed."""
+    visit = request.visit
+    analysis = recalibrated(visit.analysis, [Joint.LEFT_KNEE], **change)
+    return replace(request, visit=AnalysedVisit(visit.session, analysis))
+
+
+def returned(request: ReportRequest, more_deg: float) -> ReportRequest:
+    """The same patient again: at the last visit the left knee had so much more."""
+    session, analysis = request.visit.session, request.visit.analysis
+    before = with_more(analysis, Side.LEFT, "knee_stance_to_swing_rad", more_deg)
+    visits = ((LAST, before), (datetime.date(2026, 11, 23), analysis))
+    course = tuple(
+        CourseVisit(UUID(int=k), day, course_of(found, session.recordings)) for k, (day, found) in enumerate(visits)
+    )
+    walk = before.recordings[-1]
+    thin = replace(Facts(AnalysedVisit(session, before), walk).part, day=LAST)
+    return replace(request, course=course, thin=thin)
+
+
+def test_a_first_visit_has_no_change_and_a_return_has_its_change_day_and_thin_line(
+    request_of_demonstration: ReportRequest,
+) -> None:
+    first, again = page(request_of_demonstration), page(returned(request_of_demonstration, -20.0))
+    assert first["summary"]["first"].startswith("Left and right are similar: knee")
+    assert [tile["change"] for tile in first["tiles"]] == ["First visit"] * 4
+    assert first["table"]["since"] == ""
+    assert all(row["strip"] for row in first["table"]["rows"])
+    assert "7 Oct" not in str(first)
+    assert "up 20° since 7 Oct" in again["summary"]["first"]
+    knee = again["tiles"][2]
+    assert knee["change"] == "L +20°, beyond error"
+    assert knee["then"] == "7 Oct L\u00a041° R\u00a062°"
+    assert again["table"]["since"] == "Since 7 Oct"
+    rows = {row["name"]: row for row in again["table"]["rows"]}
+    assert rows["Knee flexion, stance to swing"]["since"] == "L\u00a0+20.0°"
+    assert not any(row["strip"] for row in rows.values())
+    assert "7 Oct" in again["charts"][0][0]["picture"]["svg"]
+
+
+def test_the_amber_box_comes_only_where_something_is_not_good(request_of_demonstration: ReportRequest) -> None:
+    good, doubtful = (
+        page(request_of_demonstration),
+        page(changed(request_of_demonstration, axis_sd_rad=math.radians(9.8))),
+    )
+    assert good["caution"] is None
+    assert good["quality"][0] == "Data quality: good."
+    assert doubtful["caution"]["first"] == "Left knee: not reported."
+    assert "±9.8°" in doubtful["caution"]["then"]
+    assert doubtful["quality"][0] == "Data quality: caution."
+
+
+def test_a_knee_that_is_not_reported_has_no_figure_and_a_box_in_place_of_its_curve(
+    request_of_demonstration: ReportRequest,
+) -> None:
+    found = page(changed(request_of_demonstration, axis_sd_rad=math.radians(9.8)))
+    knee = found["tiles"][2]
+    assert [value["text"] for value in knee["values"]] == ["–", "62°"]
+    assert knee["change"] == "First visit"
+    (row,) = [row for row in found["table"]["rows"] if row["name"] == "Knee flexion, stance to swing"]
+    assert (row["values"], row["why"], row["difference"]) == (["–", "62.0°"], "L not reported", "–")
+    svg = found["charts"][0][0]["picture"]["svg"]
+    assert "Not reported" in svg
+    assert ">R 61°<" in svg
+    assert ">L 59°<" not in svg
+
+
+def test_one_leg_has_its_tiles_curves_and_values_only(request_of_one_leg: ReportRequest) -> None:
+    found = page(request_of_one_leg)
+    assert [tile["name"] for tile in found["tiles"]] == ["Walking speed", "Cadence", "Knee, stance to swing"]
+    assert found["table"]["heads"] == []
+    assert found["table"]["marks"] == []
+    assert all(len(row["values"]) == 1 and row["values"] != ["–"] for row in found["table"]["rows"])
+    assert not any(">R " in chart["picture"]["svg"] for chart in found["charts"][0])
+
+
+def test_without_a_mean_there_is_no_table(request_of_demonstration: ReportRequest) -> None:
+    visit = request_of_demonstration.visit
+    few = with_few_strides(visit.analysis, left=2, right=2)
+    assert page(replace(request_of_demonstration, visit=AnalysedVisit(visit.session, few)))["table"] is None
+    assert len(page(request_of_demonstration)["table"]["rows"]) == 5
+
+
+def test_a_comment_is_beside_the_summary_with_who_wrote_it_and_a_long_one_says_where_it_goes_on(
+    request_of_demonstration: ReportRequest,
+) -> None:
+    assert page(request_of_demonstration)["comment"] is None
+    commented = replace(request_of_demonstration, comment="Walks well.", comment_by="M. Weber, physiotherapist")
+    found = page(commented)["comment"]
+    assert (found["lines"], plain(found["by"]), found["is_long"], found["rest"]) == (
+        ["Walks well."],
+        "M. Weber, physiotherapist",
+        False,
+        "",
+    )
+    longer = page(replace(commented, comment="Walks well today. " * 15))["comment"]
+    assert (longer["is_long"], longer["rest"]) == (True, "")
+    assert page(replace(commented, comment="Walks well today. " * 40))["comment"]["rest"]
+
+
+def test_who_was_measured_and_how_is_beside_the_code(request_of_demonstration: ReportRequest) -> None:
+    session = request_of_demonstration.visit.session
+    patient = Patient(code="P-1", birth_year=1961, sex="female", affected_side="left", device="left knee replaced")
+    recordings = tuple(replace(one, condition="shoes") for one in session.recordings)
+    known = replace(session, patient=patient, recordings=recordings)
+    visit = AnalysedVisit(known, request_of_demonstration.visit.analysis)
+    stated = page(replace(request_of_demonstration, visit=visit))["who"]
+    assert plain(stated) == "Woman · born 1961 · affected side: left · left knee replaced · shoes"
+
+
+def test_no_letter_of_page_one_is_smaller_than_nine_points(request_of_demonstration: ReportRequest) -> None:
+    request = replace(returned(request_of_demonstration, -20.0), comment="Walks well.", comment_by="M. Weber")
+    sizes: list[float] = []
+
+    def seen(text: str, matrix: list[float], transform: list[float], _font: object, size: float) -> None:
+        if text.strip():
+            height = abs(transform[3]) + abs(transform[2])  # a turned one is as large
+            sizes.append(round(size * height * (abs(matrix[3]) + abs(matrix[2])), 2))
+
+    pypdf.PdfReader(io.BytesIO(make_report(request))).pages[0].extract_text(visitor_text=seen)
+    assert len(sizes) > 100
+    assert min(sizes) >= SMALLEST - 0.01
