@@ -173,7 +173,7 @@ def slips_in_walks(
     walks
         In order of time; what is usual in one holds in the next.
     lag_s
-        Tells, by the recording's name and the joint, what is added to the distal clock.
+        Gives, by the recording's name and the joint, what is added to the distal clock.
 
     Returns
     -------

@@ -8,7 +8,7 @@ Motion = Callable[[int], Sequence[float]]
 
 
 class EvenVoice(ABC):
-    """The `Voice` of a sensor, but for what it says of a sample and what it hears."""
+    """The `Voice` of a sensor, but for the bytes of a sample and the answers to commands."""
 
     def __init__(self, motion: Motion, now_ns: Callable[[], int]) -> None:
         self._motion, self._now_ns = motion, now_ns

@@ -72,8 +72,8 @@ class MtiVoice(EvenVoice):
         return self.settings.get(Item.RATE, 0)
 
     def say(self) -> bytes:
-        said = super().say()
-        return said if self.is_measuring else b""
+        stated = super().say()
+        return stated if self.is_measuring else b""
 
     def sample(self, number: int) -> bytes:
         moved = self._motion(number)
