@@ -245,10 +245,8 @@ def least_error(name: str, kind: ComparisonKind, mean: float) -> tuple[float, bo
 def _apart(
     name: str, kind: ComparisonKind, sigma: Sigma, means: tuple[float, float], speeds_m_s: Speeds
 ) -> tuple[float, bool]:
-    """What lies between two means, one SD, and whether its source is verified.
-
-    Attachment cannot part a person's legs by more than it does healthy people's, whose natural asymmetry is in theirs.
-    """
+    """What lies between two means, one SD, and whether its source is verified."""
+    # attachment parts a person's legs by no more than healthy people's, whose natural asymmetry is in theirs
     found = math.hypot(*(sigma.of(mean, speed) for mean, speed in zip(means, speeds_m_s, strict=True)))
     limit = healthy_between_legs(name) / Z95 if kind is ComparisonKind.LEGS else math.nan
     return (limit, HEALTHY_SOURCE.is_verified) if limit < found else (found, sigma.is_verified)

@@ -21,7 +21,7 @@ from app.wizard.step import Step, StepId
 from app.wording.translation import tr
 from core.body import LEG_JOINTS, Joint, Site
 from core.live.standing import REQUIRED_S
-from core.samples import RecordingKind
+from core.session import RecordingKind
 
 if TYPE_CHECKING:
     from app.wizard.visit import Visit

@@ -16,7 +16,7 @@ from app.summary.course_lanes import CourseVisit
 from app.summary.facts import Facts
 from app.summary.request import AnalysedVisit, ReportRequest
 from core.body import Joint, Side
-from core.samples import Patient
+from core.session import Patient
 from tests.app.changed_analysis import recalibrated, with_few_strides
 from tests.app.reports.patient.test_what_stands_out import with_more
 

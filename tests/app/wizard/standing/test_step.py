@@ -16,7 +16,7 @@ from app.wizard.standing.page import StandPhase
 from app.wizard.standing.step import StandStillStep
 from app.wizard.visit import Visit
 from core.body import Joint, Site
-from core.samples import RecordingKind
+from core.session import RecordingKind
 from devices.simulation.replay import ReplaySource
 from tests.app.wizard.begun_visit import begin
 from tests.app.wizard.pressing import press
