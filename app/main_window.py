@@ -363,7 +363,7 @@ class MainWindow(QWidget):
 
     def _on_own_library_requested(self) -> None:
         """From the demonstration, back into the library of whoever is still logged in."""
-        if self.entry is None or not self.controller.has_kept:
+        if self.entry is None or self.controller.kept is None:
             self._log_out()
             return
         self._clear()
@@ -570,14 +570,14 @@ def open_window(argv: list[str], language: str = "") -> int:
     settings, folders = Settings(own_settings()), [word for word in app.arguments()[1:] if not word.startswith("-")]
     settings.language = language or settings.language
     settings.language_changed.connect(partial(app.exit, IN_ANOTHER_LANGUAGE))
-    code, kept = _show_window(app, settings, folders, None)
+    code, kept = show_window(app, settings, folders, None)
     while code == IN_ANOTHER_LANGUAGE:
-        code, kept = _show_window(app, settings, [], kept)
+        code, kept = show_window(app, settings, [], kept)
     keep_no_visited_folders()
     return code
 
 
-def _show_window(
+def show_window(
     app: QApplication, settings: Settings, folders: list[str], kept: KeptLogIn | None
 ) -> tuple[int, KeptLogIn | None]:
     """Give what the event loop ended with, and who is logged in where another window follows."""

@@ -240,3 +240,4 @@ def _goal_pen(theme: Theme) -> QPen:
     pen = theme.pen(theme.colours.ink, 1.75)
     pen.setStyle(Qt.PenStyle.DotLine)
     return pen
+

@@ -75,6 +75,12 @@ class StrideLegs(Card):
         self.show_legs(None, {})
 
     @property
+    def least_width(self) -> int:
+        """What its words need, whether there are legs or not."""
+        margins = self.column.contentsMargins()
+        return margins.left() + self.picture.minimumSizeHint().width() + margins.right()
+
+    @property
     def is_playing(self) -> bool:
         return self._timer.isActive()
 

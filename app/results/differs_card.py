@@ -39,7 +39,7 @@ class DiffersCard(Card):
         self._side = SIDE
         super().__init__(look, padding=SIDE)
         self._columns: Sequence[TableColumn] = ()
-        self._rows: Sequence[TableRow] = ()
+        self.rows: Sequence[TableRow] = ()
         self._most = LEAST
         self.table = CellTable(look, tr("Largest differences"), row=ROW, head=HEAD)
         self.column.addWidget(self.table)
@@ -47,12 +47,12 @@ class DiffersCard(Card):
     def show_facts(self, facts: Facts) -> None:
         """What the legs differ in; a single leg has nothing to compare."""
         rows = without_family(what_differs(facts)) if len(facts.gait) == len(Side) else []
-        self._columns, self._rows = _columns(facts), [_row(row) for row in rows]
+        self._columns, self.rows = _columns(facts), [_row(row) for row in rows]
         self._show()
 
     @property
     def has_rows(self) -> bool:
-        return bool(self._rows)
+        return bool(self.rows)
 
     def set_room(self, height: float, *, is_compact: bool) -> None:
         """Show what fits into so many px of the design; nearer to the edge where the page is narrow."""
@@ -65,7 +65,7 @@ class DiffersCard(Card):
 
     def _show(self) -> None:
         if self._columns:
-            self.table.show_rows(self._columns, self._rows[: self._most])
+            self.table.show_rows(self._columns, self.rows[: self._most])
 
     def _on_look_changed(self) -> None:
         px = self._look.theme.px

@@ -23,31 +23,31 @@ class HeadlineText(Themed):
         super().__init__()
         self._look = look
         self._beside: Sequence[str] = ()
-        self._first = Text(look, size=SIZES[0], weight=SEMIBOLD, wraps=True)
-        self._second = Text(look, size=SECOND, tone="ink2", wraps=True)
+        self.first = Text(look, size=SIZES[0], weight=SEMIBOLD, wraps=True)
+        self.second = Text(look, size=SECOND, tone="ink2", wraps=True)
         self.setSizePolicy(QSizePolicy.Policy.Expanding, QSizePolicy.Policy.Preferred)
         self._column = QVBoxLayout(self)
         self._column.setContentsMargins(0, 0, 0, 0)
-        for text in (self._first, self._second):
+        for text in (self.first, self.second):
             self._column.addWidget(text)
         self._on_look_changed()
 
     @property
     def text(self) -> str:
         """Everything, whether it has room or not."""
-        return " ".join(filter(None, [self._first.text(), *self._beside]))
+        return " ".join(filter(None, [self.first.text(), *self._beside]))
 
     @property
     def shown(self) -> str:
         """The second line as far as it has room."""
-        return self._second.text()
+        return self.second.text()
 
     def show_sentences(self, first: str, beside: Sequence[str] = ()) -> None:
         """Show a headline and what belongs to it, the most important first."""
-        is_news = first != self._first.text()
+        is_news = first != self.first.text()
         self._beside = tuple(beside)
-        self._first.setText(first)
-        self._second.setVisible(bool(beside))
+        self.first.setText(first)
+        self.second.setVisible(bool(beside))
         self._fit()
         self.setAccessibleName(self.text)
         self.setToolTip(self.text)
@@ -61,14 +61,14 @@ class HeadlineText(Themed):
     def _fit(self) -> None:
         theme, width = self._look.theme, self.width() - self._look.theme.px(SPARE)
         for size in SIZES:
-            self._first.set_size(size)
-            if QFontMetrics(theme.font(size, SEMIBOLD)).horizontalAdvance(self._first.text()) <= width:
+            self.first.set_size(size)
+            if QFontMetrics(theme.font(size, SEMIBOLD)).horizontalAdvance(self.first.text()) <= width:
                 break
         metrics = QFontMetrics(theme.font(SECOND))
         count = len(self._beside)
         while count > 1 and metrics.horizontalAdvance(" ".join(self._beside[:count])) > width:
             count -= 1
-        self._second.setText(" ".join(self._beside[:count]))
+        self.second.setText(" ".join(self._beside[:count]))
 
     def _on_look_changed(self) -> None:
         self._column.setSpacing(self._look.theme.px(4))

@@ -192,8 +192,7 @@ class ResultPage(Themed):
         if room != self._room or self._is_placed_otherwise():
             self._room = room
             self._place()
-        legs = self._look.theme.px(max(LEGS, LEGS_SHARE * width))
-        self.legs.setFixedWidth(max(legs, _least_width(self.legs)))  # words may need more in another language
+        self.legs.setFixedWidth(max(self._look.theme.px(max(LEGS, LEGS_SHARE * width)), self.legs.least_width))
         self._fit_parts()
         self._fit_table()
 
@@ -360,6 +359,7 @@ class ResultPage(Themed):
         self.compare.set_room(room.is_compact, room.is_spacious, room.has_two_charts, has_view=not room.is_narrow)
         self.strides.set_charts_beside(self._room.has_strides_beside)
         self.tiles.set_brief(self._room.is_compact)
+        self._fit_table()
         hear_as_laid_out(self)
         self._on_look_changed()
         self._offer()

@@ -88,7 +88,12 @@ class ValueTile(Themed):
         if self.tile is None:
             return []
         name = self._name(self.tile)
-        return [name, *(text for text, _ in self._values(self.tile)), *self._change(self.tile), *self._goal(self.tile)]
+        return [
+            name,
+            *(text for text, _ in self.value_texts(self.tile)),
+            *self.change_texts(self.tile),
+            *self.goal_texts(self.tile),
+        ]
 
     def paintEvent(self, _event: QPaintEvent) -> None:
         theme, tile = self._look.theme, self.tile
@@ -100,13 +105,13 @@ class ValueTile(Themed):
             return
         for text in self.painted_texts():
             text.paint(painter, theme.colours)
-        for text, side in self._values(tile):
+        for text, side in self.value_texts(tile):
             if side is not None:
                 left = text.box.left() + QFontMetrics(text.font).horizontalAdvance(text.text) + theme.px(8)
                 size = theme.px(CHIP)
                 paint_chip(painter, QRectF(left, text.box.center().y() - size / 2, size, size), side, theme)
         self._paint_arrow(painter, tile)
-        if (bar := self._bar(tile)) is not None:
+        if (bar := self.bar_of(tile)) is not None:
             self._paint_bar(painter, tile, bar)
 
     def _name(self, tile: Tile) -> PaintedText:
@@ -118,7 +123,7 @@ class ValueTile(Themed):
         text = metrics.elidedText(name, Qt.TextElideMode.ElideRight, int(box.width()))
         return PaintedText(text, box, font, "ink2")
 
-    def _values(self, tile: Tile) -> list[tuple[PaintedText, Side | None]]:
+    def value_texts(self, tile: Tile) -> list[tuple[PaintedText, Side | None]]:
         """Each value, with the side whose chip follows it; the unit is text of its own."""
         theme, px = self._look.theme, self._look.theme.px
         top, height, left = px(26 if self._is_brief else 31), px(34), float(px(SIDE))
@@ -141,14 +146,14 @@ class ValueTile(Themed):
             )
         return found
 
-    def _change(self, tile: Tile) -> list[PaintedText]:
+    def change_texts(self, tile: Tile) -> list[PaintedText]:
         """What has changed: whole where it fits, else without what its arrow states."""
         theme, px, change = self._look.theme, self._look.theme.px, tile.change
         font = theme.font(SMALL, MEDIUM)
         metrics = QFontMetrics(font)
         arrow = px(ARROW[0]) + px(5) if change.rises is not None else 0
         if self._is_brief:
-            values = self._values(tile)
+            values = self.value_texts(tile)
             used = max((text.box.right() for text, _ in values), default=0.0) + px(CHIP if tile.values[0].side else 0)
             room = self.width() - px(SIDE) - used - px(16) - arrow
             shown = next((one for one in (change.brief, change.size) if metrics.horizontalAdvance(one) <= room), "")
@@ -165,7 +170,7 @@ class ValueTile(Themed):
 
     def _paint_arrow(self, painter: QPainter, tile: Tile) -> None:
         """Up or down before the change; filled beyond error, outlined within it."""
-        if tile.change.rises is None or not (texts := self._change(tile)):
+        if tile.change.rises is None or not (texts := self.change_texts(tile)):
             return
         theme, px = self._look.theme, self._look.theme.px
         width, height = px(ARROW[0]), px(ARROW[1])
@@ -179,21 +184,23 @@ class ValueTile(Themed):
         painter.setBrush(QColor(theme.colours.ink) if tile.change.is_beyond_error else Qt.BrushStyle.NoBrush)
         painter.drawPolygon(triangle)
 
-    def _bar(self, tile: Tile) -> QRectF | None:
+    def bar_of(self, tile: Tile) -> QRectF | None:
         """Where the scale is; None where there is no room, or nothing to show on it."""
         px = self._look.theme.px
         if self._is_brief or not any(math.isfinite(one.value) for one in tile.values):
             return None
-        ends = [text.box.right() + (px(CHIP) + px(8) if side is not None else 0) for text, side in self._values(tile)]
+        ends = [
+            text.box.right() + (px(CHIP) + px(8) if side is not None else 0) for text, side in self.value_texts(tile)
+        ]
         right = self.width() - px(SIDE)
         left = max(right - px(BAR), max(ends) + px(14))
         return QRectF(left, px(51), right - left, px(BAR_HEIGHT)) if right - left >= px(LEAST_BAR) else None
 
-    def _goal(self, tile: Tile) -> list[PaintedText]:
+    def goal_texts(self, tile: Tile) -> list[PaintedText]:
         """The first goal over its tick, or alone at the right where there is no scale."""
         if not tile.goal or self._is_brief:
             return []
-        theme, px, bar = self._look.theme, self._look.theme.px, self._bar(tile)
+        theme, px, bar = self._look.theme, self._look.theme.px, self.bar_of(tile)
         font = theme.font(SMALL, REGULAR)
         width = QFontMetrics(font).horizontalAdvance(tile.goal) + 1
         right = self.width() - px(SIDE)

@@ -82,10 +82,14 @@ def write_log(session: Session, analysis: Analysis, path: Path) -> None:
     log = rr.RecordingStream(APPLICATION, recording_id=RECORDING, send_properties=False)
     save(str(path), layout, log.to_native())
     waiting_rows = 0
-    chunks = (part for whole in _chunks(session, analysis, timelines) for part in with_steps(whole, steps))
-    for number, chunk in enumerate(chunks, start=1):
-        rr.send_chunks(_numbered(chunk, number), recording=log)
-        waiting_rows += chunk.num_rows
+    batches = (
+        part
+        for chunk in _chunks(session, analysis, timelines)
+        for part in with_steps(chunk.entity_path, chunk.to_record_batch(), steps)
+    )
+    for number, batch in enumerate(batches, start=1):
+        rr.send_chunks(_numbered(batch, number), recording=log)
+        waiting_rows += batch.num_rows
         if waiting_rows >= ROWS_PER_CHUNK:  # or the chunks would pile up in memory
             log.flush()
             waiting_rows = 0
@@ -452,13 +456,14 @@ def _layout(session: Session, analysis: Analysis, timeline: str | None) -> tuple
         chunks = sorted(reader.stream(store=reader.blueprints()[0]), key=lambda chunk: chunk.entity_path)
     stream = rr.RecordingStream._from_native(new_blueprint(APPLICATION, make_default=False, make_thread_default=False))
     messages = rr.memory_recording(stream)
-    rr.send_chunks([_numbered(chunk, number) for number, chunk in enumerate(chunks, start=1)], recording=stream)
+    rr.send_chunks(
+        [_numbered(chunk.to_record_batch(), number) for number, chunk in enumerate(chunks, start=1)], recording=stream
+    )
     return messages.storage, str(stream.get_recording_id()).encode()
 
 
-def _numbered(chunk: Chunk, number: int) -> Chunk:
-    """Give the same chunk with its name and its rows' names made from `number`, and without the time of writing."""
-    batch = chunk.to_record_batch()
+def _numbered(batch: pa.RecordBatch, number: int) -> Chunk:
+    """Give rows as a chunk with its name and its rows' names made from `number`, and without the time of writing."""
     kept = [i for i, name in enumerate(batch.schema.names) if name not in ("log_time", "log_tick")]
     fields, columns = [batch.schema.field(i) for i in kept], [batch.column(i) for i in kept]
     rows = np.empty((batch.num_rows, 2), dtype=">u8")

@@ -8,7 +8,6 @@ from collections.abc import Iterator, Mapping
 
 import numpy as np
 import pyarrow as pa
-from rerun.chunk import Chunk
 
 from core.results import RecordingAnalysis
 
@@ -28,26 +27,27 @@ def steps_of(recording: RecordingAnalysis) -> tuple[float, float] | None:
     return (min(starts_s), max(ends_s)) if starts_s else None
 
 
-def with_steps(chunk: Chunk, steps: Mapping[str, tuple[float, float]]) -> Iterator[Chunk]:
-    """Yield a chunk whose rows during the steps of its walk have their time twice; `steps` by the walk's timeline."""
-    timeline = next((name for name in chunk.timeline_names if name in steps), None)
+def with_steps(
+    entity: str, batch: pa.RecordBatch, steps: Mapping[str, tuple[float, float]]
+) -> Iterator[pa.RecordBatch]:
+    """Yield rows, those during the steps of their walk with their time twice; `steps` by the walk's timeline."""
+    timeline = next((name for name in batch.schema.names if name in steps), None)
     if timeline is None:
-        yield chunk
+        yield batch
         return
-    batch = chunk.to_record_batch()
     time_ns = batch.column(timeline).cast("int64").to_numpy()
     start_ns, end_ns = (round(time_s * 1e9) for time_s in steps[timeline])
     first, behind = np.searchsorted(time_ns, start_ns), np.searchsorted(time_ns, end_ns, side="right")
     for begin, end in ((0, first), (behind, len(time_ns))):
         if begin < end:
-            yield from Chunk.from_record_batch(batch.slice(begin, end - begin))
+            yield batch.slice(begin, end - begin)
     if first < behind:
-        yield from Chunk.from_record_batch(_timed(batch.slice(first, behind - first), timeline, is_both=True))
-    if first and chunk.entity_path.startswith(LASTING) and (first == len(time_ns) or time_ns[first] > start_ns):
+        yield _timed(batch.slice(first, behind - first), timeline, is_both=True)
+    if first and entity.startswith(LASTING) and (first == len(time_ns) or time_ns[first] > start_ns):
         lasting = _timed(batch.slice(first - 1, 1), timeline, is_both=False)
         at = lasting.schema.get_field_index(steps_name(timeline))
         start = pa.array([start_ns], pa.int64()).cast(lasting.schema.field(at).type)
-        yield from Chunk.from_record_batch(lasting.set_column(at, lasting.schema.field(at), start))
+        yield lasting.set_column(at, lasting.schema.field(at), start)
 
 
 def _timed(batch: pa.RecordBatch, timeline: str, *, is_both: bool) -> pa.RecordBatch:

@@ -95,7 +95,7 @@ def progress_words(visits: Sequence[CourseVisit], condition: str, goals: Sequenc
     judged = next((change for change in last if change.found.is_judged), None)
     if judged is not None:
         return _within(judged, shown, visits, walked, affected)
-    return _values(visits, walked, shown, affected, is_first=not last)
+    return _values(visits, walked, shown, affected)
 
 
 def _changed(
@@ -146,8 +146,6 @@ def _values(
     walked: CourseCondition | None,
     shown: Sequence[CourseLane],
     affected: Side | None,
-    *,
-    is_first: bool,
 ) -> ProgressWords:
     """What was measured at a visit that no earlier one can be compared with."""
     if walked is None:
@@ -163,8 +161,7 @@ def _values(
         sentence = tr("No values were reported on {day}.").format(day=_long_day(number, visits))
     healthy = _healthy_beside(walked) if legs else ""
     goals = _goals_sentence(shown, visits, affected)
-    alone = tr("A trend needs a second visit.") if is_first and len(visits) == 1 else ""
-    return ProgressWords(sentence, " ".join(filter(None, [*others, healthy, goals or alone])))
+    return ProgressWords(sentence, " ".join(filter(None, [*others, healthy, goals])))
 
 
 def _with_brief(words: ProgressWords, change: _Change, visits: Sequence[CourseVisit]) -> ProgressWords:
@@ -263,10 +260,7 @@ def _goal_words(found: GoalFigure, lane: CourseLane, one: LaneChange, affected: 
         return ""
     short = abs(beyond(found.goal, round(found.value, lane.decimals)))
     size = fixed(short, lane.decimals) + _unit(lane.kind.column)
-    if found.goal.is_at_most:
-        pattern = tr("{measure} {size} above its goal")
-    else:
-        pattern = tr("{measure} {size} below its goal")
+    pattern = tr("{measure} {size} above its goal") if found.goal.is_at_most else tr("{measure} {size} below its goal")
     words = pattern.format(measure=name, size=size)
     return tr("{words}, within error").format(words=words) if found.standing is GoalStanding.SHORT_INSIDE else words
 
@@ -277,7 +271,7 @@ def _judged_sentence(change: _Change, visits: Sequence[CourseVisit], affected: S
     if not change.found.exceeds:
         return tr("Since {day}: {changes}, within measurement error.").format(day=day, changes=changes)
     column = change.lane.kind.column
-    error = fixed(change.found.error, decimals(column)) + _unit(column)
+    error = fixed(change.found.error, max(1, decimals(column))) + _unit(column)
     return tr("Since {day}: {changes} (error ±{error}).").format(day=day, changes=changes, error=error)
 
 

@@ -103,17 +103,11 @@ class Tile:
         values = ", ".join(
             " ".join(filter(None, [one.side.letter if one.side is not None else "", one.text])) for one in self.values
         )
-        return ". ".join(
-            filter(
-                None,
-                [
-                    f"{self.name}: {values} {self.unit}".strip(),
-                    self.why,
-                    self.change.words,
-                    self.goal_words or self.goal,
-                ],
-            )
-        )
+        if not any(math.isfinite(one.value) for one in self.values):
+            stated = [f"{self.name}: {self.why}"]
+        else:
+            stated = [f"{self.name}: {values} {self.unit}".strip(), self.why]
+        return ". ".join(filter(None, [*stated, self.change.words, self.goal_words or self.goal]))
 
 
 def tiles_of(facts: Facts) -> tuple[Tile, ...]:

@@ -267,7 +267,7 @@ class VisitHead(TableCell):
         title.paint(painter, room, theme)
         if room.width() < WIDE_VISIT_FROM * theme.scale:
             return
-        end, *rights = self.columns.rights(int(room.width()) - theme.px(NEXT_ROOM), theme)
+        _, *rights = self.columns.rights(int(room.width()) - theme.px(NEXT_ROOM), theme)
         for head, right in zip(self.columns.heads, rights, strict=True):
             left = right - head.width(theme)
             if left > title.width(theme) + theme.px(GAP):
@@ -339,12 +339,7 @@ class LineList(CellTable):
         return self.lines[max(first, 0) : last + 1 if last >= 0 else len(self.lines)] if first >= 0 else ()
 
     def show_lines(
-        self,
-        lines: Sequence[Line],
-        chosen: UUID | None = None,
-        *,
-        stays: bool = False,
-        head: tuple[str, str] = ("", ""),
+        self, lines: Sequence[Line], chosen: UUID | None = None, *, stays: bool = False, head: tuple[str, str] = ("", "")
     ) -> None:
         """Show other lines, with the one that has this id chosen, where it is among them.
 

@@ -24,6 +24,7 @@ from app.widgets.text import MEDIUM, SEMIBOLD
 from app.wording.translation import tr
 
 RING = 26
+ICON, ICON_ALONE = 20, 26
 BAR = 4
 
 
@@ -158,10 +159,8 @@ class RailButton(QAbstractButton):
             box = QRectF(self.rect()).adjusted(0, 2, -theme.px(6), -2)
             theme.paint_box(painter, box, theme.veil(self.isDown()))
         if self._row.icon is not None:
-            ring = self._ring()
-            inset = (ring.width() - theme.px(20)) / 2
             tone = c.ink if self.is_current else c.ink2
-            paint_icon(painter, self._row.icon, ring.adjusted(inset, inset, -inset, -inset), tone)
+            paint_icon(painter, self._row.icon, self.icon_box(), tone)
         else:
             self._paint_line(painter)
             self._paint_ring(painter)
@@ -249,6 +248,12 @@ class RailButton(QAbstractButton):
         side = px(RING)
         middle = px(26 if self._form is RailForm.COMPACT else 30)
         return QRectF(middle - side / 2, (self.height() - side) / 2, side, side)
+
+    def icon_box(self) -> QRectF:
+        """Give the box of the icon of a row that is no step: as large as a step's ring where no word is beside it."""
+        ring, side = self._ring(), self._look.theme.px(ICON_ALONE if self._form is RailForm.COMPACT else ICON)
+        inset = (ring.width() - side) / 2
+        return ring.adjusted(inset, inset, -inset, -inset)
 
     def _cap(self) -> QRectF:
         """Give the box of the key cap, at the right."""

@@ -339,9 +339,9 @@ class LibraryController(QObject):
         self._open(lambda: self._holder.open_kept(kept))
 
     @property
-    def has_kept(self) -> bool:
-        """Whether somebody is still logged in to the library that was open before the demonstration."""
-        return self._holder.kept is not None
+    def kept(self) -> KeptLogIn | None:
+        """Who is still logged in to the library that was open before the demonstration."""
+        return self._holder.kept
 
     def forget(self) -> None:
         """Log out who is logged in behind the demonstration."""

@@ -31,8 +31,9 @@ from core.verdicts.stride_means import MeanOfStrides
 Z95 = 1.96
 ANGLE_PER_LAG_DEG_S = 400.0  # what a joint turns in swing: so much of its angle is at stake per second of lag
 # How many errors a change needs on page one, which chooses among some 16 measures. Between visits 1.5 would find 4
-# points of stance in 14 of 100 healthy people, 1.2 in 61. Within a session errors are small, and 1.2 made a false
-# sentence in 9 and 6 of 48 simulated reports, these factors in 3 and 3 (tests.benchmarks.null_differences).
+# points of stance in 14 of 100 healthy people, 1.2 in 61. With the sensors left on errors are small: 1.2 made a false
+# sentence in 11 of 48 simulated reports, 1.65 in 3 and 1.75 in 2. Strapped again 1.5 makes 2, between days 1.2 makes 3
+# (tests.benchmarks.null_differences).
 SENTENCE_FACTORS: Mapping[ComparisonKind, float] = {
     ComparisonKind.HALVES: 1.75,
     ComparisonKind.ATTACHED: 1.75,

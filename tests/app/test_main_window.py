@@ -263,7 +263,7 @@ def test_five_minutes_without_anybody_log_out_behind_the_demonstration(
     assert window.home is not None
     assert window.entry is not None
     window.lock()  # as `idle` asks for it
-    qtbot.waitUntil(lambda: not window.controller.has_kept, timeout=WAIT_MS)
+    qtbot.waitUntil(lambda: window.controller.kept is None, timeout=WAIT_MS)
     assert window.screens.currentWidget() is window.home  # simulated patients are shown on
     window.home.own_library_requested.emit()
     assert window.screens.currentWidget() is window.entry.log_in
@@ -327,9 +327,9 @@ def test_whoever_changes_the_language_stays_logged_in(
     turns = iter((first, second))
     monkeypatch.setattr(QApplication, "exec", lambda *_: next(turns)())
     try:
-        code, kept = main_window._show_window(qapp, settings, [], None)
+        code, kept = main_window.show_window(qapp, settings, [], None)
         assert (code, kept is not None) == (main_window.IN_ANOTHER_LANGUAGE, True)
-        assert main_window._show_window(qapp, settings, [], kept) == (0, None)
+        assert main_window.show_window(qapp, settings, [], kept) == (0, None)
     finally:
         use_language("en")
     assert "Einstellungen" in seen[0]

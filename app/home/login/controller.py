@@ -327,7 +327,7 @@ class Entry(QObject):
     def _on_not_opened(self, what: str, remedy: str, _is_key: bool) -> None:
         if self._tried:
             self.log_in.refuse(f"{what} {remedy}", self._left_s(self._tried))
-        elif self._controller.has_kept:  # it was the demonstration that did not open
+        elif self._controller.kept is not None:  # it was the demonstration that did not open
             self._refusal = what, remedy
             self.go_on()
         elif (self._folder / KEYS).exists():

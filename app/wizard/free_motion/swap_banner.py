@@ -109,7 +109,7 @@ class SwapBanner(Themed):
         box = QRectF(self.rect()).adjusted(0.5, 0.5, -0.5, -0.5)
         theme.paint_box(painter, box, c.caution, c.caution_edge, 1, CARD_RADIUS)
         mark = self._mark * theme.scale
-        centre = QPointF(px(self._inset) + mark / 2, self._what.parentWidget().height() / 2)
+        centre = QPointF(px(self._inset) + mark / 2, self.height() / 2)
         if self._row.direction() is QBoxLayout.Direction.TopToBottom:
             centre.setY(px(12) + mark / 2)
         painter.setPen(theme.pen(c.caution_mark, 1))

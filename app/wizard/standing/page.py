@@ -32,7 +32,7 @@ KNEE_DEG, ANKLE_DEG = (-60.0, 150.0), (-60.0, 60.0)  # what a goniometer can be 
 MOVED_FOR_S = 1.0  # who moved is named until the count has come this far again
 OFFERED_AFTER = 3  # restarts
 READING = (Joint.LEFT_KNEE, Joint.RIGHT_KNEE, Joint.LEFT_ANKLE, Joint.RIGHT_ANKLE)
-TITLE, LARGE_TITLE, COMPACT_TITLE = 60, 72, 40
+TITLE, LARGE_TITLE, COMPACT_TITLE = 60, 72, 32
 LARGE_FROM = 1500
 ZERO_WIDTH, COMPACT_ZERO_WIDTH = 328, 264
 BARS_WIDTH, LARGE_BARS_WIDTH, COMPACT_BARS_WIDTH = 268, 400, 240
@@ -205,7 +205,7 @@ class StandStillPage(Themed):
 
     def _on_look_changed(self) -> None:
         px = self._look.theme.px
-        across, down = (16, 12) if self._is_compact else (24, 20)
+        across, down = (16, 10) if self._is_compact else (24, 20)
         self._row.setContentsMargins(px(across), px(down), px(across), px(down))
         self._row.setSpacing(px(12 if self._is_compact else 16))
         self._middle.setSpacing(px(12 if self._is_compact else 24))
@@ -301,10 +301,7 @@ class _ZeroCard(Card):
         self._why.setText(why)
         self._why.setVisible(bool(why))
         cannot = tr("Patient cannot stand still")
-        self.button.setText(
-            tr("Patient can stand still") if is_skipped else tr("Cannot stand still") if self._is_compact else cannot
-        )
-        self.button.setAccessibleName(tr("Patient can stand still") if is_skipped else cannot)
+        self.button.setText(tr("Patient can stand still") if is_skipped else cannot)
         self.button.updateGeometry()
         icon, what, then, is_caution = way_round(self._view, self._is_compact)
         self.note.show_message(icon, what, then, is_caution)
@@ -407,7 +404,7 @@ def verdict(view: StandStillView, is_short: bool = False) -> tuple[Icon | None, 
         return Icon.WAVE, what, _moved(view), True
     if not view.is_known:
         return None, "", "", False
-    then = tr("Movement restarts the countdown.")
+    then = "" if is_short else tr("Movement restarts the countdown.")  # in a small window the countdown shows it
     return Icon.CHECK, _all_still(len(view.movement_deg_s)), then, False
 
 

@@ -15,6 +15,7 @@ from app.storage.library import DEMONSTRATOR, Library
 from app.storage.opened import OpenedLibrary, create_library
 from app.storage.stored import LibraryError, Limits, Operator, Role
 from app.summary.course import CourseCondition, change
+from app.summary.course_words import NextKind
 from app.wizard.resuming import read_analysed, read_recordings
 from core.alignment import AlignmentChange, PartChange, ProsthesisPart
 from core.body import LEG_SITES, Joint, Side
@@ -146,7 +147,7 @@ def _knee_is_replaced(reading: PatientReading) -> None:
     assert rises == sorted(rises, reverse=True)
     step = reading.next_step(NOW)
     assert step is not None
-    assert step.sentence.startswith("write the report for")
+    assert step.kind is NextKind.REPORT
 
 
 def _is_after_stroke(reading: PatientReading) -> None:

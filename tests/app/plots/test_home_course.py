@@ -27,7 +27,9 @@ from tests.app.home.course_library import SHOES, STICK, VISITS
 from tests.app.home.patients.test_home_page import patient, session
 from tests.app.room import words_cut
 
-STEP = NextStep(NextKind.REPORT, "Write report of 14 Nov", "Not written yet. Measured 14 Nov 2026.", VISITS[4].id)
+STEP = NextStep(
+    NextKind.REPORT, "Write report of 14 Nov", "Not written yet. Measured 14 Nov 2026.", VISITS[4].id
+)
 
 
 @pytest.fixture

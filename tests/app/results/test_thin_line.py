@@ -236,7 +236,7 @@ def test_a_not_reported_joint_has_no_thin_curve_and_no_difference(
     page.show_visit(AnalysedVisit(session, gated))
     show(page, "walk 1")
     choose(page, "walk 2")
-    knee, ankle = page.cycles.charts.frames
+    _, ankle = page.cycles.charts.frames
     assert set(thin_curves(page)) == {Side.RIGHT}
     assert words_beside(page) == ["L: not reported in B AFO.", ""]
     assert [curve.side for curve in ankle.chart.described.beside] == list(Side)

@@ -210,9 +210,7 @@ def test_what_is_drawn_is_explained_and_nothing_else() -> None:
         "of 100 healthy people."
     )
     assert "arrow" not in key_in_words(lanes([visit(1, shoes())]))
-    assert "Dotted: goal." in key_in_words(
-        lanes([visit(1, shoes())], goals=[goal(SPEED_LANE.column, GoalOf.WALK, 1.0)])
-    )
+    assert "Dotted: goal." in key_in_words(lanes([visit(1, shoes())], goals=[goal(SPEED_LANE.column, GoalOf.WALK, 1.0)]))
 
 
 def latest(days_ago: int = 1, *not_reported: Joint, has_walk: bool = True, has_report: bool = True) -> LatestVisit:

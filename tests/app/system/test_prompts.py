@@ -5,8 +5,10 @@ import wave
 from pathlib import Path
 
 import pytest
+from PySide6.QtCore import QSettings
 
 from app.system.prompts import AGAIN_AFTER_S, Prompter
+from app.system.settings import Settings
 from app.wording.translation import LANGUAGES, use_language
 from tests.app.wizard.free_motion.test_hints import every_hint
 
@@ -104,3 +106,10 @@ def test_prompts_follow_the_language_of_the_screen(room: Room) -> None:
     finally:
         use_language("en")
     assert room.spoken == ["de/recorded"]
+
+
+def test_the_switch_is_off_at_first_and_is_kept(tmp_path: Path) -> None:
+    kept = QSettings(str(tmp_path / "settings.ini"), QSettings.Format.IniFormat)
+    assert not Settings(kept).has_prompts
+    Settings(kept).has_prompts = True
+    assert Settings(kept).has_prompts

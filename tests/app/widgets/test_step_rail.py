@@ -141,3 +141,11 @@ def test_longer_words_take_another_line_and_are_not_cut(
     rail.show_rows(tuple(RailRow(f"{row.title} unumgänglich", f"{row.note} und noch mehr", row.state) for row in STEPS))
     rail.setGeometry(0, 0, rail.width(), 1600)
     assert words_cut(rail) == []
+
+
+def test_an_icon_without_its_word_is_as_large_as_the_ring_of_a_step(rail: StepRail, look: ThemeNotifier) -> None:
+    assert rail.below[-1].icon_box().width() == 20  # beside "Help"
+    rail.set_form(RailForm.COMPACT)
+    assert all(row.icon_box().width() == 26 for row in rail.below)
+    look.set_scale(2.0)
+    assert all(row.icon_box().width() == 52 for row in rail.below)

@@ -399,12 +399,13 @@ def test_after_the_demonstration_the_library_opens_without_its_passphrase_for_th
 ) -> None:
     opened(qtbot, controller, folder, "vi")
     begun_demonstration(qtbot, controller, monkeypatch)
-    assert controller.has_kept
+    kept = controller.kept
+    assert kept is not None
     with qtbot.waitSignal(controller.opened, timeout=WAIT_MS) as reported:
         controller.open_kept()
     (state,) = reported.args or []
     assert (state.operator.code, state.library.folder, state.is_continued) == ("vi", folder, True)
-    assert not controller.has_kept
+    assert controller.kept is None
     asker = Asker()
     controller.run(stored, asker.on_done, asker.on_failed, asker)
     qtbot.waitUntil(lambda: bool(asker.results), timeout=WAIT_MS)
@@ -418,8 +419,8 @@ def test_the_key_that_is_kept_meanwhile_is_one_and_in_no_file(
     assert data_key is not None
     key = bytes(data_key)
     shown = begun_demonstration(qtbot, controller, monkeypatch)
-    assert not data_key  # moved, not copied
-    kept = controller._holder.kept
+    assert bytes(data_key) == b""  # moved, not copied
+    kept = controller.kept
     assert kept is not None
     assert bytes(kept.data_key) == key
     assert key.hex() not in repr(kept)
@@ -435,7 +436,7 @@ def test_who_logs_out_or_left_the_desk_is_not_kept_behind_the_demonstration(
     for log_out in (controller.forget, controller.close):
         opened(qtbot, controller, folder)
         begun_demonstration(qtbot, controller, monkeypatch)
-        kept = controller._holder.kept
+        kept = controller.kept
         assert kept is not None
         log_out()
         with qtbot.waitSignal(controller.not_opened, timeout=WAIT_MS) as reported:
@@ -446,7 +447,7 @@ def test_who_logs_out_or_left_the_desk_is_not_kept_behind_the_demonstration(
     opened(qtbot, controller, folder)
     controller.lock()
     begun_demonstration(qtbot, controller, monkeypatch)
-    assert not controller.has_kept
+    assert controller.kept is None
 
 
 def test_the_next_window_opens_the_library_of_whoever_is_logged_in_and_no_locked_one(
@@ -470,7 +471,7 @@ def test_the_next_window_opens_the_library_of_whoever_is_logged_in_and_no_locked
 def test_at_the_programs_end_nobody_is_kept(qtbot: QtBot, controller: LibraryController, folder: Path) -> None:
     opened(qtbot, controller, folder)
     assert controller.finish() is None
-    assert controller._holder.kept is None
+    assert controller.kept is None
 
 
 def test_long_work_shows_progress_and_is_stopped(qtbot: QtBot, controller: LibraryController, folder: Path) -> None:

@@ -16,6 +16,7 @@ from app.home.home import QUESTIONS, Home
 from app.storage.exchange import import_session
 from app.storage.journal.disk import Room
 from app.system.settings import Settings
+from app.workers.library_controller import LibraryController
 from devices.simulation.walker import FreeMotion, Standing, Walk, WalkerSettings, simulate
 from tests.app.cohort.study.study_tables import MEASURE, random_rows, write_rows
 from tests.app.home.home_library import WAIT_MS
@@ -151,7 +152,7 @@ def test_where_no_session_has_a_recording_no_table_is_made_and_the_page_states_w
 
 @pytest.mark.endurance
 def test_a_table_of_the_whole_library_is_made_and_asked_by_one_button(
-    qtbot: QtBot, home: Home, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+    qtbot: QtBot, home: Home, controller: LibraryController, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     recordings = (Standing(), FreeMotion(duration_s=3.0), Walk(strides=4))
     session = simulate(WalkerSettings(seed=5, recordings=recordings)).session
@@ -162,7 +163,7 @@ def test_a_table_of_the_whole_library_is_made_and_asked_by_one_button(
             kept.append(result)
 
     keeper, room = Keeper(), Room(start_bytes=0, kept_bytes=0)
-    home._controller.run(
+    controller.run(
         lambda opened: import_session(opened, session, lambda *_: None, "DEMO-1", room=room),
         keeper.on_done,
         None,
@@ -181,7 +182,7 @@ def test_a_table_of_the_whole_library_is_made_and_asked_by_one_button(
     page = home.questions.page
     page.make_table.click()
     assert asked_in == [page]
-    assert home.current is home.working
+    assert home.working.isVisible()
     qtbot.waitUntil(lambda: page.found is not None, timeout=60_000)
     assert home.current is page
     assert page.measure.isVisible()

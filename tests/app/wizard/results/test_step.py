@@ -8,7 +8,6 @@ from uuid import UUID
 
 import numpy as np
 import pytest
-from app.results.beside_choice import Beside
 from PySide6.QtCore import Qt
 from PySide6.QtTest import QTest
 from PySide6.QtWidgets import QApplication, QFileDialog
@@ -185,16 +184,15 @@ def test_an_earlier_visit_is_compared_as_worn_again(qtbot: QtBot, visit: Visit, 
         assert strapped_again < row.difference.error < 1.2 * strapped_again  # chance is added
 
 
-def test_the_last_visit_is_read_from_the_library_to_stand_beside_the_walk(
-    qtbot: QtBot, visit: Visit, step: ResultsStep
-) -> None:
+def test_the_last_visit_is_read_from_the_library_and_drawn_thin(qtbot: QtBot, visit: Visit, step: ResultsStep) -> None:
+    """Without that anybody asks for it."""
     results = step.page.results()
-    with qtbot.waitSignal(visit.earlier_read, timeout=60_000):
-        results.beside.setCurrentIndex(results.beside.findData(Beside.LAST_VISIT))
-        assert results.cycles.charts.knee.beside.text() == "Reading earlier visits."  # nobody waits for it
-    assert results.cycles.charts.knee.beside.text() == "Thin line: 2026-09-01."
-    assert results.answer.text.startswith("All judged changes from 2026-09-01 are within measurement error.")
-    assert results.cycles.charts.knee.chart.described.beside
+    knee = results.cycles.charts.knee
+    qtbot.waitUntil(lambda: bool(knee.chart.described.beside), timeout=60_000)
+    assert results.thin.currentData() is ThinLine.LAST_VISIT
+    assert knee.key.words.thin
+    results.thin.turn()
+    assert not knee.chart.described.beside
 
 
 def test_rerun_that_is_missing_is_reported(

@@ -22,7 +22,10 @@ from app.wizard.standing.page import (
     verdict,
     way_round,
 )
+from app.wording.translation import tr, use_language
 from core.body import LEG_JOINTS, LEG_SITES, Joint, Site
+from tests.app.accessibility.framed_pages import framed
+from tests.app.room import settle, words_cut
 
 STILL: dict[str, float] = dict.fromkeys(LEG_SITES, 0.4)
 
@@ -247,3 +250,28 @@ def test_a_sensor_moves_just_when_its_figure_reaches_the_limit() -> None:
     view = counting(still_s=2.0)
     assert replace(view, movement_deg_s=STILL | {Site.LEFT_FOOT: view.limit_deg_s}).moving == (Site.LEFT_FOOT,)
     assert replace(view, movement_deg_s=STILL | {Site.LEFT_FOOT: view.limit_deg_s - 0.01}).moving == ()
+
+
+@pytest.mark.parametrize("language", ["en", "de"])
+@pytest.mark.parametrize("name", ["ready to stand", "cannot stand"])
+def test_at_200_percent_the_way_without_standing_is_in_sight_in_its_whole_words(
+    qtbot: QtBot, look: ThemeNotifier, name: str, language: str
+) -> None:
+    use_language(language)
+    try:
+        look.set_scale(2.0)
+        shell = framed(look, name)
+        qtbot.addWidget(shell)
+        shell.resize(1920, 1200)
+        shell.show()
+        settle()
+        page = shell.findChild(StandStillPage)
+        assert isinstance(page, StandStillPage)
+        area = page.parentWidget()
+        assert area is not None
+        assert page.height() <= area.height()  # nothing scrolls
+        words = "Patient can stand still" if name == "cannot stand" else "Patient cannot stand still"
+        assert page.zero.button.text() == tr(words)
+        assert words_cut(shell) == []
+    finally:
+        use_language("en")

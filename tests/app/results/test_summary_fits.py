@@ -1,0 +1,226 @@
+"""The summary in the windows that it is for: the same parts in the same order, nothing cut, nothing scrolls."""
+
+import datetime
+from collections.abc import Callable, Iterator
+from dataclasses import replace
+from functools import cache
+from uuid import UUID
+
+import pytest
+from PySide6.QtCore import QPoint
+from PySide6.QtWidgets import QWidget
+from pytestqt.qtbot import QtBot
+
+from app.results.result_page import ANSWER, TABLE, ResultPage
+from app.summary.course import course_of
+from app.summary.course_lanes import CourseVisit
+from app.summary.request import AnalysedVisit
+from app.summary.visits import WalkedVisit, conditions_in_words, visits_by_condition
+from app.theme.notifier import ThemeNotifier
+from app.wording.translation import use_language
+from core.analysis import analyse
+from core.body import Joint, Side
+from core.goals import Goal, GoalOf
+from core.results import Analysis
+from core.samples import Session
+from core.verdicts.norms import AgeAndHeight
+from devices.simulation.walker import DEMONSTRATION, FreeMotion, Standing, Walk, simulate
+from tests.app.changed_analysis import recalibrated, rewalked, visit_of, walk_of
+from tests.app.hip_visits import hip_visit
+from tests.app.reports.patient.test_what_stands_out import with_more
+from tests.app.room import settle, words_cut
+
+# of the page in px of the design, and the size of everything
+ROOMS = {
+    "1280 x 800": (1064, 672, 1.0),
+    "960 x 600": (896, 480, 1.0),
+    "1920 x 1080": (1704, 952, 1.0),
+    "1920 x 1200 at 200 %": (896, 480, 2.0),
+}
+Place = Callable[[str, str], ResultPage]
+DAYS = (datetime.date(2025, 7, 1), datetime.date(2025, 9, 23), datetime.date(2026, 11, 23))
+
+
+@cache
+def session() -> Session:
+    walk = Walk(strides=13, speed_m_s=1.15)
+    return simulate(replace(DEMONSTRATION, recordings=(Standing(), FreeMotion(), walk))).session
+
+
+@cache
+def analysis() -> Analysis:
+    return analyse(session())
+
+
+def return_visit() -> tuple[AnalysedVisit, list[WalkedVisit]]:
+    """A third visit with goals: a change since the first of another year has the longest sentence and tiles."""
+    first = with_more(analysis(), Side.LEFT, "knee_stance_to_swing_rad", -22.0)
+    last = with_more(first, Side.LEFT, "stance_percent", 0.5)
+    goals = (
+        Goal("speed_m_s", GoalOf.WALK, 1.2, DAYS[0]),
+        *(Goal("knee_stance_to_swing_deg", of, 60.0, DAYS[0]) for of in (GoalOf.LEFT, GoalOf.RIGHT)),
+    )
+    visit = visit_of(analysis(), session(), AgeAndHeight(50, 1.8))
+    visit = replace(visit, session=replace(visit.session, patient=replace(visit.session.patient, goals=goals)))
+    analyses = zip(DAYS, (first, last, analysis()), strict=True)
+    return visit, [WalkedVisit(str(day), one, session().recordings, day) for day, one in analyses]
+
+
+def first_visit() -> tuple[AnalysedVisit, list[WalkedVisit]]:
+    return visit_of(analysis(), session(), AgeAndHeight(50, 1.8)), []
+
+
+def not_reported() -> tuple[AnalysedVisit, list[WalkedVisit]]:
+    return visit_of(recalibrated(analysis(), [Joint.LEFT_KNEE], axis_sd_rad=0.2), session()), []
+
+
+def one_leg() -> tuple[AnalysedVisit, list[WalkedVisit]]:
+    gait = {Side.RIGHT: walk_of(analysis()).gait[Side.RIGHT]}
+    return visit_of(rewalked(analysis(), gait=gait), session()), []
+
+
+def with_hips() -> tuple[AnalysedVisit, list[WalkedVisit]]:
+    return hip_visit(), []
+
+
+CASES: dict[str, Callable[[], tuple[AnalysedVisit, list[WalkedVisit]]]] = {
+    "first visit": first_visit,
+    "return visit": return_visit,
+    "not reported": not_reported,
+    "one leg": one_leg,
+    "hips": with_hips,
+}
+
+
+@pytest.fixture(params=["de", pytest.param("en", marks=pytest.mark.endurance)])  # German is longer
+def language(request: pytest.FixtureRequest) -> Iterator[str]:
+    use_language(request.param)
+    yield request.param
+    use_language("en")
+
+
+@pytest.fixture
+def holders() -> list[QWidget]:
+    """What pages are in, for as long as the test."""
+    return []
+
+
+@pytest.fixture
+def placed(qtbot: QtBot, look: ThemeNotifier, holders: list[QWidget]) -> Place:
+    """The page of a case, exactly as large as its room."""
+
+    def place(case: str, room: str) -> ResultPage:
+        holder = QWidget()
+        holders.append(holder)
+        qtbot.addWidget(holder)
+        return in_room(holder, look, case, room)
+
+    return place
+
+
+def in_room(holder: QWidget, look: ThemeNotifier, case: str, room: str) -> ResultPage:
+    width, height, scale = ROOMS[room]
+    look.set_scale(scale)
+    visit, walked = CASES[case]()
+    course = tuple(
+        CourseVisit(UUID(int=number), day, course_of(one.analysis, one.recordings))
+        for number, (day, one) in enumerate(zip(DAYS, walked, strict=False))
+    )
+    page = ResultPage(look)
+    page.setParent(holder)
+    page.set_has_visits(bool(walked))
+    page.set_room(width, height)
+    page.show_visit(visit, course=course)
+    if walked:
+        page.show_visits(visits_by_condition(walked), conditions_in_words(walked))
+    holder.resize(look.theme.px(width), look.theme.px(height))
+    holder.show()
+    page.show()
+    settle()
+    page.resize(holder.size())
+    settle()
+    return page
+
+
+def assert_fits(page: ResultPage) -> None:
+    holder = page.parentWidget()
+    assert holder is not None
+    room = holder.size()
+    assert page.minimumSizeHint().width() <= room.width()
+    assert page.minimumSizeHint().height() <= room.height()
+    assert page.size() == room
+    assert words_cut(page) == []
+
+
+@pytest.mark.parametrize("room", ROOMS)
+@pytest.mark.parametrize("case", CASES)
+def test_nothing_of_a_summary_is_cut_or_scrolls(placed: Place, language: str, case: str, room: str) -> None:
+    page = placed(case, room)
+    assert page.view.choice == ANSWER
+    assert_fits(page)
+    if page.part.isVisible():
+        page.part.choose(TABLE)
+        settle()
+        assert_fits(page)
+
+
+@pytest.mark.parametrize("room", ROOMS)
+def test_the_same_parts_are_there_in_the_same_order(placed: Place, room: str) -> None:
+    """Where room is short curves and table take turns, and the legs are asked for; none is left out."""
+    page = placed("return visit", room)
+    charts = page.cycles.charts
+    always = [page.view, page.headline, page.tiles, page.door, page.all_figures]
+    assert all(part.isVisible() for part in always)
+    assert [tile.isVisible() for tile in page.tiles.tiles] == [True] * 4
+    assert charts.knee.isVisible()
+    assert charts.ankle.isVisible()
+    order = [page.view, page.headline, page.tiles, charts.knee, page.door]
+    if page.part.isVisible():
+        page.part.choose(TABLE)
+        settle()
+        assert page.differs.isVisible()
+        order[3] = page.differs
+    else:
+        assert page.differs.isVisible()
+        assert page.legs.isVisible()
+        order[4:4] = [page.differs]
+    tops = [part.mapTo(page, QPoint(0, 0)).y() for part in order]
+    assert tops == sorted(tops)
+    assert page.differs.table.cells.rowCount() >= 3
+
+
+def test_legs_asked_for_where_room_is_short_fit_too(placed: Place, language: str) -> None:
+    page = placed("not reported", "960 x 600")
+    page.show_legs.click()
+    settle()
+    assert page.legs.isVisible()
+    assert_fits(page)
+
+
+def test_a_session_without_walks_shows_its_recording_whole(qtbot: QtBot, look: ThemeNotifier) -> None:
+    recordings = tuple(one for one in analysis().recordings if one.name != "walk 1")
+    page = ResultPage(look)
+    qtbot.addWidget(page)
+    page.set_room(1064, 672)
+    page.show_visit(AnalysedVisit(session(), replace(analysis(), recordings=recordings)))
+    page.show()
+    assert page.whole.isVisible()
+    for part in (page.headline, page.tiles, page.cycles, page.legs, page.differs, page.thin, page.show_legs):
+        assert not part.isVisible()
+    assert page.headline.text == ""
+    page.show_visit(AnalysedVisit(session(), replace(analysis(), recordings=())))
+    assert page.recording is None
+    shown = [page.headline.isVisible(), page.cycles.isVisible(), page.legs.isVisible(), page.recordings.isVisible()]
+    assert shown == [False] * 4
+
+
+@pytest.mark.parametrize("room", ROOMS)
+def test_the_keyboard_goes_through_the_summary_in_the_order_of_reading(
+    placed: Place, look: ThemeNotifier, room: str
+) -> None:
+    page = placed("return visit", room)
+    shown = [widget for widget in page.tab_order if widget.isVisible() and widget.isEnabled()]
+    places = [widget.mapTo(page, QPoint(0, 0)) for widget in shown]
+    rows = [one.y() for one in places]
+    assert rows == sorted(rows, key=lambda y: y // look.theme.px(30))
+    assert page.legs in shown or page.part.isVisible()
