@@ -240,4 +240,3 @@ def _goal_pen(theme: Theme) -> QPen:
     pen = theme.pen(theme.colours.ink, 1.75)
     pen.setStyle(Qt.PenStyle.DotLine)
     return pen
-

@@ -138,9 +138,7 @@ class CourseLane:
             for found, number in ((one.since_first, one.first), (one.since_last, one.before))
             if found is not None and number is not None and math.isfinite(found.difference)
         ]
-        is_even = all(
-            round(last.value) - round(first.value) == round(found.difference) for found, first, last in pairs
-        )
+        is_even = all(round(last.value) - round(first.value) == round(found.difference) for found, first, last in pairs)
         return 0 if is_even else 1
 
     @property

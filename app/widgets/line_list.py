@@ -339,7 +339,12 @@ class LineList(CellTable):
         return self.lines[max(first, 0) : last + 1 if last >= 0 else len(self.lines)] if first >= 0 else ()
 
     def show_lines(
-        self, lines: Sequence[Line], chosen: UUID | None = None, *, stays: bool = False, head: tuple[str, str] = ("", "")
+        self,
+        lines: Sequence[Line],
+        chosen: UUID | None = None,
+        *,
+        stays: bool = False,
+        head: tuple[str, str] = ("", ""),
     ) -> None:
         """Show other lines, with the one that has this id chosen, where it is among them.
 

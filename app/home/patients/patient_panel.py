@@ -41,7 +41,12 @@ from core.parameters import SPEED
 VISIT_ROW, VISIT_HEAD = 58, 38
 CONDITION = 36  # high, in the head of the card
 WALKING, TESTS = "walking", "tests"
-ICONS = {NextKind.REVIEW: Icon.WARNING, NextKind.REPORT: Icon.EDIT, NextKind.GOALS: Icon.GOAL, NextKind.SESSION: Icon.PLAY}
+ICONS = {
+    NextKind.REVIEW: Icon.WARNING,
+    NextKind.REPORT: Icon.EDIT,
+    NextKind.GOALS: Icon.GOAL,
+    NextKind.SESSION: Icon.PLAY,
+}
 
 
 class PatientPanel(TallPage):
@@ -269,7 +274,10 @@ class PatientPanel(TallPage):
 def _values_at(number: int | None, lane: CourseLane, unit: str) -> str:
     """What a visit has of a lane, of both legs with their letters; empty where it has nothing."""
     points = [
-        (line.side, point) for line in lane.lines for point in line.points if number is not None and point.visit == number
+        (line.side, point)
+        for line in lane.lines
+        for point in line.points
+        if number is not None and point.visit == number
     ]
     if points and not any(point.is_reported for _, point in points):
         return tr("not reported")
