@@ -35,7 +35,7 @@ Criterion = tuple[str, str, Callable[[Joint, JointCalibration], str], str]
 def evidence(facts: Facts) -> list[Block]:
     """What each verdict rests on, and how large a difference must be: where strides are compared, with hips if room."""
     hips, errors = hips_table(facts), error_table() if facts.gait else []
-    return [*evidence_table(facts), *hips, *([if_room(errors)] if errors else [])]
+    return [*evidence_table(facts), *hips, *([if_room(errors)] if hips and errors else errors)]
 
 
 def evidence_table(facts: Facts) -> list[Block]:
