@@ -9,12 +9,12 @@ from dataclasses import replace
 import numpy as np
 
 from core.angles.measure import Twist, measure
-from core.body import LEG_JOINTS, Joint, Segment, Side, Site, ankle_of, knee_of
+from core.body import LEG_JOINTS, Joint, Segment, Side, Site, knee_of
 from core.calibration import certainty
-from core.calibration.axis_halves import AxesOfParts, Slipped, axis_halves_in
-from core.calibration.calibrated import Bases, calibrate
+from core.calibration.axis_halves import AxesOfParts, axis_halves_in
+from core.calibration.calibrated import calibrate
 from core.calibration.clinical_sign import range_of
-from core.calibration.identified import Identified, clock_moved_s, identify
+from core.calibration.identified import clock_moved_s, identify
 from core.calibration.rate_kind import tracks_of_kind
 from core.calibration.strap import slips_in_walks
 from core.calibration.validity import Basis, basis_of, spans_of_validity
@@ -24,7 +24,7 @@ from core.gait.chosen_strides import leave_out
 from core.gait.inclination import inclination
 from core.gait.strides import Reason
 from core.gait.walking import clocks_in, gait_in, prosthetic_sides, site_of_events
-from core.hip.analysis import HipsOfSpan, find_hips, with_hips
+from core.hip.analysis import find_hips, with_hips
 from core.placement.labels import doubted_labels
 from core.published.angles import DEFAULT_TAU_S
 from core.results import (
@@ -36,11 +36,13 @@ from core.results import (
     RecordingAnalysis,
     SideGait,
 )
-from core.samples import FloatArray, Patient, Recording, RecordingKind, Session
+from core.samples import FloatArray
+from core.session import Patient, Recording, RecordingKind, Session
 from core.signal.clock_drift import about_clocks, clock_drifts
 from core.signal.reception import receptions
 from core.signal.robust import robust_sd
 from core.signal.sensors import SensorTracks
+from core.span import JointAnalysis, SpanAnalysis
 from core.timed.protocols import DEFINITIONS
 from core.timed.timing import time_test
 from core.verdicts.gates import verdicts_of
@@ -125,46 +127,29 @@ def _analyse_span(
     session: Session, tracks: SensorTracks, method: Method, tau_s: float, steps: "_Steps"
 ) -> tuple[list[Calibration], list[RecordingAnalysis], list[Finding]]:
     """Everything of one span: what every joint is, and the angles and gait of what moves."""
-    span, stiff_sides = tracks.span, _stiff_sides(session.patient)
-    has_stood = any(r.is_kept and r.kind is RecordingKind.STANDING for r in session.recordings)
     doubted, drifts = doubted_labels(tracks), clock_drifts(tracks)
     findings = [*doubted.findings, *about_clocks(drifts)]
-    bases = _bases(tracks)
-    steps.expect(len(set(bases.values())) + len(bases))
-    identified = _identify(tracks, bases, method, tau_s, steps)
-    lags, noticed = _lags(tracks, bases, identified)
-    findings += noticed
-    hips = find_hips(tracks)
-    measured = _measure(tracks, bases, identified, lags, hips, steps)
-    calibrated = calibrate(tracks, bases, identified, measured, method)
-    for basis, calibration in calibrated.items():
-        joint = basis.joint
+    span = SpanAnalysis(tracks, _bases(tracks), doubted.sites, drifts)
+    steps.expect(len(set(span.bases.values())) + len(span.bases))
+    _identify(span, method, tau_s, steps)
+    findings += _find_lags(span)
+    span.hips = find_hips(tracks)
+    _measure(span, steps)
+    calibrate(span, method)
+    has_stood = any(r.is_kept and r.kind is RecordingKind.STANDING for r in session.recordings)
+    for found in span.joints.values():
+        joint = found.basis.joint
         turned, is_zero_typed = session.turned_sign.get(joint), joint in session.zero_rad
-        findings += about_joint(calibration, identified[basis], turned, is_zero_typed, has_stood)
-    by_walk = _by_walk(span, bases, calibrated)
-    slipped, noticed = _slipped(tracks, by_walk, lags)
-    findings += noticed
+        findings += about_joint(found.calibration, found.identified, turned, is_zero_typed, has_stood)
+    by_walk = _by_walk(span)
+    findings += _find_slips(span, by_walk)
     recordings: list[RecordingAnalysis] = []
-    parts = AxesOfParts(tracks, bases, identified, lags, slipped)
-    for recording in _moving(span):
-        found = _angles(tracks, recording, bases, calibrated, measured, lags, hips)
-        found = _before_slips(found, slipped)
-        if recording.test is not None and recording.kind is RecordingKind.WALKING:
-            is_walked = DEFINITIONS[recording.test.protocol].is_walked
-            gait = found.gait if is_walked else {}
-            found = replace(found, timed=time_test(tracks, recording, recording.test), gait=gait)
-        found = replace(found, clocks=clocks_in(tracks, recording, found.gait, _lags_in(recording, lags)))
-        found = replace(found, drifting_percent={s: p for (name, s), p in drifts.items() if name == recording.name})
-        found = replace(found, doubted_sites=doubted.sites)
-        here = {joint: calibrated[bases[recording.name, joint]] for joint in found.joints}
-        if recording.kind is RecordingKind.WALKING:
-            offsets_s = {j: _offset_of_s(recording, j.proximal, lags) + hips.offset_s(recording, j.side) for j in here}
-            found = replace(found, axis_halves=axis_halves_in(parts, recording, found.gait, here, offsets_s))
-        found = with_hips(found, tracks, recording, hips, here)
-        found = replace(found, verdicts=verdicts_of(found, here, stiff_sides))
-        recordings.append(found)
-        findings += [*about_angles(found), *about_turns(found)]
-        findings += about_walk(found, {side: site_of_events(tracks, recording, side) for side in found.gait})
+    parts = AxesOfParts(span)
+    for recording in span.moving:
+        analysed = _recording(span, recording, parts)
+        recordings.append(analysed)
+        findings += [*about_angles(analysed), *about_turns(analysed)]
+        findings += about_walk(analysed, {side: site_of_events(tracks, recording, side) for side in analysed.gait})
     return by_walk, recordings, findings
 
 
@@ -196,76 +181,54 @@ class _Steps:
         self._done += 1
 
 
-def _moving(span: tuple[Recording, ...]) -> list[Recording]:
-    return [recording for recording in span if recording.kind is not RecordingKind.STANDING]
-
-
-def _bases(tracks: SensorTracks) -> Bases:
+def _bases(tracks: SensorTracks) -> dict[tuple[str, Joint], Basis]:
     return {
         (recording.name, joint): basis_of(tracks.span, recording, joint, tracks.is_usable)
-        for recording in _moving(tracks.span)
+        for recording in tracks.span
         for joint in LEG_JOINTS
-        if tracks.is_usable(recording, joint.proximal, joint.distal)
+        if recording.kind is not RecordingKind.STANDING and tracks.is_usable(recording, joint.proximal, joint.distal)
     }
 
 
-def _identify(
-    tracks: SensorTracks, bases: Bases, method: Method, tau_s: float, steps: _Steps
-) -> dict[Basis, Identified]:
+def _identify(span: SpanAnalysis, method: Method, tau_s: float, steps: _Steps) -> None:
     """Every joint; knees first, since they help their ankles."""
-    identified: dict[Basis, Identified] = {}
-    for name, joint in sorted(bases, key=lambda of: not of[1].is_knee):
-        basis = bases[name, joint]
-        if basis in identified:
+    tried: set[Basis] = set()
+    for name, joint in sorted(span.bases, key=lambda of: not of[1].is_knee):
+        basis = span.bases[name, joint]
+        if basis in tried:
             continue
-        steps.tick(str(basis.joint))
-        knee = bases.get((name, knee_of(joint.side)))
-        found = identify(tracks, basis, method, tau_s, identified.get(knee) if knee else None)
+        tried.add(basis)
+        steps.tick(str(joint))
+        knee = None if joint.is_knee else span.joint(name, knee_of(joint.side))
+        found = identify(span.tracks, basis, method, tau_s, knee.identified if knee else None)
         if found is not None:
-            identified[basis] = found
-    return identified
+            span.joints[basis] = JointAnalysis(found, knee)
 
 
-def _lags(
-    tracks: SensorTracks, bases: Bases, identified: dict[Basis, Identified]
-) -> tuple[dict[tuple[str, Joint], float], list[Finding]]:
-    """The lag of each joint in each recording, and a finding where a recording has another than the identification."""
-    lags, findings = {}, []
-    for (name, joint), basis in bases.items():
-        found = identified.get(basis)
-        if found is None:
-            continue
-        lags[name, joint] = found.geometry.lag_s
-        if found.robust is not None and found.recordings != (name,):
-            recording = next(r for r in tracks.span if r.name == name)
-            moved_s = clock_moved_s(tracks, recording, found)
-            if moved_s:
-                lags[name, joint] += moved_s
-                numbers = {"lag_ms": round(1000 * moved_s, 1)}
-                findings.append(Finding("clock_moved", Severity.WARNING, f"{name}, {joint}", numbers))
-    return lags, findings
+def _find_lags(span: SpanAnalysis) -> list[Finding]:
+    """The lag of each joint in each recording; a finding where a recording has another than the identification."""
+    findings = []
+    for recording in span.moving:
+        for joint, one in span.joints_in(recording).items():
+            found, name = one.identified, recording.name
+            one.lags_s[name] = found.geometry.lag_s
+            if found.robust is not None and found.recordings != (name,):
+                moved_s = clock_moved_s(span.tracks, recording, found)
+                if moved_s:
+                    one.lags_s[name] += moved_s
+                    numbers = {"lag_ms": round(1000 * moved_s, 1)}
+                    findings.append(Finding("clock_moved", Severity.WARNING, f"{name}, {joint}", numbers))
+    return findings
 
 
-def _measure(
-    tracks: SensorTracks,
-    bases: Bases,
-    identified: dict[Basis, Identified],
-    lags: dict[tuple[str, Joint], float],
-    hips: HipsOfSpan,
-    steps: _Steps,
-) -> dict[tuple[str, Joint], Twist]:
-    measured: dict[tuple[str, Joint], Twist] = {}
-    for recording in _moving(tracks.span):
-        time_s = _clock_of(tracks, recording)
-        for joint in LEG_JOINTS:
-            basis = bases.get((recording.name, joint))
-            if basis is None or basis not in identified:
-                continue
+def _measure(span: SpanAnalysis, steps: _Steps) -> None:
+    for recording in span.moving:
+        time_s = _clock_of(span.tracks, recording)
+        for joint, one in span.joints_in(recording).items():
             steps.tick(recording.name)
-            offset_s = _offset_of_s(recording, joint.proximal, lags) + hips.offset_s(recording, joint.side)
-            geometry = replace(identified[basis].geometry, lag_s=lags[recording.name, joint])
-            measured[recording.name, joint] = measure(tracks, recording, joint, geometry, time_s, offset_s)
-    return measured
+            offset_s = span.offset_s(recording, joint.proximal)
+            geometry = replace(one.identified.geometry, lag_s=one.lags_s[recording.name])
+            one.twists[recording.name] = measure(span.tracks, recording, joint, geometry, time_s, offset_s)
 
 
 def _clock_of(tracks: SensorTracks, recording: Recording) -> FloatArray:
@@ -276,58 +239,68 @@ def _clock_of(tracks: SensorTracks, recording: Recording) -> FloatArray:
     return np.empty(0)
 
 
-def _by_walk(span: tuple[Recording, ...], bases: Bases, calibrated: dict[Basis, JointCalibration]) -> list[Calibration]:
-    """Walks that share the calibration of every joint go together.
-
-    What a free motion shows of joints that no walk holds comes first, without walks.
-    """
+def _by_walk(span: SpanAnalysis) -> list[Calibration]:
+    """Walks that share the calibration of every joint; first, without walks, joints that only a free motion shows."""
     groups: dict[tuple[Basis, ...], list[str]] = {}
-    walks = [recording for recording in span if recording.kind is RecordingKind.WALKING]
-    for recording in walks or _moving(span):
-        key = tuple(bases[recording.name, joint] for joint in LEG_JOINTS if (recording.name, joint) in bases)
-        groups.setdefault(key, []).extend([recording.name] if walks else [])
+    for recording in span.walks or span.moving:
+        bases = (span.bases.get((recording.name, joint)) for joint in LEG_JOINTS)
+        key = tuple(basis for basis in bases if basis is not None)
+        groups.setdefault(key, []).extend([recording.name] if span.walks else [])
     in_walks = {basis.joint for key in groups for basis in key}
-    alone = {basis.joint: found for basis, found in calibrated.items() if basis.joint not in in_walks}
+    alone = {basis.joint: one.calibration for basis, one in span.joints.items() if basis.joint not in in_walks}
     by_walk = [
-        Calibration(tuple(names), {basis.joint: calibrated[basis] for basis in key if basis in calibrated})
+        Calibration(tuple(names), {b.joint: span.joints[b].calibration for b in key if b in span.joints})
         for key, names in groups.items()
     ]
     return [*([Calibration((), alone)] if alone else []), *by_walk]
 
 
-def _angles(
-    tracks: SensorTracks,
-    recording: Recording,
-    bases: Bases,
-    calibrated: dict[Basis, JointCalibration],
-    measured: dict[tuple[str, Joint], Twist],
-    lags: dict[tuple[str, Joint], float],
-    hips: HipsOfSpan,
-) -> RecordingAnalysis:
-    """Turn the twists of one recording to the clinical sign and zero, and say how sure they are."""
-    joints: dict[Joint, JointAngle] = {}
-    for joint in LEG_JOINTS:
-        basis, found = bases.get((recording.name, joint)), measured.get((recording.name, joint))
-        if basis is None or found is None:
-            continue
-        joints[joint] = _angle(calibrated[basis], found, _ringing_rad_s(tracks, joint, measured))
-    time_s, gait = _clock_of(tracks, recording), dict[Side, SideGait]()
-    if recording.kind is RecordingKind.WALKING:
-        offsets = {
-            side: _clock_offset_s(tracks, recording, side, lags) + hips.offset_s(recording, side) for side in Side
-        }
-        leaning: dict[Site, FloatArray] = {}
-        for joint in (knee for knee in joints if knee.is_knee):
-            leaning |= _inclinations(tracks, calibrated[bases[recording.name, joint]], measured[recording.name, joint])
-        gait = gait_in(tracks, recording, time_s, joints, offsets, leaning)
+def _recording(span: SpanAnalysis, recording: Recording, parts: AxesOfParts) -> RecordingAnalysis:
+    """Angles and gait of one recording, and what of them may be stated."""
+    tracks, name, is_walk = span.tracks, recording.name, recording.kind is RecordingKind.WALKING
+    found, time_s = span.joints_in(recording), _clock_of(span.tracks, recording)
+    joints = {j: _angle(one.calibration, one.twists[name], span.ringing_rad_s(j)) for j, one in found.items()}
+    test = recording.test if is_walk else None
+    gait: dict[Side, SideGait] = {}
+    if is_walk and (test is None or DEFINITIONS[test.protocol].is_walked):
+        gait = _gait(span, recording, time_s, joints)
     nominal_hz = {site: info.rate_hz for site, info in tracks.session.sensors.items()}
-    offsets_s = {
-        site: _offset_of_s(recording, site, lags) + (hips.offset_s(recording, site.side) if site.side else 0.0)
-        for site in recording.imu
-        if tracks.is_usable(recording, site)
-    }
-    received = receptions(recording, nominal_hz, offsets_s)
-    return RecordingAnalysis(recording.name, recording.folder, recording.kind, time_s, joints, gait, received)
+    offsets_s = {site: span.offset_s(recording, site) for site in recording.imu if tracks.is_usable(recording, site)}
+    analysed = RecordingAnalysis(
+        name=name,
+        folder=recording.folder,
+        kind=recording.kind,
+        time_s=time_s,
+        joints=joints,
+        gait=gait,
+        received=receptions(recording, nominal_hz, offsets_s),
+        slipped_from_s={side: span.slipped_s[name, side] for side in Side if (name, side) in span.slipped_s},
+        drifting_percent={site: percent for (walk, site), percent in span.drifts_percent.items() if walk == name},
+        doubted_sites=span.doubted_sites,
+        axis_halves=axis_halves_in(parts, recording, gait) if is_walk else {},
+        clocks=clocks_in(tracks, recording, gait, {joint: one.lags_s[name] for joint, one in found.items()}),
+        timed=time_test(tracks, recording, test) if test is not None else None,
+    )
+    calibrated = {joint: one.calibration for joint, one in found.items()}
+    analysed = with_hips(analysed, tracks, recording, span.hips, calibrated)
+    return replace(analysed, verdicts=verdicts_of(analysed, calibrated, _stiff_sides(tracks.session.patient)))
+
+
+def _gait(
+    span: SpanAnalysis, recording: Recording, time_s: FloatArray, joints: dict[Joint, JointAngle]
+) -> dict[Side, SideGait]:
+    """Both sides' gait, without the strides of a side after its strap slipped."""
+    sites = {side: site_of_events(span.tracks, recording, side) or Site(f"{side}_{Segment.SHANK}") for side in Side}
+    offsets_s = {side: span.offset_s(recording, site) for side, site in sites.items()}
+    leaning: dict[Site, FloatArray] = {}
+    for joint, one in span.joints_in(recording).items():
+        if joint.is_knee:
+            leaning |= _inclinations(span.tracks, one.calibration, one.twists[recording.name])
+    gait = gait_in(span.tracks, recording, time_s, joints, offsets_s, leaning)
+    slipped = {side: span.slipped_s[recording.name, side] for side in gait if (recording.name, side) in span.slipped_s}
+    for side, from_s in slipped.items():
+        gait[side] = replace(gait[side], strides=gait[side].strides.left_out_from(from_s, Reason.SLIPPED))
+    return gait
 
 
 def _inclinations(tracks: SensorTracks, knee: JointCalibration, found: Twist) -> dict[Site, FloatArray]:
@@ -345,22 +318,19 @@ def _inclinations(tracks: SensorTracks, knee: JointCalibration, found: Twist) ->
     return leaning
 
 
-def _slipped(
-    tracks: SensorTracks, calibrations: list[Calibration], lags: dict[tuple[str, Joint], float]
-) -> tuple[Slipped, list[Finding]]:
-    slipped: Slipped = {}
+def _find_slips(span: SpanAnalysis, calibrations: list[Calibration]) -> list[Finding]:
     findings = []
     for calibration in calibrations:
-        walks = [recording for recording in tracks.span if recording.name in calibration.walks]
-        for walk, slip in slips_in_walks(tracks, walks, calibration.joints, lags):
-            if (walk.name, slip.site.side) in slipped:
+        walks = [walk for walk in span.walks if walk.name in calibration.walks]
+        for walk, slip in slips_in_walks(span.tracks, walks, calibration.joints, span.lag_s):
+            if (walk.name, slip.site.side) in span.slipped_s:
                 continue  # an earlier slip, reported already
             numbers = {"from_s": round(float(slip.from_s), 1), "turn_deg": round(float(np.rad2deg(abs(slip.turn_rad))))}
             findings.append(Finding("strap_slipped", Severity.WARNING, f"{walk.name}, {slip.site}", numbers))
-            slipped[walk.name, slip.site.leg_side] = slip.sure_until_s
-            for later in _until_free_motion(tracks.span, walk, slip.site):
-                slipped[later.name, slip.site.leg_side] = -np.inf
-    return slipped, findings
+            span.slipped_s[walk.name, slip.site.leg_side] = slip.sure_until_s
+            for later in _until_free_motion(span.tracks.span, walk, slip.site):
+                span.slipped_s[later.name, slip.site.leg_side] = -np.inf
+    return findings
 
 
 def _until_free_motion(span: tuple[Recording, ...], walk: Recording, site: Site) -> list[Recording]:
@@ -373,47 +343,9 @@ def _until_free_motion(span: tuple[Recording, ...], walk: Recording, site: Site)
     return [recording for recording in later if recording.kind is RecordingKind.WALKING]
 
 
-def _before_slips(recording: RecordingAnalysis, slipped: Slipped) -> RecordingAnalysis:
-    """The same, without the strides of a side after its strap slipped."""
-    from_s = {side: slipped[recording.name, side] for side in Side if (recording.name, side) in slipped}
-    gait = {
-        side: replace(found, strides=found.strides.left_out_from(from_s[side], Reason.SLIPPED))
-        if side in from_s
-        else found
-        for side, found in recording.gait.items()
-    }
-    return replace(recording, gait=gait, slipped_from_s=from_s)
-
-
-def _lags_in(recording: Recording, lags: dict[tuple[str, Joint], float]) -> dict[Joint, float]:
-    return {joint: lag_s for (name, joint), lag_s in lags.items() if name == recording.name}
-
-
-def _clock_offset_s(
-    tracks: SensorTracks, recording: Recording, side: Side, lags: dict[tuple[str, Joint], float]
-) -> float:
-    """What brings the clock of the sensor that gives the events to the thigh's."""
-    site = site_of_events(tracks, recording, side)
-    return _offset_of_s(recording, site or Site(f"{side}_{Segment.SHANK}"), lags)
-
-
-def _offset_of_s(recording: Recording, site: Site, lags: dict[tuple[str, Joint], float]) -> float:
-    """What brings the clock of a leg's sensor to its thigh's: the lags of the joints between; the pelvis has none."""
-    if site.side is None or site.segment is Segment.THIGH:
-        return 0.0
-    joints = (knee_of(site.side), ankle_of(site.side))[: 1 if site.segment is Segment.SHANK else 2]
-    return sum(lags.get((recording.name, joint), 0.0) for joint in joints)
-
-
-def _ringing_rad_s(tracks: SensorTracks, joint: Joint, measured: dict[tuple[str, Joint], Twist]) -> float | None:
-    """How much tissue rings at a joint in the walk where it does most; None without a walk."""
-    walks = [recording.name for recording in tracks.span if recording.kind is RecordingKind.WALKING]
-    rung = [measured[name, joint].moving_ringing for name in walks if (name, joint) in measured]
-    found = [float(np.sqrt(np.mean(np.sum(one**2, axis=1)))) for one in rung if len(one)]
-    return max(found, default=None)
-
-
 def _angle(calibration: JointCalibration, found: Twist, ringing_rad_s: float | None) -> JointAngle:
+    """A twist turned to the clinical sign and zero, and how sure it is."""
+
     def clinical(twist_rad: FloatArray) -> FloatArray:
         turned = calibration.clinical_sign * (twist_rad - calibration.zero_rad) + calibration.offset_rad
         return wrapped_to_zero(turned)

@@ -27,12 +27,12 @@ from core.results import JointCalibration as JointCalibration
 from core.results import Method as Method
 from core.results import RecordingAnalysis as RecordingAnalysis
 from core.samples import ImuBlock as ImuBlock
-from core.samples import Patient as Patient
 from core.samples import RateKind as RateKind
-from core.samples import Recording as Recording
-from core.samples import RecordingKind as RecordingKind
 from core.samples import SensorInfo as SensorInfo
-from core.samples import Session as Session
+from core.session import Patient as Patient
+from core.session import Recording as Recording
+from core.session import RecordingKind as RecordingKind
+from core.session import Session as Session
 from core.signal.orientation import oriented as oriented
 from core.signal.pair import OrientedTrack as OrientedTrack
 from core.signal.pair import Pair as Pair

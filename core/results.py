@@ -10,7 +10,8 @@ from core.gait.clocks import LegClocks
 from core.gait.events import FootEvents
 from core.gait.strides import Strides
 from core.hip.results import HipAngle, LegClock, PelvisAngles, PelvisTurn
-from core.samples import FloatArray, IntArray, RecordingKind
+from core.samples import FloatArray, IntArray
+from core.session import RecordingKind
 from core.signal.reception import Reception
 from core.timed.found import TimedTest
 from core.verdicts.model import Verdicts

@@ -4,7 +4,8 @@ from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Protocol
 
-from core.samples import ImuBlock, RateKind, RecordingKind
+from core.samples import ImuBlock, RateKind
+from core.session import RecordingKind
 from devices.quiet import Quiet
 from devices.source import SourceInfo
 

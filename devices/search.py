@@ -188,10 +188,8 @@ def _of_lines(lines: LinesAt) -> FoundSensor:
 
 
 def _recognised(channel: Channel, port: PortInfo) -> tuple[Driver | None, bool, bytes]:
-    """Whose messages these are, of several, whose are damaged least; whether that is sure; and what was received.
-
-    Messages without a sample among damaged ones are no proof: another sensor's packets may look like them.
-    """
+    """Whose messages these are, those damaged least; whether that is sure; and what was received."""
+    # messages without a sample among damaged ones are no proof: another sensor's packets may look like them
     stated = b""
     candidates = [
         (driver, driver.protocol().framer(SourceInfo(driver.key, "")))

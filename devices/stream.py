@@ -13,7 +13,8 @@ from typing import Protocol
 
 import numpy as np
 
-from core.samples import FloatArray, ImuBlock, RecordingKind
+from core.samples import FloatArray, ImuBlock
+from core.session import RecordingKind
 from devices.clocks.clock import Ordered, put_in_order
 from devices.clocks.host_clock import host_time_ns
 from devices.clocks.live_clock import LiveClock

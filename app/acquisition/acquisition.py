@@ -19,7 +19,8 @@ from app.acquisition.reader import Reader
 from app.acquisition.sensor_stream import SensorStatus
 from app.storage.journal.writer import JournalSummary, JournalWriter
 from core.alignment import NetChange
-from core.samples import ImuBlock, RecordingKind
+from core.samples import ImuBlock
+from core.session import RecordingKind
 from devices.clocks.host_clock import host_time_ns
 from devices.live import LiveSource, SourceRefusedError
 from devices.simulation.prosthesis_user import ProsthesisUser

@@ -27,7 +27,7 @@ from app.storage.journal.writer import JournalStatus, JournalSummary, JournalWri
 from app.storage.opened import OpenedLibrary
 from app.storage.recovery import Interrupted, adopt, find_interrupted, recover
 from app.storage.stored import LibraryError, LibraryFaultError, RecordingState, StoredJournal, StoredRecording
-from core.samples import Recording, RecordingKind
+from core.session import Recording, RecordingKind
 from devices.decoders import DECODERS
 
 if TYPE_CHECKING:  # sensors with memories are few, and what they need is imported with them

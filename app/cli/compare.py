@@ -17,7 +17,7 @@ if TYPE_CHECKING:
     from app.summary.comparison import Comparison
     from app.summary.conditions import Part
     from core.results import Analysis
-    from core.samples import Session
+    from core.session import Session
     from core.verdicts.measurement_error import Difference
 
 DIFFERENCES = "differences.csv"

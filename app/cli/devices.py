@@ -103,7 +103,7 @@ def emulate(
 
 
 def _ask(patient: "EmulatedPatient", asked: Iterable[str], show_message: Callable[[str], None]) -> None:
-    from core.samples import RecordingKind
+    from core.session import RecordingKind
 
     for line in asked:
         if (kind := MOVEMENTS.get(line.strip())) is not None:

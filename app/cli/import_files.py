@@ -6,7 +6,7 @@ from pathlib import Path
 from app.cli.progress import finding_lines, one_of, positive
 from app.system.progress import Report
 
-# as core.samples.RecordingKind and devices.files.formats have them, whose imports would cost half a second here
+# as core.session.RecordingKind and devices.files.formats have them, whose imports would cost half a second here
 KINDS = ("standing", "free_motion", "walking")
 FORMATS = (
     *("xsens-mtmanager", "movella-dot", "xsens-mti", "ximu3", "shimmer", "mvnx", "apdm", "opensim", "bids-motion"),
@@ -47,7 +47,7 @@ def import_files(args: argparse.Namespace, progress: Report) -> list[str]:
         The session cannot be written.
     """
     from app.importing.untrusted_files import read_foreign_session, read_foreign_trial, write_over_session
-    from core.samples import Recording, RecordingKind, Session
+    from core.session import Recording, RecordingKind, Session
     from devices.files.imports import add_recording, folder_for, free_name, parse_map, place_trial
 
     kind = RecordingKind(args.kind)

@@ -24,7 +24,7 @@ from devices.files.refusal import FileRefusedError, one_line
 if TYPE_CHECKING:
     from app.storage.opened import OpenedLibrary
     from app.storage.recovery import Interrupted
-    from core.samples import Session
+    from core.session import Session
 
 PREFIX = "library:"
 WHO = "--operator"
@@ -207,7 +207,7 @@ def _recover_one(opened: "OpenedLibrary", one: "Interrupted", into: LibrarySessi
 def _adopt(opened: "OpenedLibrary", one: "Interrupted", into: LibrarySession | None, report: Report) -> str:
     from app.storage.recovery import adopt, adopt_home
     from app.storage.stored import LibraryError
-    from core.samples import Recording, RecordingKind
+    from core.session import Recording, RecordingKind
     from devices.files.imports import folder_for, free_name
 
     when = f"{one.began_at:%Y-%m-%d %H:%M} UTC" if one.began_at else "an unknown time"

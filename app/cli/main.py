@@ -33,7 +33,7 @@ from app.wording.translation import languages, use_language
 if TYPE_CHECKING:
     from app.cohort.batch.analysed_folder import AnalysisChoices
     from core.results import Analysis
-    from core.samples import Session
+    from core.session import Session
 
 DONE, REFUSED, INTERRUPTED = 0, 2, 3
 

@@ -108,7 +108,7 @@ def _reading(folder: Path) -> "Read":
     from app.importing.untrusted_files import read_foreign_session
     from core.analysis import analyse
     from core.results import Analysis
-    from core.samples import Session
+    from core.session import Session
 
     def read(report: Report) -> tuple[Session, Analysis]:
         session = read_foreign_session(folder, lambda: report(0.0, str(folder)))

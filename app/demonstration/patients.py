@@ -13,7 +13,7 @@ from app.wording.translation import tr
 from core.alignment import AlignmentChange, PartChange, ProsthesisPart, net_of
 from core.body import Side, Site
 from core.goals import Goal, GoalOf, ordered
-from core.samples import Patient
+from core.session import Patient
 from core.timed.protocols import TimedProtocol
 from devices.simulation.fitted_prosthesis import BUILT, setting_of
 from devices.simulation.fitted_prosthesis import SPEED_M_S as PROSTHESIS_SPEED_M_S

@@ -11,7 +11,7 @@ from app.storage.exchange import import_session
 from app.storage.opened import OpenedLibrary
 from app.storage.stored import Action
 from app.system.logs import version_of
-from core.samples import Recording, Session
+from core.session import Recording, Session
 from core.timed.protocols import PlannedTest
 
 NICE = 5  # beside a live recording of a demonstration's patient nothing else is to be late

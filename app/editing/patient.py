@@ -12,7 +12,7 @@ from app.storage.opened import OpenedLibrary
 from app.storage.stored import StoredPatient
 from app.storage.three_way import Edited, Values, rebased
 from app.workers.library_controller import LibraryController
-from core.samples import Patient
+from core.session import Patient
 
 SAVED_AFTER_MS = 500  # without a key pressed
 

@@ -14,7 +14,7 @@ from app.storage.stored import StoredRecording
 from app.storage.three_way import Edited, Values
 from app.wording.translation import capitalised
 from app.workers.library_controller import LibraryController
-from core.samples import Recording
+from core.session import Recording
 
 if TYPE_CHECKING:
     from app.storage.opened import OpenedLibrary

@@ -15,7 +15,7 @@ from app.system.logs import version_of
 from app.wording.translation import tr
 from app.workers.library_controller import LibraryController
 from core.body import Joint
-from core.samples import Session
+from core.session import Session
 
 
 class SessionRecord(EditedRecord[StoredSession]):

@@ -7,7 +7,7 @@ from uuid import UUID
 
 from app.storage.stored import StoredRecording
 from core.body import Side
-from core.samples import Recording
+from core.session import Recording
 
 if TYPE_CHECKING:
     from app.acquisition.memory_fetching import Lack

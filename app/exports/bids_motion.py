@@ -20,7 +20,8 @@ from app.exports.figures import SIMULATED, software
 from app.storage.pseudonyms import AGE, age_in_words
 from app.wording.translation import PURPOSE, tr
 from core.body import Site
-from core.samples import FloatArray, ImuBlock, Recording, RecordingKind, SensorInfo, Session
+from core.samples import FloatArray, ImuBlock, SensorInfo
+from core.session import Recording, RecordingKind, Session
 
 FOLDER = "bids"
 BIDS_VERSION = "1.10.0"

@@ -22,7 +22,7 @@ from app.system.progress import Report
 from app.wording.translation import filled
 from core.analysis import analyse
 from core.results import Analysis, RecordingAnalysis
-from core.samples import Session
+from core.session import Session
 from devices.files.refusal import FileRefusedError
 
 

@@ -28,7 +28,7 @@ from core.body import Side
 from core.goals import Goal
 from core.parameters import BETWEEN_LEGS
 from core.results import Analysis
-from core.samples import Session
+from core.session import Session
 from core.verdicts.model import Verdict
 
 PARAMETERS = "urn:x-gaitwright:parameter"

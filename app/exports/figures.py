@@ -14,7 +14,8 @@ from app.summary.status import is_slipped, joint_status, why, why_status
 from core import parameters
 from core.body import Joint, Side
 from core.results import Analysis, RecordingAnalysis
-from core.samples import FloatArray, RecordingKind
+from core.samples import FloatArray
+from core.session import RecordingKind
 from core.verdicts.model import Assessment, Verdict
 from core.verdicts.quantities import OF_HIPS, PARAMETERS, assessment_of
 

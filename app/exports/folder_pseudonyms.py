@@ -15,7 +15,7 @@ import platformdirs
 
 from app.storage.files import replace_file
 from app.storage.pseudonyms import Pseudonyms
-from core.samples import Session
+from core.session import Session
 
 KEY_BYTES = 32
 _log = logging.getLogger(__name__)

@@ -12,7 +12,7 @@ from app.system.tables import typed_cell
 from core.goals import AgreedGoals
 from core.parameters import unit_of
 from core.results import Analysis, RecordingAnalysis
-from core.samples import Recording, RecordingKind
+from core.session import Recording, RecordingKind
 from core.verdicts.goals import GoalStanding
 
 GOALS = "goals.csv"

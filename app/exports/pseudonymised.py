@@ -16,7 +16,7 @@ from app.wording.translation import later
 from core.goals import Goal, held
 from core.hip.results import HipAngle
 from core.results import Analysis, Calibration, JointCalibration
-from core.samples import Recording, Session
+from core.session import Recording, Session
 
 Row = tuple[str, str | float | int | None]
 

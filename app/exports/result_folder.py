@@ -39,7 +39,7 @@ from app.summary.targets import HEADER as TARGET_COLUMNS
 from app.summary.targets import TARGETS, target_rows
 from app.system.tables import write_table
 from core.results import Analysis
-from core.samples import Session
+from core.session import Session
 from devices.files.refusal import FileRefusedError
 from devices.files.session_toml import FILE_NAME as SESSION_FILE
 

@@ -33,7 +33,7 @@ from app.wording.findings import sentence
 from app.wording.translation import PURPOSE
 from core.body import Side, hip_of
 from core.results import Analysis, RecordingAnalysis
-from core.samples import Session
+from core.session import Session
 from core.verdicts.model import Assessment, Verdict, together
 from core.verdicts.quantities import OF_HIPS, PARAMETERS, assessment_of
 

@@ -28,7 +28,8 @@ from core.gait.symmetry import curve_difference, gait_variable_score, symmetry_i
 from core.goals import NO_GOALS, AgreedGoals
 from core.parameters import REGISTRY
 from core.results import Analysis, JointCalibration, RecordingAnalysis
-from core.samples import FloatArray, Recording, RecordingKind
+from core.samples import FloatArray
+from core.session import Recording, RecordingKind
 from core.verdicts.model import Assessment, JointVerdicts, LegVerdicts, Verdict, Verdicts
 from core.verdicts.quantities import (
     OF_BOTH,

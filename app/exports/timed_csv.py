@@ -12,7 +12,7 @@ import numpy as np
 
 from app.system.tables import typed_cell
 from core.results import Analysis, RecordingAnalysis
-from core.samples import Recording
+from core.session import Recording
 from core.timed.found import TimedPart, TimedTest
 
 TIMED = "timed_test.csv"

@@ -40,7 +40,7 @@ from devices.files.refusal import FileRefusedError
 if TYPE_CHECKING:  # their imports take a second; the window must not wait for them
     from app.results.result_page import ResultPage
     from app.workers.opening import Opened
-    from core.samples import Patient
+    from core.session import Patient
 
 _log = logging.getLogger(__name__)
 

@@ -14,7 +14,8 @@ import numpy as np
 
 from core.body import Site
 from core.placement.chains import USUAL_SITES, Chains, find_chains
-from core.samples import ImuBlock, RateKind, Recording, RecordingKind, Session
+from core.samples import ImuBlock, RateKind
+from core.session import Recording, RecordingKind, Session
 from core.signal.sensors import SensorTracks
 from devices.files.imports import add_recording, folder_for, free_name, place_sensors
 from devices.files.site_names import site_of_name

@@ -10,7 +10,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
-    from core.samples import Session
+    from core.session import Session
     from devices.files.limited_reader import Columns, LimitedReader, Waiting
     from devices.files.references.trial import ReferenceFile
     from devices.files.trial import Gathered, ImportedTrial

@@ -29,7 +29,7 @@ from core.results import Analysis
 from devices.files.refusal import FileRefusedError
 
 if TYPE_CHECKING:
-    from core.samples import Session
+    from core.session import Session
 
 _log = logging.getLogger(__name__)
 

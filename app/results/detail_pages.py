@@ -20,7 +20,7 @@ if TYPE_CHECKING:  # their imports take a second
     from app.results.diagnostics_controller import DiagnosticsController
     from app.results.found_page import FoundPage
     from core.results import Analysis, RecordingAnalysis
-    from core.samples import Session
+    from core.session import Session
 
 HOW_FOUND, AGREEMENT = "how-found", "agreement"  # what is exported, as the library's audit calls it
 

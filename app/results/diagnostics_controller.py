@@ -27,7 +27,7 @@ from core.verdicts.diagnostics import JointDiagnostics, diagnostics_of
 if TYPE_CHECKING:
     from app.storage.opened import OpenedLibrary
     from core.findings import Finding
-    from core.samples import Session
+    from core.session import Session
 
 _log = logging.getLogger(__name__)
 

@@ -44,7 +44,8 @@ from app.wording.translation import later, tr
 from core.body import Joint, JointKind, Side, Site, ankle_of, knee_of
 from core.gait.cycles import POINTS
 from core.results import RecordingAnalysis
-from core.samples import FloatArray, RecordingKind
+from core.samples import FloatArray
+from core.session import RecordingKind
 
 LEG_KINDS = (JointKind.KNEE, JointKind.ANKLE)  # whose charts are always there
 

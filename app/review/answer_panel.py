@@ -15,7 +15,7 @@ from app.wording.translation import capitalised, later, tr
 from app.wording.verdicts import verdict_word
 from core.body import Joint, Side
 from core.results import Analysis, RecordingAnalysis
-from core.samples import RecordingKind, Session
+from core.session import RecordingKind, Session
 
 MOST_DIFFERENCES = 5
 KEY = later(

@@ -16,7 +16,8 @@ from app.summary.status import NO_ZERO, WITH_HEIGHT, all_that_is_stated, is_slip
 from app.wording.translation import PURPOSE
 from core.body import Joint, JointKind, Side
 from core.results import Analysis, RecordingAnalysis
-from core.samples import BoolArray, FloatArray, RecordingKind
+from core.samples import BoolArray, FloatArray
+from core.session import RecordingKind
 
 
 class Place(StrEnum):

@@ -48,7 +48,8 @@ from core.body import Joint, JointKind, Side, Site, ankle_of, knee_of
 from core.gait.phases import PHASES, Phase
 from core.hip.results import PelvisAngles
 from core.results import Analysis, JointAngle, RecordingAnalysis
-from core.samples import FloatArray, ImuBlock, IntArray, RecordingKind, Session
+from core.samples import FloatArray, ImuBlock, IntArray
+from core.session import RecordingKind, Session
 
 APPLICATION = "gaitwright"
 RECORDING = "session"

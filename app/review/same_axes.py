@@ -6,7 +6,8 @@ from app.review.data_quality_panel import Place, pieces_of
 from app.review.phase_lane import lanes_of
 from core.body import Joint, JointKind, Side
 from core.results import Analysis, RecordingAnalysis
-from core.samples import FloatArray, RecordingKind
+from core.samples import FloatArray
+from core.session import RecordingKind
 
 BAND_SD = 2.0
 MARGIN, LEAST_DEG = 0.05, 10.0  # round what is shown, of its range; so that noise does not fill an axis

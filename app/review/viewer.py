@@ -22,7 +22,7 @@ import platformdirs
 from app.storage.files import held
 from app.wording.translation import tr
 from core.results import Analysis
-from core.samples import Session
+from core.session import Session
 
 MEMORY_LIMIT = "2GB"  # forty sessions of ten minutes
 END_S = 5.0  # then it is ended by force

@@ -31,7 +31,7 @@ from core.results import (
     SideGait,
     ZeroKind,
 )
-from core.samples import RecordingKind
+from core.session import RecordingKind
 from core.signal.reception import Reception
 from core.timed.found import NotMeasured, Rise, Silence, StairStride, TimedPart, TimedTest, Turn
 from core.timed.protocols import TimedProtocol

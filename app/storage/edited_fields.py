@@ -13,7 +13,7 @@ from app.storage.three_way import Value, Values
 from core.alignment import alignment_of_text, alignment_text
 from core.body import LEG_JOINTS, Side
 from core.goals import GOAL_COLUMNS, GoalKey, goals_of_text, goals_text, ordered, whose
-from core.samples import Patient, Recording, RecordingKind, Session
+from core.session import Patient, Recording, RecordingKind, Session
 from core.timed.protocols import planned_of_text, planned_text
 
 PATIENT_CORRECTABLE = tuple(field.name for field in fields(Patient) if field.name not in ("goals", "unknown"))

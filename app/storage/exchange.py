@@ -35,7 +35,8 @@ from app.system.progress import Report
 from app.wording.translation import tr
 from core.body import Site
 from core.findings import Finding, Severity
-from core.samples import ImuBlock, Recording, SensorInfo, Session
+from core.samples import ImuBlock, SensorInfo
+from core.session import Recording, Session
 from devices.files.imports import folder_for
 from devices.files.session_toml import default_sensor
 from devices.files.site_files import write_site

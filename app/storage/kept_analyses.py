@@ -19,7 +19,8 @@ from app.storage.results import Results
 from app.storage.stored import AnalysedRecording, AnalysisInputs, LibraryError, ResultKind
 from core.body import Site
 from core.results import Analysis
-from core.samples import ImuBlock, Patient, Recording, SensorInfo, Session
+from core.samples import ImuBlock, SensorInfo
+from core.session import Patient, Recording, Session
 from core.timed.protocols import planned_text
 
 _log = logging.getLogger(__name__)

@@ -13,7 +13,7 @@ from uuid import UUID
 
 from app.storage.kept_analyses import algorithm
 from app.storage.stored import LibraryError, Placement, StoredRecording
-from core.samples import Session
+from core.session import Session
 
 if TYPE_CHECKING:  # the database takes long to load
     from app.storage.courses import Courses

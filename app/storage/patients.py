@@ -34,7 +34,7 @@ from app.storage.stored import (
 from app.storage.unit_of_work import UnitOfWork
 from app.wording.translation import filled, tr
 from core.goals import brought_together, goals_text
-from core.samples import Patient
+from core.session import Patient
 from devices.files.session_toml import PATIENT, ExpectedError
 
 AT_IT = datetime.timedelta(hours=12)  # a working day: who opened a patient within it may have it open still

@@ -26,7 +26,8 @@ from core.alignment import FIGURES, AlignmentChange, PartChange
 from core.body import Site
 from core.findings import Finding, Severity
 from core.goals import Goal
-from core.samples import Patient, Recording, SensorInfo, Session
+from core.samples import SensorInfo
+from core.session import Patient, Recording, Session
 from core.targets import tallies_of, with_tallies
 from devices.files.imports import folder_for, free_name
 

@@ -27,7 +27,7 @@ from app.storage.stored import (
 )
 from app.storage.unit_of_work import UnitOfWork
 from core.alignment import alignment_text
-from core.samples import Recording, RecordingKind
+from core.session import Recording, RecordingKind
 from core.timed.protocols import planned_text
 
 

@@ -31,7 +31,7 @@ from app.storage.opened import OpenedLibrary
 from app.storage.stored import LibraryError, RecordingState, StoredJournal, StoredRecording
 from app.system.progress import Report
 from app.wording.translation import tr
-from core.samples import Recording, RecordingKind
+from core.session import Recording, RecordingKind
 from devices.files.imports import folder_for, free_name
 
 LAST_BYTES = (1 << 16, 1 << 22)  # where the last record is looked for: the longest has 1 MiB, most have far less

@@ -36,7 +36,7 @@ from app.storage.stored import (
 from app.storage.unit_of_work import UnitOfWork
 from app.wording.translation import filled, tr
 from core.body import LEG_JOINTS, Joint, Site
-from core.samples import Session
+from core.session import Session
 from devices.files.session_toml import SIGN, ZERO, ExpectedError
 
 NO_LIMITS = Limits()

@@ -42,7 +42,7 @@ from app.storage.stored import (
 from app.storage.three_way import Edited, MergeConflict, OtherChange, Value, Values, three_way
 from app.storage.unit_of_work import UnitOfWork
 from core.body import Site
-from core.samples import Session
+from core.session import Session
 
 Changes = Callable[[Values], list[Change]]
 Worn = Mapping[Site, PlacedSensor]

@@ -12,7 +12,8 @@ from uuid import UUID
 
 from app.storage.layout import segment_name
 from core.body import Joint, Side, Site
-from core.samples import Patient, Recording, RecordingKind, SensorInfo, Session
+from core.samples import SensorInfo
+from core.session import Patient, Recording, RecordingKind, Session
 
 KEPT_DELETED = timedelta(days=30)  # and can be restored
 

@@ -5,7 +5,7 @@ The session's day counts for all its walks: none of them was made before it.
 
 from app.summary.report_dates import date_of
 from core.goals import AgreedGoals, agreed_by
-from core.samples import Session
+from core.session import Session
 
 
 def agreed_with(session: Session) -> AgreedGoals:

@@ -9,7 +9,7 @@ from pathlib import Path
 from app.system.tables import typed_cell, write_table
 from app.wording.alignment import change_in_words
 from core.alignment import AlignmentChange, PartChange
-from core.samples import Recording, RecordingKind
+from core.session import Recording, RecordingKind
 
 ALIGNMENTS = "alignments.csv"
 HEADER = (

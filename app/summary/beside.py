@@ -15,7 +15,7 @@ from core.body import JointKind
 from core.goals import NO_GOALS, AgreedGoals
 from core.parameters import BY_COLUMN, QuantityClass
 from core.results import Analysis
-from core.samples import Recording
+from core.session import Recording
 
 MARKED = (QuantityClass.SHAPE, QuantityClass.EXCURSION)
 

@@ -14,7 +14,7 @@ from core.gait.spatiotemporal import MeanAndSd
 from core.goals import NO_GOALS, AgreedGoals
 from core.parameters import BETWEEN_LEGS
 from core.results import Analysis
-from core.samples import Recording
+from core.session import Recording
 from core.verdicts.measurement_error import whisker
 from core.verdicts.model import Verdict
 from core.verdicts.sigmas import ComparisonKind

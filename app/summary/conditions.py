@@ -31,7 +31,8 @@ from core.gait.strides import Reason
 from core.goals import NO_GOALS, AgreedGoals
 from core.parameters import CADENCE, SPEED
 from core.results import Analysis, JointCalibration, RecordingAnalysis, ZeroKind
-from core.samples import FloatArray, Recording, RecordingKind
+from core.samples import FloatArray
+from core.session import Recording, RecordingKind
 from core.verdicts.measurement_error import ANGLE_PER_LAG_DEG_S
 from core.verdicts.model import Assessment, Verdict, Verdicts, pooled, together
 from core.verdicts.norms import MIN_STRIDES_FOR_MEAN

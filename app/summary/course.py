@@ -14,7 +14,7 @@ from core.body import Joint, Side
 from core.goals import OF_LEGS
 from core.parameters import CADENCE, SPEED
 from core.results import Analysis, RecordingAnalysis
-from core.samples import Recording
+from core.session import Recording
 from core.timed.measures import COLUMNS, PROTOCOLS, MeanOfAttempts, figure_of, mean_of_attempts, rests_on_feet
 from core.verdicts.attempts import compare_attempts, error_between_visits
 from core.verdicts.measurement_error import Difference, Judgement, compare, whisker

@@ -22,7 +22,7 @@ from core.gait.spatiotemporal import MeanAndSd
 from core.gait.symmetry import curve_difference, symmetry_index_percent
 from core.parameters import BY_COLUMN, ParameterFile, QuantityClass, columns_of
 from core.results import Analysis
-from core.samples import Session
+from core.session import Session
 from core.verdicts.measurement_error import Difference, Judgement
 from core.verdicts.model import Verdict, together
 from core.verdicts.norms import MIN_STRIDES_FOR_MEAN

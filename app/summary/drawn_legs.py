@@ -12,7 +12,8 @@ import numpy as np
 
 from core.body import Joint, Side, Site, ankle_of, knee_of
 from core.results import Analysis, JointCalibration, RecordingAnalysis
-from core.samples import FloatArray, IntArray, RateKind, Recording, RecordingKind, Session
+from core.samples import FloatArray, IntArray, RateKind
+from core.session import Recording, RecordingKind, Session
 from core.signal.orientation import oriented
 from core.signal.rotations import matrix_from_quaternion, turn_about_vertical
 from core.signal.tracks import blocks_of, even_tracks, nominal_step_s

@@ -13,7 +13,8 @@ from app.summary.drawn_legs import DrawnLeg, draw_legs
 from core.body import Side, ankle_of, knee_of
 from core.gait.cycles import POINTS, cycles_of, mean_cycle
 from core.results import Analysis, RecordingAnalysis
-from core.samples import FloatArray, Session
+from core.samples import FloatArray
+from core.session import Session
 from core.verdicts.model import together
 from core.verdicts.quantities import side_mean
 

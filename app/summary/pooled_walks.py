@@ -12,7 +12,7 @@ from typing import NamedTuple
 from app.summary.alignments import alignments_of
 from app.wording.recordings import shown_names
 from core.alignment import AlignmentChange, changed_between
-from core.samples import Recording, RecordingKind
+from core.session import Recording, RecordingKind
 from core.targets import tallies_of
 
 

@@ -6,7 +6,7 @@ from importlib.resources import files
 from app.summary.conditions import Part
 from app.wording.translation import later
 from core.body import Side
-from core.samples import Session
+from core.session import Session
 from core.verdicts.norms import (
     AgeAndHeight,
     Bands,

@@ -8,7 +8,7 @@ from app.summary.course_lanes import CourseVisit
 from app.summary.visits import by_condition
 from app.wording.recordings import ShownName, shown_names
 from core.results import Analysis, RecordingAnalysis
-from core.samples import Recording, RecordingKind, Session
+from core.session import Recording, RecordingKind, Session
 
 MAX_CONDITIONS = 3  # more lines in one panel cannot be distinguished
 PAPERS = ("a4", "letter")

@@ -8,7 +8,8 @@ import numpy as np
 from app.wording.verdicts import gate_sentence
 from core.body import Joint, Side
 from core.results import Analysis, RecordingAnalysis
-from core.samples import BoolArray, RecordingKind
+from core.samples import BoolArray
+from core.session import RecordingKind
 from core.verdicts.model import Assessment, JointVerdicts, Verdict, together
 
 READ, CARE, NOT_REPORTED = str(Verdict.READ), str(Verdict.CARE), str(Verdict.NOT_REPORTED)

@@ -3,7 +3,7 @@
 from collections.abc import Iterator, Sequence
 
 from app.system.tables import typed_cell
-from core.samples import Recording
+from core.session import Recording
 from core.targets import tallies_of
 
 TARGETS = "targets.csv"

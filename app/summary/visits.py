@@ -14,7 +14,7 @@ from app.wording.recordings import name_in_words
 from app.wording.translation import tr
 from core.goals import NO_GOALS, AgreedGoals
 from core.results import Analysis
-from core.samples import Recording
+from core.session import Recording
 
 
 class WalkedVisit(NamedTuple):

@@ -37,7 +37,7 @@ SPEED, KNEE = 140, 108  # least columns of a visit
 class PatientLine:
     """`searched` is what a search looks into, folded; `needs_look`: one of the sessions was recovered.
 
-    `change` is the last one with its arrow, where it is known: it then stands in place of `sessions`.
+    `change` is the last one with its arrow, where it is known: it is then shown in place of `sessions`.
     """
 
     id: UUID

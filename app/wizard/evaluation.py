@@ -19,7 +19,7 @@ from core.hip.measure import is_trusted
 if TYPE_CHECKING:
     from core.hip.results import HipIdentification
     from core.results import Analysis, JointCalibration
-    from core.samples import Session
+    from core.session import Session
 
 _log = logging.getLogger(__name__)
 

@@ -14,7 +14,7 @@ from app.workers.library_controller import LibraryController
 if TYPE_CHECKING:
     from app.storage.opened import OpenedLibrary
     from core.results import Analysis
-    from core.samples import Session
+    from core.session import Session
 
 
 class KeptResults(QObject):

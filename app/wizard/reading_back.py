@@ -17,7 +17,7 @@ from app.wizard.journal_words import unread_message
 from app.wizard.memory_fetches import MemoryFetches
 from app.workers.library_controller import LibraryController
 from core.body import Side
-from core.samples import Recording, RecordingKind
+from core.session import Recording, RecordingKind
 
 if TYPE_CHECKING:
     from app.storage.opened import OpenedLibrary

@@ -30,7 +30,7 @@ from app.wording.recordings import OWN_NAMES, ShownName, shown_names
 from app.wording.translation import tr
 from app.workers.library_controller import LibraryController
 from core.body import Side
-from core.samples import Recording, RecordingKind
+from core.session import Recording, RecordingKind
 
 if TYPE_CHECKING:
     from app.acquisition.acquisition import Acquisition

@@ -22,7 +22,7 @@ from core.body import LEG_JOINTS
 from core.calibration.rest import rest_of
 from core.findings import Finding, Severity
 from core.gait.chosen_strides import leave_out
-from core.samples import RecordingKind, Session
+from core.session import RecordingKind, Session
 from devices.decoders import DECODERS
 
 if TYPE_CHECKING:

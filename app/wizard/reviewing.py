@@ -12,7 +12,7 @@ from app.workers.background import Background
 
 if TYPE_CHECKING:
     from core.results import Analysis
-    from core.samples import Session
+    from core.session import Session
 
 LOOK_EVERY_MS = 500
 _log = logging.getLogger(__name__)

@@ -41,7 +41,7 @@ from app.wording.translation import tr
 from app.workers.background import Background
 from app.workers.library_controller import LibraryController
 from core.body import Joint, Side, Site
-from core.samples import Recording, RecordingKind, Session
+from core.session import Recording, RecordingKind, Session
 
 if TYPE_CHECKING:
     from concurrent.futures import Future

@@ -34,7 +34,7 @@ from app.wording.patients import about_and_device
 from app.wording.translation import tr
 from app.workers.library_controller import LibraryController
 from app.workers.preload import is_preloaded
-from core.samples import Patient
+from core.session import Patient
 
 if TYPE_CHECKING:
     from app.storage.opened import OpenedLibrary

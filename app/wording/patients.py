@@ -7,7 +7,7 @@ from app.wording.dates import date, short_date
 from app.wording.translation import later, tr, within_sentence
 
 if TYPE_CHECKING:
-    from core.samples import Patient
+    from core.session import Patient
 
 
 AIDS = {  # as they stand in files

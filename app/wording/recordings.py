@@ -16,7 +16,7 @@ from itertools import accumulate
 
 from app.wording.translation import languages, later, spoken_in, tr
 from core.findings import Finding
-from core.samples import Recording, RecordingKind
+from core.session import Recording, RecordingKind
 
 LETTERS = "ABCDEFGHIJKLMNOPQRSTUVWXYZ"
 OWN_NAMES = {  # in files, numbered by `SessionRecordings`

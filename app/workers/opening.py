@@ -14,7 +14,7 @@ from app.workers.background import Work
 
 if TYPE_CHECKING:
     from core.results import Analysis
-    from core.samples import Session
+    from core.session import Session
 
 READING_SHARE = 0.1  # of the progress; the analysis takes the rest
 

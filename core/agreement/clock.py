@@ -219,11 +219,8 @@ class _PolishedTrial:
         return total
 
     def _settle(self) -> float:
-        """Move the offset to where the joints have it on the whole, and give its standard deviation, s.
-
-        Tissue makes one joint seem early and another late by some milliseconds, which is no noise of one joint: what
-        they differ by beyond their own noise weighs all of them alike.
-        """
+        """Move the offset to where the joints have it on the whole, and give its standard deviation, s."""
+        # tissue makes one joint seem early and another late: what they differ by beyond their noise weighs all alike
         weight = np.array([information for information, _ in self._of_joint.values()])
         own_s = np.array([right / max(information, 1e-12) for information, right in self._of_joint.values()])
         between = max(0.0, float(np.var(own_s, ddof=1) - np.mean(1.0 / weight))) if len(own_s) > 1 else 0.0

@@ -95,10 +95,8 @@ def _causes(pair: Pair, j1: FloatArray, from_rates: FloatArray) -> Causes:
 
 
 def _hidden_before(pair: Pair) -> IntArray:
-    """The last sample of each time that hid some turning, which turns all that follows: gaps, and rates at their end.
-
-    A gyroscope at the end of its range stays at one value. Eq 15 forgets what it lost within its time constant.
-    """
+    """The last sample of each time that hid some turning, which turns all that follows: gaps, rates at their end."""
+    # a gyroscope at its end stays at one value; eq 15 forgets what that lost within its time constant
     is_lost = ~pair.is_measured
     for rates in (pair.g1, pair.g2):
         low, high = rates.min(axis=0) + SAME_RAD_S, rates.max(axis=0) - SAME_RAD_S

@@ -15,7 +15,8 @@ from core.calibration.heading import heading_over
 from core.calibration.zero import within_half_a_turn
 from core.gait.inclination import lean_about
 from core.published.angles import angle_from_orientations, published_angle
-from core.samples import FloatArray, Recording
+from core.samples import FloatArray
+from core.session import Recording
 from core.signal.orientation import oriented_to_north
 from core.signal.pair import OrientedTrack, Pair, is_turning, pair_up
 from core.signal.rotations import wrap

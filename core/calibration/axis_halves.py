@@ -13,9 +13,9 @@ import numpy as np
 from core.angles.hinge_angle import hinge_angle
 from core.angles.measure import Geometry, is_anchored, pairs_of
 from core.angles.twist import twist
-from core.body import Joint, Side, knee_of
+from core.body import Joint, Side
 from core.calibration import certainty
-from core.calibration.calibrated import Bases, standing_twist_of
+from core.calibration.calibrated import standing_twist_of
 from core.calibration.heading import heading_over, residual_scales
 from core.calibration.identified import Identified, downs_of, walked_axes
 from core.calibration.identify import (
@@ -31,12 +31,14 @@ from core.calibration.validity import Basis
 from core.gait.cycles import POINTS, cycles_of
 from core.gait.strides import Strides
 from core.gait.walking import joint_parameters
-from core.results import AxisHalves, JointCalibration, SideGait
-from core.samples import FloatArray, Recording
+from core.results import AxisHalves, SideGait
+from core.samples import FloatArray
+from core.session import Recording
 from core.signal.datasets import Datasets
 from core.signal.pair import Pair
 from core.signal.rotations import angle_between
 from core.signal.sensors import SensorTracks
+from core.span import JointAnalysis, SpanAnalysis
 
 MOST_STRIDES = 20
 OFF_PLANE_RAD = np.deg2rad(15.0)  # motion off the plane of flexion, of which an axis that is off leaks its share
@@ -52,84 +54,47 @@ class AxesOfPart:
 
 
 Parts = tuple[AxesOfPart, AxesOfPart]
-Slipped = dict[tuple[str, Side], float]
-"""From when on a side's straps are not to be trusted, by the walk's name, on its clock."""
 
 
 @dataclass(slots=True)
 class AxesOfParts:
-    """The axes of each joint of a span in two parts of its data, found once for all walks that they hold for.
+    """The axes of each joint of a span in two parts of its data, found once for all walks that they hold for."""
 
-    `lags_s` are added to the distal sensor's stamps, by recording and joint.
-    """
-
-    tracks: SensorTracks
-    bases: Bases
-    identified: Mapping[Basis, Identified]
-    lags_s: Mapping[tuple[str, Joint], float]
-    slipped: Slipped
+    span: SpanAnalysis
     _known: dict[Basis, Parts | None] = field(default_factory=dict)
 
-    def of(self, name: str, joint: Joint) -> Parts | None:
-        """Of a joint in the recording of that name; None where a part holds too little movement."""
-        basis = self.bases[name, joint]
-        if basis not in self._known:
-            knee = self.bases.get((name, knee_of(joint.side)))
-            lags_s = {other: lag_s for (other, of), lag_s in self.lags_s.items() if of is joint}
-            until_s = {other: from_s for (other, side), from_s in self.slipped.items() if side is joint.side}
-            helping = self.identified.get(knee) if knee else None
-            self._known[basis] = _axes_of_parts(self.tracks, self.identified[basis], helping, lags_s, until_s)
-        return self._known[basis]
+    def of(self, joint: JointAnalysis) -> Parts | None:
+        """None where a part holds too little movement."""
+        if joint.basis not in self._known:
+            self._known[joint.basis] = _axes_of_parts(self.span, joint)
+        return self._known[joint.basis]
 
 
-def axis_halves_in(
-    parts: AxesOfParts,
-    walk: Recording,
-    gait: Mapping[Side, SideGait],
-    calibrated: Mapping[Joint, JointCalibration],
-    offsets_s: Mapping[Joint, float],
-) -> dict[Joint, AxisHalves]:
+def axis_halves_in(parts: AxesOfParts, walk: Recording, gait: Mapping[Side, SideGait]) -> dict[Joint, AxisHalves]:
     """How far apart the axes of two parts are, of the joints of one walk, and what that changes of its means.
 
-    Parameters
-    ----------
-    offsets_s
-        What brings the clock of each joint's proximal sensor to the recording's.
-
-    Returns
-    -------
-    dict
-        Without the joints of which a part holds too little movement.
+    Joints of which a part holds too little movement are missing.
     """
     halves = {}
-    for joint, calibration in calibrated.items():
-        axes = parts.of(walk.name, joint)
+    for joint, found in parts.span.joints_in(walk).items():
+        axes = parts.of(found)
         if axes is None:
             continue
-        basis, spread = parts.bases[walk.name, joint], dict[str, float]()
-        if joint.side in gait:
-            found, strides, lag_s = parts.identified[basis], gait[joint.side].strides, parts.lags_s[walk.name, joint]
-            sign, offset_s = calibration.clinical_sign, offsets_s[joint]
-            spread = _spread(parts.tracks, walk, found, axes, strides, sign, lag_s, offset_s)
+        spread = _spread(parts.span, walk, found, axes, gait[joint.side].strides) if joint.side in gait else {}
         sd_rad = float(np.sqrt(np.mean([part.sd_rad**2 for part in axes])))
-        halves[joint] = AxisHalves(_apart_rad(axes), sd_rad, basis.free_motion is not None, spread)
+        halves[joint] = AxisHalves(_apart_rad(axes), sd_rad, found.basis.free_motion is not None, spread)
     return halves
 
 
-def _axes_of_parts(
-    tracks: SensorTracks,
-    found: Identified,
-    knee: Identified | None,
-    lags_s: Mapping[str, float],
-    until_s: Mapping[str, float],
-) -> Parts | None:
+def _axes_of_parts(span: SpanAnalysis, joint: JointAnalysis) -> Parts | None:
     """Of the halves of the walks; with a free motion, of that and of the walks. None where one holds too little."""
-    basis = found.basis
-    walked = _moving(tracks, found, basis.walks, lags_s, until_s)
+    basis, tracks, found = joint.basis, span.tracks, joint.identified
+    knee = joint.knee.identified if joint.knee else None
+    walked = _moving(span, joint, basis.walks)
     if walked is None:
         return None
     if basis.free_motion is not None:
-        free = _moving(tracks, found, (basis.free_motion,), lags_s, until_s)
+        free = _moving(span, joint, (basis.free_motion,))
         return None if free is None else (_axes(tracks, found, None, free, False), _axes(tracks, found, knee, walked))
     half = len(walked) // 2
     halves = [walked.only(index) for index in (np.arange(half), np.arange(half, len(walked)))]
@@ -139,19 +104,13 @@ def _axes_of_parts(
     return one, two
 
 
-def _moving(
-    tracks: SensorTracks,
-    found: Identified,
-    names: tuple[str, ...],
-    lags_s: Mapping[str, float],
-    until_s: Mapping[str, float],
-) -> Datasets | None:
-    """Samples of the first blocks, as in the identification."""
-    pairs = list[Pair]()
+def _moving(span: SpanAnalysis, joint: JointAnalysis, names: tuple[str, ...]) -> Datasets | None:
+    """Samples of the first blocks, as in the identification, until a strap slips."""
+    pairs, of, tracks = list[Pair](), joint.basis.joint, span.tracks
     for recording in tracks.span:
         if recording.name in names:
-            first = pairs_of(tracks, recording, found.basis.joint, tracks.blocks(recording)[0], lags_s[recording.name])
-            end_s = until_s.get(recording.name, np.inf)
+            first = pairs_of(tracks, recording, of, tracks.blocks(recording)[0], span.lag_s(recording.name, of))
+            end_s = span.slipped_s.get((recording.name, of.side), np.inf)
             pairs += [_until(pair, end_s) if pair.time_s[-1] > end_s else pair for pair in first]
     return moving_data(tuple(pairs))
 
@@ -189,25 +148,18 @@ def _apart_rad(parts: Parts) -> float:
 
 
 def _spread(
-    tracks: SensorTracks,
-    recording: Recording,
-    found: Identified,
-    parts: Parts,
-    strides: Strides,
-    clinical_sign: int,
-    lag_s: float,
-    offset_s: float,
+    span: SpanAnalysis, walk: Recording, joint: JointAnalysis, parts: Parts, strides: Strides
 ) -> dict[str, float]:
-    """Half of what a walk's means differ by with either part's axes, beyond chance, rad, by the parameter's name.
-
-    Half, for the axes in use lie between those of both parts. Each angle counts from its own zero.
-    """
-    pairs = pairs_of(tracks, recording, found.basis.joint, tracks.blocks(recording)[0], lag_s)
+    """Half of what a walk's means differ by with either part's axes, beyond chance, rad, by the parameter's name."""
+    # half, for the axes in use lie between those of both parts; each angle counts from its own zero
+    tracks, found, of = span.tracks, joint.identified, joint.basis.joint
+    offset_s, sign = span.offset_s(walk, of.proximal), joint.calibration.clinical_sign
+    pairs = pairs_of(tracks, walk, of, tracks.blocks(walk)[0], joint.lags_s[walk.name])
     pairs = [pair for pair in pairs if is_anchored(pair)]
     used = np.flatnonzero(strides.is_used)
     used = used[np.linspace(0, len(used) - 1, min(MOST_STRIDES, len(used))).astype(np.int64)]
     within_s = strides.start_s[used] - offset_s, strides.end_s[used] - offset_s
-    means = [_means(tracks, pairs, found, _alike(part, found.geometry), within_s, clinical_sign) for part in parts]
+    means = [_means(tracks, pairs, found, _alike(part, found.geometry), within_s, sign) for part in parts]
     chance = 0.5 * OFF_PLANE_RAD**2 * float(np.mean([part.sd_rad**2 for part in parts]))
     return {
         name: float(np.sqrt(max(0.0, 0.25 * (first - means[1][name]) ** 2 - chance)))

@@ -6,74 +6,42 @@ Knees come first, since an ankle's sign follows its knee's; an ankle without one
 import numpy as np
 
 from core.angles.measure import Geometry, Twist
-from core.body import Joint, knee_of
+from core.body import Joint
 from core.calibration.clinical_sign import ClinicalSign, ankle_sign, ankle_sign_from_foot, knee_sign
 from core.calibration.identified import Identified
 from core.calibration.validity import Basis
 from core.calibration.zero import standing_twist, within_half_a_turn
 from core.gait.walking import prosthetic_sides
 from core.results import JointCalibration, Method, ZeroKind
-from core.samples import FloatArray, RecordingKind, Session
+from core.samples import FloatArray
+from core.session import Session
 from core.signal.rotations import wrap
 from core.signal.sensors import SensorTracks
-
-Bases = dict[tuple[str, Joint], Basis]
-"""What calibrates each joint in each recording, by the recording's name."""
+from core.span import JointAnalysis, SpanAnalysis
 
 
-FoundKnee = tuple[ClinicalSign, FloatArray]
-"""A knee's sign as the motion gives it, since the user's word on a knee is none on its ankle; its distal axis
-(3,)."""
-
-
-def calibrate(
-    tracks: SensorTracks,
-    bases: Bases,
-    identified: dict[Basis, Identified],
-    measured: dict[tuple[str, Joint], Twist],
-    method: Method,
-) -> dict[Basis, JointCalibration]:
-    """Give every identified joint its zero and its clinical sign; knees first, since ankles follow them."""
-    calibrated: dict[Basis, JointCalibration] = {}
-    knees: dict[Basis, FoundKnee] = {}
-    for basis in sorted(identified, key=lambda b: not b.joint.is_knee):
-        names = [name for (name, joint), other in bases.items() if other == basis and joint is basis.joint]
-        twists, is_walking = _telling(tracks, names, basis.joint, measured)
-        knee_basis = bases.get((names[0], knee_of(basis.joint.side)))
-        knee = knees.get(knee_basis) if knee_basis else None
-        found = identified[basis]
-        calibrated[basis], sign = _calibration(tracks, found, twists, is_walking, knee, method)
-        if basis.joint.is_knee:
-            knees[basis] = sign, found.geometry.axis_2
-    return {basis: calibrated[basis] for basis in identified}
-
-
-def _telling(
-    tracks: SensorTracks, names: list[str], joint: Joint, measured: dict[tuple[str, Joint], Twist]
-) -> tuple[list[Twist], bool]:
-    """The walks, which show the way a joint bends; without any, the free motion. And whether these are walks."""
-    kinds = {recording.name: recording.kind for recording in tracks.span}
-    walks = [name for name in names if kinds[name] is RecordingKind.WALKING]
-    return [measured[name, joint] for name in walks or names if (name, joint) in measured], bool(walks)
+def calibrate(span: SpanAnalysis, method: Method) -> None:
+    """Give every joint of a span its zero and its clinical sign; knees come first, since ankles follow them."""
+    walks = {walk.name for walk in span.walks}
+    for joint in span.joints.values():
+        # walks show the way a joint bends; without any, the free motion does
+        walked = [twist for name, twist in joint.twists.items() if name in walks]
+        twists = walked or list(joint.twists.values())
+        joint.calibration, joint.motion_sign = _calibration(span.tracks, joint, twists, bool(walked), method)
 
 
 def _calibration(
-    tracks: SensorTracks,
-    found: Identified,
-    twists: list[Twist],
-    is_walking: bool,
-    knee: FoundKnee | None,
-    method: Method,
+    tracks: SensorTracks, one: JointAnalysis, twists: list[Twist], is_walking: bool, method: Method
 ) -> tuple[JointCalibration, ClinicalSign]:
     """One joint's calibration, and its sign as the motion gives it, whatever the user states."""
-    session, basis = tracks.session, found.basis
+    session, basis, found, knee = tracks.session, one.basis, one.identified, one.knee
     joint = basis.joint
     standing = standing_twist_of(tracks, basis, found.geometry)
     moving = within_half_a_turn(np.concatenate([t.moving_twist for t in twists])) if twists else np.empty(0)
     zero_rad = standing if standing is not None else (float(np.median(moving)) if moving.size else 0.0)
     bend_rad, has_standing = wrap(moving - zero_rad), standing is not None
-    sign = _clinical_sign(found, twists, is_walking, bend_rad, has_standing, knee)
-    if not joint.is_knee and not sign.is_certain and not (knee is not None and knee[0].is_contradicted):
+    sign = _clinical_sign(one, twists, is_walking, bend_rad, has_standing)
+    if not joint.is_knee and not sign.is_certain and not (knee is not None and knee.motion_sign.is_contradicted):
         sign = _sign_of_foot(tracks, found) or sign
     turn = session.turned_sign.get(joint, 1)
     zero = (
@@ -146,23 +114,18 @@ def standing_twist_of(tracks: SensorTracks, basis: Basis, geometry: Geometry) ->
 
 
 def _clinical_sign(
-    found: Identified,
-    twists: list[Twist],
-    is_walking: bool,
-    bend_rad: FloatArray,
-    has_standing: bool,
-    knee: FoundKnee | None,
+    joint: JointAnalysis, twists: list[Twist], is_walking: bool, bend_rad: FloatArray, has_standing: bool
 ) -> ClinicalSign:
     if not bend_rad.size:
         return ClinicalSign(1, 0.0, False)
-    if found.basis.joint.is_knee:
+    if joint.basis.joint.is_knee:
         shank_rate = -np.concatenate([t.moving_rate_2 for t in twists])
         return knee_sign(bend_rad, shank_rate, is_walking, has_standing)
     shank_rate = -np.concatenate([t.moving_rate_1 for t in twists])
-    if knee is None:
+    if joint.knee is None:
         return ankle_sign(None, 0.0, shank_rate, is_walking)
-    knee_found, knee_axis = knee
-    return ankle_sign(knee_found, float(knee_axis @ found.geometry.axis_1), shank_rate, is_walking)
+    agreement = float(joint.knee.identified.geometry.axis_2 @ joint.identified.geometry.axis_1)
+    return ankle_sign(joint.knee.motion_sign, agreement, shank_rate, is_walking)
 
 
 def _sign_of_foot(tracks: SensorTracks, found: Identified) -> ClinicalSign | None:

@@ -17,7 +17,7 @@ from core.calibration.validity import Basis
 from core.published.identify import identify_as_published
 from core.published.joint_centre import shifted_to_sensors
 from core.results import AxisSource, Method
-from core.samples import Recording
+from core.session import Recording
 from core.signal.datasets import Datasets
 from core.signal.pair import Pair
 from core.signal.sensors import SensorTracks

@@ -132,13 +132,7 @@ def sharpest_lag(data: Datasets, knots_rad: FloatArray) -> Lag:
 
 
 def _lowest(costs_of: Callable[[FloatArray], FloatArray], step_s: float, independent: float) -> Lag:
-    """The lowest cost over all lags up to 80 ms: coarsely, then by steps of `step_s`, then by a parabola.
-
-    Parameters
-    ----------
-    costs_of
-        Costs (c,) of lags (c,), seconds.
-    """
+    """The lowest cost (costs (c,) of lags (c,), s) up to 80 ms: coarsely, then by `step_s`, then by a parabola."""
     known: dict[int, float] = {}
 
     def costs(*shifts: int) -> list[float]:

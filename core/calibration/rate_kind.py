@@ -12,7 +12,8 @@ from core.calibration.coincidence import fit_forces, joint_forces
 from core.calibration.identify import DECISION_SAMPLES, decide, moving_data
 from core.calibration.joint_axis import Candidates, heading_from_axes
 from core.findings import Finding, Severity
-from core.samples import RateKind, Recording, RecordingKind, Session
+from core.samples import RateKind
+from core.session import Recording, RecordingKind, Session
 from core.signal.datasets import Datasets
 from core.signal.orientation import as_of_intervals
 from core.signal.pair import OrientedTrack

@@ -5,7 +5,7 @@ so alike in both sensors of the joint. What one of them has turned against the o
 three degrees, and jumps when a strap slips.
 """
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -15,7 +15,8 @@ from core.body import Joint, Segment, Side, Site, ankle_of, knee_of
 from core.calibration.joint_axis import loss_and_weights, residuals
 from core.calibration.rest import rest_of
 from core.results import JointCalibration, Method
-from core.samples import FloatArray, ImuBlock, IntArray, Recording
+from core.samples import FloatArray, ImuBlock, IntArray
+from core.session import Recording
 from core.signal.datasets import Datasets, gather
 from core.signal.pair import Pair
 from core.signal.robust import robust_sd
@@ -163,7 +164,7 @@ def slips_in_walks(
     tracks: SensorTracks,
     walks: Sequence[Recording],
     calibration: Mapping[Joint, JointCalibration],
-    lags_s: Mapping[tuple[str, Joint], float],
+    lag_s: Callable[[str, Joint], float],
 ) -> list[tuple[Recording, Slip]]:
     """Slips in walks that one calibration measures, each with the walk it happened in; times are that walk's own.
 
@@ -171,8 +172,8 @@ def slips_in_walks(
     ----------
     walks
         In order of time; what is usual in one holds in the next.
-    lags_s
-        What is added to the distal clock, by the recording's name and the joint.
+    lag_s
+        Gives, by the recording's name and the joint, what is added to the distal clock.
 
     Returns
     -------
@@ -188,7 +189,7 @@ def slips_in_walks(
                 continue
             offset_s = start_s - tracks.span_of(walk)[0]  # the walks are laid end to end
             for block in tracks.blocks(walk):
-                for pair in pairs_of(tracks, walk, joint, block, lags_s.get((walk.name, joint), 0.0)):
+                for pair in pairs_of(tracks, walk, joint, block, lag_s(walk.name, joint)):
                     part = turns_over(pair, found.axis_proximal, found.axis_distal)
                     is_mine = (part.time_s >= block.core_from_s) & (part.time_s < block.core_to_s)
                     parts.append(Turns(part.time_s[is_mine] + offset_s, part.turn_rad[is_mine]))
@@ -207,10 +208,8 @@ def slips_in_walks(
 
 
 def _is_in_place(walk: Recording) -> bool:
-    """Whether nobody walks in it: rising bends knees so far that the tissue over them turns a sensor as a slip would.
-
-    A strap that slips meanwhile shows in the next walk.
-    """
+    """Whether nobody walks in it: rising bends knees so far that the tissue turns a sensor as a slip would."""
+    # a strap that slips meanwhile shows in the next walk
     return walk.test is not None and walk.test.protocol is TimedProtocol.SIT_TO_STAND
 
 

@@ -8,7 +8,7 @@ from collections.abc import Callable
 from dataclasses import dataclass
 
 from core.body import Joint, Site
-from core.samples import Recording, RecordingKind, Session
+from core.session import Recording, RecordingKind, Session
 
 
 @dataclass(frozen=True, slots=True)

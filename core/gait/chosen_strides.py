@@ -12,7 +12,7 @@ from core.body import Segment, Side, Site
 from core.findings import Finding, Severity
 from core.gait.strides import Reason
 from core.results import Analysis, RecordingAnalysis, SideGait
-from core.samples import Recording
+from core.session import Recording
 from core.verdicts.gates import judged
 from core.verdicts.walk_findings import about_walk
 

@@ -12,7 +12,8 @@ from enum import StrEnum
 import numpy as np
 
 from core.body import Joint, Side, Site
-from core.samples import FloatArray, Recording, Session
+from core.samples import FloatArray
+from core.session import Recording, Session
 from core.signal.tracks import nominal_step_s
 
 READ_S, CARE_S = 0.005, 0.020  # of what the clocks may still be apart

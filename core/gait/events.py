@@ -217,10 +217,7 @@ def detect_events(motion: FootMotion, is_measured: BoolArray, is_rigid: bool = F
 
 
 def _time_by_sole(timing: Timing, sole: SoleTravel, is_lifted: bool, is_landed: BoolArray) -> None:
-    """Time toe-offs of a foot that is lifted, and contacts that the pitch does not show, by the sole; in place.
-
-    A heel rise that comes later than its toe-off is not known.
-    """
+    """Time toe-offs of a lifted foot, and contacts that the pitch does not show, by the sole; in place."""
     for k in range(len(sole.lands)):
         if is_lifted or not np.isfinite(timing.index[k, TOE_OFF]):
             timing.put(k, TOE_OFF, Onset(sole.leaves[k], sole.leaves_reach[k]), EventSource.SOLE)
@@ -268,10 +265,8 @@ def _as_events(motion: FootMotion, timing: Timing, is_measured: BoolArray) -> Fo
 
 
 def _landing_of(motion: FootMotion, fastest: int, rest: int, lands: float) -> Landing:
-    """How a foot comes down between two indices; with its forefoot first, its toes are further down than in stance.
-
-    Where its sole never ceases to travel, as in a leg that circles, it may come down anywhere up to its rest.
-    """
+    """How a foot comes down between two indices; with its forefoot first, its toes are further down than in stance."""
+    # a sole that never ceases to travel, as in a leg that circles, may come down anywhere up to its rest
     rate, pitch = motion.pitch_rate_rad_s, motion.pitch_rad
     until = min(rest, max(fastest, int(np.ceil(lands)))) if np.isfinite(lands) else rest
     highest = fastest + int(np.argmax(pitch[fastest : until + 1]))
@@ -304,11 +299,9 @@ def _landing(landing: Landing, usual: Usual, step_s: float) -> tuple[Onset, Onse
 
 
 def _even_out(timing: Timing, motion: FootMotion, spans: list[tuple[int, int, int]], is_usual: BoolArray) -> None:
-    """Time heel rise and full contact of usual swings by the marks of a rolling foot; in place.
-
-    A foot begins to roll, and comes to rest, too slowly for a level of its rate to be sharp. How far from its mark it
-    mostly begins, or ends, is what all its swings say together.
-    """
+    """Time heel rise and full contact of usual swings by the marks of a rolling foot; in place."""
+    # a foot begins and ends to roll too slowly for a level of its rate to be sharp; how far from its mark it mostly
+    # does, all its swings say together
     landing = landing_marks(motion.pitch_rad, spans, LANDING_SHARES[0])
     for event, marks in ((HEEL_RISE, leaving_marks(motion.pitch_rad, spans)), (FULL_CONTACT, landing)):
         known = np.flatnonzero(is_usual & np.isfinite(timing.index[:, event] - marks))
@@ -323,10 +316,8 @@ def _even_out_others(
     landings: list[Landing],
     is_usual: BoolArray,
 ) -> None:
-    """Time heel rise and full contact of straight swings that are not usual by their marks, if sharper; in place.
-
-    Feet that are put down slowly, flat or toes first come to rest slowly, and tissue rings at their level of rest.
-    """
+    """Time heel rise and full contact of other straight swings by their marks, if sharper; in place."""
+    # feet put down slowly, flat or toes first come to rest slowly, and tissue rings at their level of rest
     is_straight = np.abs(motion.turn_rad) < MAX_STRAIGHT_RAD
     is_forefoot = np.array([landing.is_forefoot for landing in landings], dtype=bool)
     lowered = [landing.begin if landing.is_forefoot else None for landing in landings]
@@ -368,12 +359,9 @@ def without_stray_toe_offs(timing: Timing, fastest: IntArray, step_s: float) -> 
 def _steady(
     rows: FloatArray, motion: FootMotion, spans: list[tuple[int, int, int]], is_usual: BoolArray, usual: Usual
 ) -> None:
-    """Time the usual swings' events, rows (k, 4), by the foot's mean swing if its sensor shakes; in place.
-
-    Integrated to a pitch, the shaking is small: where the pitch passes half its greatest, toes down and toes up, is
-    sure in every swing. How far from these marks the events lie is read off the mean rate of all swings. From stride to
-    stride the events then vary as the marks do.
-    """
+    """Time the usual swings' events, rows (k, 4), by the foot's mean swing if its sensor shakes; in place."""
+    # integrated to a pitch the shaking is small: where it passes half its greatest, toes down and toes up, is sure in
+    # every swing; how far from these marks the events lie is read off the mean rate of all swings
     marks = np.array([_marks(motion.pitch_rad, *span) for span in spans]).reshape(-1, 2)
     chosen = np.flatnonzero(is_usual & np.isfinite(marks).all(axis=1))
     if len(chosen) < LEAST_SWINGS:

@@ -193,11 +193,8 @@ def _anchors(restless: FloatArray, up: FloatArray) -> IntArray:
 
 
 def _beside_steps(anchors: IntArray, restless: FloatArray, step_s: float) -> IntArray:
-    """The same and, where a long standing has its calmest sample far from a step, one more beside the step.
-
-    What is integrated from one to the other must not last for seconds: after 6 s of standing, first steps came out a
-    quarter too short, after 15 s by metres too long.
-    """
+    """The same and, where a long standing is calmest far from a step, one more beside the step."""
+    # integrated over 6 s of standing, first steps came out a quarter too short, over 15 s by metres
     reach, far = round(BESIDE_STEP_S / step_s), round(FAR_FROM_STEP_S / step_s)
     more: list[int] = []
     for before, after in pairwise(anchors.tolist()):
@@ -246,13 +243,8 @@ def _instants(anchors: IntArray, n: int, step_s: float) -> list[FootRest]:
 def _stances(
     anchors: IntArray, up: FloatArray, speed_m_s: FloatArray, step_s: float, tilt_rad: float
 ) -> list[FootRest]:
-    """The longest rests: all samples around each anchor in which the foot rests as it does there.
-
-    Parameters
-    ----------
-    speed_m_s : (n,)
-        Of the sensor, roughly: a rest ends two thirds of the way to its greatest, even if it slides flat.
-    """
+    """The longest rests: all samples around each anchor in which the foot rests as it does there."""
+    # a rest ends two thirds of the way to the foot's greatest speed, even if it slides flat
     most = round(MAX_REST_S / step_s)
     fastest = [a + int(np.argmax(speed_m_s[a:b])) for a, b in pairwise(anchors.tolist())]
     rests = []
@@ -291,11 +283,9 @@ def _upright(acceleration: FloatArray, rests: list[FootRest]) -> FloatArray:
 
 
 def _velocity(acceleration: FloatArray, rests: list[FootRest], step_s: float) -> FloatArray:
-    """Velocity (n, 3) whose mean over every rest is zero.
-
-    What is left in a rest is taken off where it most likely arose: evenly from a bias, and at once from an impact
-    too short for the sampling rate, where the force bends most from sample to sample.
-    """
+    """Velocity (n, 3) whose mean over every rest is zero."""
+    # what is left in a rest is taken off where it most likely arose: evenly from a bias, and at once from an impact too
+    # short for the sampling rate, where the force bends most from sample to sample
     if not rests:
         return _integral(acceleration, step_s)
     upright = _upright(acceleration, rests)
@@ -323,11 +313,9 @@ def _swings(anchors: IntArray, velocity: FloatArray, path: FloatArray) -> Swings
 def _pitch_axis(
     gyr: FloatArray, earth_from_sensor: FloatArray, anchors: IntArray, swings: Swings, path: FloatArray, step_s: float
 ) -> tuple[FloatArray, bool]:
-    """The axis the foot mostly turns about, signed so that toes up is positive, and whether both signs agree.
-
-    A foot leaves with its heel first: in the swings its pitch is mostly toes down. And a foot travels toes first, which
-    alone decides where the foot hardly rolls.
-    """
+    """The axis the foot mostly turns about, toes up positive, and whether both signs agree."""
+    # a foot leaves with its heel first: in swings its pitch is mostly toes down; and it travels toes first, which alone
+    # decides where it hardly rolls
     if not len(swings):
         return np.array([1.0, 0.0, 0.0]), False
     moving = gyr[np.sum(gyr**2, axis=1) > MOVING_RAD_S**2]

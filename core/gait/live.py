@@ -389,10 +389,8 @@ class LiveEvents:
             self._show_rise(rise_s)
 
     def _rise(self, still: float) -> float:
-        """Where a rate that falls to the peak of push-off began to, extrapolated from two low levels.
-
-        While it has not reached the second, its growth with the power 1.75 of time shows it as well.
-        """
+        """Where a rate that falls to the peak of push-off began to, extrapolated from two low levels."""
+        # until it reaches the second, its growth with the power 1.75 of time shows it as well
         low, high = self._path[0][0], None
         for last, now in pairwise(self._path):
             if last[1] > -still >= now[1]:

@@ -155,10 +155,8 @@ class LiveMotion:
         self._up = ux * longer, uy * longer, uz * longer
 
     def _watch_stance(self) -> None:
-        """Find every stance, however restless, by what is before and after it; the last ones say how calm the next is.
-
-        As offline, but causally: a stance is over when the foot is `MIN_CALM_RATIO` livelier again.
-        """
+        """Find every stance by what is before and after it; the last ones say how calm the next is."""
+        # as offline, but causally: a stance is over when the foot is MIN_CALM_RATIO livelier again
         if self._least is None:
             self._most = max(self._most, self._unrest)
             if self._unrest >= self._most - CALM_DEPTH:
@@ -229,8 +227,7 @@ class LiveMotion:
         self._fastest_m_s = 0.0
 
     def _vote(self, step: Turning) -> None:
-        """The last step shows where the toes are: its swing was mostly toes down or, if it hardly rolled, toes
-        first."""
+        """Where the last step has the toes: its swing was mostly toes down or, if it hardly rolled, toes first."""
         turned, tilted, lasted_s = step
         if self._fastest_m_s < VOTING_M_S or lasted_s < MIN_STEP_S or self.pitch_axis is None:
             return

@@ -76,15 +76,7 @@ def travel_of(motion: FootMotion) -> SoleTravel:
 
 
 def _landing(share: FloatArray, shock: FloatArray, fastest: int, ahead: int) -> Onset:
-    """Where the sole, `share` (n,) of its greatest speed, ceases to travel.
-
-    Parameters
-    ----------
-    shock : (n - 1,)
-        How much the acceleration changes from sample to sample.
-    ahead
-        `SHOCK_S` in samples.
-    """
+    """Where the sole, `share` (n,) of its greatest speed, ceases to travel; `ahead` is SHOCK_S in samples."""
     near = fastest + int(np.argmax(share[fastest:] < NEAR_SHARE))
     near = max(near - ahead, (fastest + near) // 2)
     felt = shock[near:]

@@ -94,10 +94,8 @@ def _usual_low_m(foot: FootClimbs) -> float:
 
 
 def _above_level(foot: FootClimbs) -> FloatArray:
-    """How much higher than a level stride of this walk each stride (k,) leads; 0 where it may be a level one.
-
-    The longer half of the strides is level: on stairs people take two treads at a stride, 0.6 m, or stand on each.
-    """
+    """How much higher than a level stride of this walk each stride (k,) leads; 0 where it may be a level one."""
+    # the longer half is level: on stairs people take two treads at a stride, 0.6 m, or stand on each
     is_known = np.isfinite(foot.climb_m) & np.isfinite(foot.length_m)
     if not is_known.any():
         return np.zeros(len(foot.climb_m))

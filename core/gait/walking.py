@@ -18,7 +18,8 @@ from core.gait.spatiotemporal import parameters_of
 from core.gait.strides import strides_of_feet
 from core.parameters import EXCURSIONS, PEAK_WINDOWS
 from core.results import JointAngle, SideGait
-from core.samples import BoolArray, FloatArray, Patient, Recording
+from core.samples import BoolArray, FloatArray
+from core.session import Patient, Recording
 from core.signal.sensors import SensorTracks
 from core.signal.tracks import Block
 
@@ -138,13 +139,7 @@ def _events(
     time_s: FloatArray,
     pitch_rad: FloatArray,
 ) -> list[FootEvents]:
-    """Events of one side, stretch by stretch; long recordings block by block, the seams within a stretch closed.
-
-    Parameters
-    ----------
-    time_s, pitch_rad : (n,)
-        The recording's clock; the foot's pitch is written where it is known.
-    """
+    """Events of one side, stretch by stretch, a long recording's seams closed; its pitch (n,) is written in place."""
     found: list[FootEvents] = []
     is_rigid = site.side in prosthetic_sides(tracks.session.patient)
     for block in tracks.blocks(recording):

@@ -14,7 +14,8 @@ from core.hip.measure import Knees, fits_of, frames_of, measure_hips
 from core.hip.pelvis import hip_parameters, pelvis_parameters, rotation_of, turns_of
 from core.hip.results import ClockStatus, LegClock
 from core.results import RecordingAnalysis, SideGait
-from core.samples import FloatArray, Recording, RecordingKind
+from core.samples import FloatArray
+from core.session import Recording, RecordingKind
 from core.signal.sensors import SensorTracks
 
 

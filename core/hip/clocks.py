@@ -16,7 +16,7 @@ from core.hip.leg_clock import (
     thigh_clock,
 )
 from core.hip.results import MIN_APPLIED_S, ClockStatus, LegClock
-from core.samples import Recording
+from core.session import Recording
 from core.signal.sensors import SensorTracks
 
 

@@ -92,10 +92,7 @@ def _moved(forces: Forces, shift_s: float) -> Forces:
 
 
 def _best_shift(forces: Forces, knots_rad: FloatArray, around_s: float | None = None) -> tuple[float, bool]:
-    """Where the thigh's stamps make both sensors coincide best, the heading refitted at every shift; s.
-
-    Also whether that is the border of the search.
-    """
+    """The thigh's shift, s, at which both sensors coincide best, headings refitted; whether it is at the border."""
     chosen = np.arange(len(forces.data))
 
     def costs(shifts_s: FloatArray) -> FloatArray:

@@ -13,7 +13,8 @@ from core.hip.frames import heading_of, hip_cardan, pitch_and_roll, seen_from_pe
 from core.hip.heading import HipFit, fit_hip
 from core.hip.results import HipAngle, HipIdentification, PelvisAngles
 from core.results import JointCalibration
-from core.samples import FloatArray, Recording, RecordingKind
+from core.samples import FloatArray
+from core.session import Recording, RecordingKind
 from core.signal.pair import Pair
 from core.signal.rotations import wrap
 from core.signal.sensors import SensorTracks

@@ -195,10 +195,8 @@ class LiveAngle:
         return np.hypot(left, SETTLED_RAD)
 
     def _heading_part(self, frames: JointFrames) -> FloatArray:
-        """What the heading's uncertainty makes of the angle's (n,): the more, the steeper the axis is.
-
-        An axis that is wrong shows a heading that is wrong, by the tangent of its steepness, and stays so.
-        """
+        """What the heading's uncertainty makes of the angle's (n,): the more, the steeper the axis is."""
+        # a wrong axis shows a wrong heading, by the tangent of its steepness, and stays so
         steep = np.minimum(np.abs(frames.steepness), MAX_STEEPNESS)
         by_axis = (self._geometry.calibration.axis_sd_rad or 0.0) * steep / np.sqrt(1 - steep**2)
         return np.hypot(self._heading.sd_rad, by_axis) * steep

@@ -286,11 +286,9 @@ class _AxisInformation:
         self._felt += float(np.vdot(rate_1, rate_1) + np.vdot(rate_2, rate_2))
 
     def _of_motion_rad(self) -> float:
-        """Standard deviation of an axis at the best heading.
-
-        The principal direction of rates that scatter by s across it and amount to A along it is uncertain by s /
-        sqrt(A) where A dominates; a tilt in step with the motion adds to every sample alike.
-        """
+        """Standard deviation of an axis at the best heading."""
+        # the principal direction of rates that scatter by s across it and amount to A along it is uncertain by s /
+        # sqrt(A) where A dominates; a tilt in step with the motion adds to every sample alike
         if self.profile is None or not self.count:
             return AXIS_PRIOR_RAD
         across = max(0.5 * self._across, 0.5 * self._wobble**2 * self._felt, self.count * MIN_RATE_SCALE_RAD_S**2)
@@ -317,10 +315,7 @@ class _AxisInformation:
 
 
 class _CentreInformation:
-    """How well eq 8, linear about the best centres so far, shows both centres.
-
-    Unknowns (13,): o1, o2 (m), b1, b2 (m/s2), and the lag (s) that is to be added to the distal sensor's stamps.
-    """
+    """Eq 8, linear about the best centres: o1, o2 (m), b1, b2 (m/s2), lag added to the distal stamps (s), (13,)."""
 
     def __init__(self, shift_m: float) -> None:
         self._shift_m = shift_m
@@ -355,11 +350,9 @@ class _CentreInformation:
         self.energies += weight @ sets.effort
 
     def covariance(self) -> FloatArray:
-        """Of both centres (6, 6).
-
-        A shift in step with the motion looks the same in every sample, so that its energy, counted in residuals,
-        divides the information however long the motion lasts.
-        """
+        """Of both centres (6, 6)."""
+        # a shift in step with the motion looks the same in every sample, so that its energy, counted in residuals,
+        # divides the information however long the motion lasts
         in_step = self._shift_m**2 * float(self.energies.sum())
         covariance: FloatArray = np.linalg.inv(self._information / (1 + in_step) + self._prior)
         return covariance[:6, :6]

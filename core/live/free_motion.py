@@ -96,15 +96,7 @@ class LiveFreeMotion:
 
 
 class _JointMotion:
-    """One joint's excitation, and its lag, looked for whenever both sensors have passed a multiple of LOOK_S.
-
-    What one of them gives beyond it waits for the other, so that a look sees the same whatever came first.
-
-    Parameters
-    ----------
-    later_s
-        By how much later than a multiple this joint is looked at: not all of them at the same moment.
-    """
+    """One joint's excitation and lag, looked for `later_s` after both sensors passed a multiple of LOOK_S."""
 
     def __init__(self, excitation: Excitation, lag: LiveLag, later_s: float) -> None:
         self.excitation = excitation

@@ -141,11 +141,9 @@ def _mean_rotations(to_1: FloatArray, to_2: FloatArray) -> FloatArray:
 
 
 def _force_cost(one: FloatArray, two: FloatArray) -> FloatArray:
-    """How badly the accelerations of the joint coincide (h,), centres and accelerometer biases fitted to each heading.
-
-    With E = R [K, 1, a] (n, 3, 7) of each sensor, a1 - b1 - K1 o1 = Rz(d) (a2 - b2 - K2 o2) in earth axes is linear in
-    the unknowns, and its normal equations are sums of products of the two E.
-    """
+    """How badly the accelerations of the joint coincide (h,), centres and biases fitted to each heading."""
+    # with E = R [K, 1, a] (n, 3, 7) of each sensor, a1 - b1 - K1 o1 = Rz(d) (a2 - b2 - K2 o2) in earth axes is linear
+    # in the unknowns, and its normal equations are sums of products of the two E
     flat_1, flat_2 = one[:, 0] + 1j * one[:, 1], two[:, 0] + 1j * two[:, 1]
     turned = np.real(np.exp(1j * HEADINGS)[:, None, None] * (np.conj(flat_1).T @ flat_2))
     mixed = turned + one[:, 2].T @ two[:, 2]

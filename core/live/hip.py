@@ -159,12 +159,9 @@ class LiveHip:
 
 
 class _Form:
-    """How the flexion is read off both orientations; `heading_rad` None: against the vertical.
+    """How the flexion is read off both orientations; `heading_rad` None: against the vertical."""
 
-    Orientations of the frames are kept as in `core.live.joint_frames`: of u and v, 2 Im(u* v) is how far the frame's x
-    points down, |u|^2 - |v|^2 how far its z points up.
-    """
-
+    # of u and v as in core.live.joint_frames, 2 Im(u* v) is how far the frame's x points down, |u|^2 - |v|^2 its z up
     def __init__(self, found: HipIdentification, heading_rad: float | None) -> None:
         self.found, self.heading_rad = found, heading_rad
         self._maps = orientation_map(found.frame_proximal.T), orientation_map(found.frame_distal.T)

@@ -136,11 +136,7 @@ class HipHeading:
 
 
 class _Moments:
-    """Moments of the terms of both sensors, in their own earths, and the solution that they give.
-
-    Of rows (n, 14), the terms of the first sensor and of the second: `flat` x'x + y'y, `upright` z'z, `turned` x'y, and
-    their sums (3, 14); weighted, and forgotten over MEMORY_S.
-    """
+    """Weighted sums over rows (n, 14) of both sensors, forgotten over MEMORY_S: x'x + y'y, z'z, x'y, totals (3, 14)."""
 
     def __init__(self) -> None:
         self._flat, self._upright, self._turned = np.zeros((3, 14, 14))

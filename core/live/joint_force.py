@@ -119,10 +119,7 @@ class LiveJointForce:
         return self._at_instants(self._filtered(near))
 
     def _filtered(self, near: OrientedSamples) -> FloatArray:
-        """Rows (n, 24) of the samples but the first and last EDGE.
-
-        Stamps, since when they are clear of gaps, rates, and the 21 terms, low-passed.
-        """
+        """Stamps, since when they are clear of gaps, rates, the 21 terms, low-passed, but the first and last EDGE."""
         inner = slice(EDGE, -EDGE)
         time_s, gyr = near.time_s[inner] + self.lag_s, near.gyr_rad_s[inner]
         terms = _terms(

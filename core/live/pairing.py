@@ -93,9 +93,7 @@ class Pairing:
     def _paired(
         self, one: OrientedSamples, left: IntArray, share: FloatArray, is_whole: BoolArray
     ) -> tuple[PairedSamples, int]:
-        """Proximal samples (n,) that lie `share` of a step after the distal ones of tick `left`; and how far those
-        were used.
-        """
+        """Proximal samples (n,) `share` of a step after the distal ones of tick `left`; how far those were used."""
         two, last = self._two, len(self._two) - 1
         if last < 0:
             none = np.zeros(len(one), dtype=np.bool_)

@@ -209,11 +209,9 @@ def _is_plain(values: FloatArray) -> bool:
 
 
 class _EvenClock:
-    """Where evenly taken samples lie in time, by the line through their stamps so far.
+    """Where evenly taken samples lie in time, by the line through their stamps so far."""
 
-    The recursive form of the straight line through the last stamps (Brookner 1998, Tracking and Kalman Filtering Made
-    Easy, section 1.3: expanding memory, then of constant length).
-    """
+    # recursive line through the last stamps: Brookner 1998, Tracking and Kalman Filtering Made Easy, section 1.3
 
     def __init__(self, step_s: float) -> None:
         self._step_s = self._nominal_s = step_s

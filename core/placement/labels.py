@@ -16,7 +16,8 @@ from core.placement.arrangements import (
 from core.placement.chains import MIN_MARGIN, MIN_UPRIGHTNESS
 from core.placement.smoothed_tracks import Tracks, smoothed_in_steps
 from core.placement.steps import at_once
-from core.samples import FloatArray, Recording, RecordingKind
+from core.samples import FloatArray
+from core.session import Recording, RecordingKind
 from core.signal.sensors import SensorTracks
 
 SHARED_COST = 0.2  # two sensors that disagree on less may share a joint, though in a small motion others may as well

@@ -100,10 +100,8 @@ def _prior() -> FloatArray:
 
 
 def _best_heading(one: FloatArray, two: FloatArray) -> tuple[float, FloatArray, float]:
-    """The heading under which least squares leave least, their unknowns (12,), and what they leave.
-
-    The turn Rz(d) is cos d A + sin d B + C, so the moments of all headings come from three.
-    """
+    """The heading under which least squares leave least, their unknowns (12,), and what they leave."""
+    # Rz(d) is cos d A + sin d B + C, so the moments of all headings come from three
     x, y, z = np.concatenate([one, two], axis=2).transpose(1, 0, 2)
     flat, upright, turned = x.T @ x + y.T @ y, z.T @ z, x.T @ y
     parts = np.stack([flat[:7, 7:], turned[7:, :7].T - turned[:7, 7:], upright[:7, 7:]])
@@ -124,13 +122,8 @@ def _best_heading(one: FloatArray, two: FloatArray) -> tuple[float, FloatArray, 
 def _solved(
     terms_1: FloatArray, terms_2: FloatArray, change_2: FloatArray, heading: FloatArray, weight: FloatArray
 ) -> FloatArray:
-    """Centre and bias of either sensor and the lag (13,), by weighted least squares under headings (n,).
-
-    Parameters
-    ----------
-    change_2 : (n, 3)
-        Derivative of the joint's force as the second sensor feels it: by it a lag enters.
-    """
+    """Centre and bias of either sensor and the lag (13,), by weighted least squares under headings (n,)."""
+    # the lag enters by the derivative of the joint's force as the second sensor feels it
     second = np.concatenate([terms_2[..., :6], change_2[..., None], terms_2[..., 6:]], axis=2)
     second = np.swapaxes(turn_about_vertical(heading[:, None], np.swapaxes(second, 1, 2)), 1, 2)
     design = np.concatenate([terms_1[..., :6], -second[..., :7]], axis=2).reshape(-1, 13)

@@ -5,6 +5,7 @@ angle about the proximal joint axis from the distal to the proximal x axis, the 
 """
 
 import numpy as np
+from scipy.signal import lfilter
 
 from core.samples import FloatArray
 from core.signal.pair import Pair, lever_acceleration
@@ -100,8 +101,6 @@ def fused_angle(from_rates: FloatArray, from_accelerations: FloatArray, step_s: 
     (n,)
         rad; NaN throughout where the accelerations show nothing.
     """
-    from scipy.signal import lfilter  # imported late, it is slow
-
     known = np.flatnonzero(np.isfinite(from_accelerations))
     if len(known) == 0:
         return np.full_like(from_rates, np.nan)
@@ -130,8 +129,6 @@ def unwrapped_about_trend(angle_rad: FloatArray, step_s: float) -> FloatArray:
     (n,)
         rad.
     """
-    from scipy.signal import lfilter
-
     weight = 1 - np.exp(-step_s / TREND_S)
     direction = np.exp(1j * angle_rad)
     trend, _ = lfilter([weight], [1.0, weight - 1.0], direction, zi=[(1 - weight) * direction[0]])

@@ -43,11 +43,9 @@ def clipped_forces(acc_m_s2: FloatArray) -> BoolArray:
 
 
 def _clipped(values: FloatArray, beyond: float) -> BoolArray:
-    """Which samples of (n, 3) lie at the end of the sensor's range.
-
-    There a signal stays for some samples, farther from zero than any rest (`beyond`), and would have gone on by the
-    slope with which it came or left. A coarse sensor repeats its extremes as well: where the signal turns.
-    """
+    """Which samples of (n, 3) lie at the end of the sensor's range."""
+    # there a signal stays, farther from zero than any rest (`beyond`), and would have gone on by the slope with which
+    # it came or left; a coarse sensor repeats its extremes as well, but where the signal turns
     ends = []
     for v in (side for column in values.T for side in (column, -column)):
         limit = float(v.max(initial=0.0))

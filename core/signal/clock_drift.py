@@ -12,7 +12,8 @@ import numpy as np
 
 from core.body import LEG_SEGMENTS, Side, Site
 from core.findings import Finding, Severity
-from core.samples import FloatArray, Recording, RecordingKind
+from core.samples import FloatArray
+from core.session import Recording, RecordingKind
 from core.signal.robust import robust_sd
 from core.signal.sensors import SensorTracks
 from core.signal.tracks import Track, at_positions

@@ -6,7 +6,8 @@ from dataclasses import dataclass, field
 import numpy as np
 
 from core.body import Site
-from core.samples import FloatArray, ImuBlock, Recording
+from core.samples import FloatArray, ImuBlock
+from core.session import Recording
 from core.signal.clipping import clipped_forces, clipped_rates
 from core.signal.tracks import MAX_REPORTED_GAP_S, MIN_STRETCH_SAMPLES, is_received, nominal_step_s
 
@@ -189,11 +190,9 @@ def is_half(percent: float) -> bool:
 
 
 def _missing_rows(received_s: FloatArray, step_s: float) -> FloatArray:
-    """How many samples lack after each but the last (n - 1,).
-
-    Where stamps jitter, which shows in short steps, a long step between short ones lacks nothing: as many samples must
-    be missing around it, by a step that many steps show.
-    """
+    """How many samples lack after each but the last (n - 1,)."""
+    # where stamps jitter, a long step between short ones lacks nothing: as many must be missing around it, by a step
+    # that many steps show
     steps = np.diff(received_s)
     if len(steps) <= STEPS_TOGETHER or np.mean(steps < SHORT_STEP * step_s) < MIN_SHORT_STEPS:
         return np.asarray(np.maximum(np.round(steps / step_s) - 1, 0))

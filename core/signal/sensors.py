@@ -8,7 +8,8 @@ from core.body import Joint, Site
 from core.calibration.rest import Rest, rest_of
 from core.calibration.validity import in_force
 from core.gait.foot import FootMotion, follow
-from core.samples import FloatArray, RateKind, Recording, RecordingKind, Session
+from core.samples import FloatArray, RateKind
+from core.session import Recording, RecordingKind, Session
 from core.signal.orientation import oriented
 from core.signal.pair import OrientedTrack, Pair
 from core.signal.tracks import Block, blocks_of, even_tracks

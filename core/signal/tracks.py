@@ -5,6 +5,7 @@ from dataclasses import dataclass
 from itertools import pairwise
 
 import numpy as np
+from scipy.interpolate import Akima1DInterpolator
 
 from core.samples import BoolArray, FloatArray, ImuBlock
 
@@ -286,8 +287,7 @@ def _even(time_s: FloatArray, signals: dict[str, FloatArray], step_s: float) -> 
     if is_on_grid and n == len(time_s):
         even = signals
     else:
-        from scipy.interpolate import Akima1DInterpolator  # local and without overshoot; imported late, it is slow
-
+        # local and without overshoot
         inside_s = np.clip(grid_s, time_s[0], time_s[-1])
         even = {name: Akima1DInterpolator(time_s, values)(inside_s) for name, values in signals.items()}
         if is_on_grid:
@@ -305,11 +305,8 @@ def _even(time_s: FloatArray, signals: dict[str, FloatArray], step_s: float) -> 
 
 
 def _without_stamp_noise(time_s: FloatArray, step_s: float, gyr: FloatArray) -> tuple[FloatArray, float]:
-    """Stamps (n,) on the even clock that made them, and its step, where the noise is the stamps' own.
-
-    Sensors sample evenly; their stamps often say when a sample arrived. Where each sample follows better from the
-    samples beside it by number than by stamp, the numbers are believed.
-    """
+    """Stamps (n,) on the even clock that made them, and its step, where the noise is the stamps' own."""
+    # stamps often say when a sample arrived; where each follows better by number than by stamp, numbers are believed
     number = np.concatenate([[0.0], np.cumsum(np.maximum(np.round(np.diff(time_s) / step_s), 1.0))])
     slope, start = np.polyfit(number, time_s, 1)
     even_s = start + slope * number

@@ -270,10 +270,8 @@ class _LiveThigh:
 
 
 def _track(kept: OrientedSamples) -> OrientedTrack:
-    """One stretch of samples as the offline analysis has it, which knows what came after.
-
-    By the live orientations, which do not, a slow walker's strides come out up to a tenth too long.
-    """
+    """One stretch of samples as the offline analysis has it, which knows what came after."""
+    # by live orientations a slow walker's strides come out up to a tenth too long
     time_s = kept.time_s
     step_s = float(time_s[-1] - time_s[0]) / (len(kept) - 1)
     track = Track(float(time_s[0]), step_s, kept.gyr_rad_s, kept.acc_m_s2, None, None, kept.is_measured)

@@ -14,7 +14,8 @@ from dataclasses import dataclass
 import numpy as np
 
 from core.body import Segment, Side, Site
-from core.samples import BoolArray, FloatArray, Recording, RecordingKind
+from core.samples import BoolArray, FloatArray
+from core.session import Recording, RecordingKind
 from core.signal.sensors import SensorTracks
 from core.timed.found import Rise
 

@@ -10,7 +10,7 @@ from itertools import pairwise
 import numpy as np
 
 from core.gait.stairs import FootClimbs, on_stairs
-from core.samples import Recording
+from core.session import Recording
 from core.signal.sensors import SensorTracks
 from core.timed.found import NotMeasured, StairStride, TimedPart, TimedTest
 from core.timed.protocols import DEFINITIONS, Definition, PlannedTest

@@ -16,7 +16,8 @@ from core.gait.events import FootEvents, detect_events
 from core.gait.foot import FootMotion, follow
 from core.gait.strides import MAX_STRIDE_S
 from core.gait.walking import prosthetic_sides
-from core.samples import BoolArray, FloatArray, Recording
+from core.samples import BoolArray, FloatArray
+from core.session import Recording
 from core.signal.pair import OrientedTrack, moving_mean
 from core.signal.sensors import SensorTracks
 from core.timed.found import Silence, Turn

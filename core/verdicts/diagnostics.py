@@ -21,7 +21,8 @@ from core.published.figures import CostOverSphere, ProjectedRates, TwoWays, cost
 from core.published.identify import data_sets
 from core.published.joint_axis import identify_axes
 from core.results import JointCalibration
-from core.samples import FloatArray, Recording, Session
+from core.samples import FloatArray
+from core.session import Recording, Session
 from core.signal.datasets import Datasets
 from core.signal.pair import Pair, is_turning
 from core.signal.robust import robust_sd

@@ -15,7 +15,8 @@ from core.gait.clocks import CARE_S, READ_S, ClockGate, LegClocks
 from core.gait.cycles import mean_cycle, range_of_cycles
 from core.hip.results import HipIdentification
 from core.results import Analysis, JointCalibration, RecordingAnalysis, SideGait, ZeroKind
-from core.samples import FloatArray, RecordingKind
+from core.samples import FloatArray
+from core.session import RecordingKind
 from core.verdicts.model import (
     NOT_MEASURED,
     READ,

@@ -8,7 +8,7 @@ from core.body import LEG_JOINTS, Segment, Site
 from core.calibration.identified import Identified
 from core.findings import Finding, Severity
 from core.results import JointCalibration, Method, RecordingAnalysis, ZeroKind
-from core.samples import RecordingKind, Session
+from core.session import RecordingKind, Session
 from core.signal.rotations import wrap
 
 

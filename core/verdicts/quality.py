@@ -9,7 +9,8 @@ from core.body import LEG_JOINTS, Site
 from core.calibration.handedness import Turn, reversed_sites, turn_about_vertical
 from core.calibration.rest import rest_of
 from core.findings import Finding, Severity
-from core.samples import BoolArray, FloatArray, ImuBlock, IntArray, Recording, RecordingKind, Session
+from core.samples import BoolArray, FloatArray, ImuBlock, IntArray
+from core.session import Recording, RecordingKind, Session
 from core.signal.clipping import clipped_forces, clipped_rates
 from core.signal.clock_jumps import jump_of, spans_of
 from core.signal.pair import moving_mean
@@ -214,10 +215,8 @@ def _clipped_percent(block: ImuBlock, received: BoolArray) -> float:
 
 
 def _same_data(recording: Recording) -> list[tuple[tuple[Site, ...], Finding]]:
-    """Two sensors never agree to the last digit, row for row, unless one is a copy of the other.
-
-    At rest coarse ones do: of these, only rows in motion count.
-    """
+    """Sensors whose rows in motion agree to the last digit: one is a copy of the other."""
+    # at rest coarse ones agree, too
     found: list[tuple[tuple[Site, ...], Finding]] = []
     rows: dict[Site, IntArray] = {}
     for site, block in recording.imu.items():
@@ -273,10 +272,7 @@ def _clock_jumps(recording: Recording) -> list[tuple[tuple[Site, ...], Finding]]
 
 
 def _moves_with_others(recording: Recording, site: Site, offset_s: float) -> bool:
-    """Whether a site moves when the adjacent segment does as both are stamped, more than without the offset.
-
-    Sensors that were switched on and off one after the other are such.
-    """
+    """Whether a site moves with the adjacent segment as both are stamped, more than without the offset."""
     for joint in LEG_JOINTS:
         if site in (joint.proximal, joint.distal) and recording.holds(joint.proximal, joint.distal):
             other = joint.distal if site is joint.proximal else joint.proximal

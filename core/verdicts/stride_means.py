@@ -82,12 +82,10 @@ def mean_of_strides(values: FloatArray, clock_error: float = 0.0, axis_error: fl
 
 
 def _drift(values: FloatArray, by_chance: float) -> float:
-    """Half of what halves or thirds differ by beyond chance.
-
-    By chance alone the squared half difference of halves is 1 squared error of the whole, that of the thirds farthest
-    apart 2.5. That strides are correlated may itself be drift, so `by_chance` holds the correlation half: it lies
-    between the error of uncorrelated strides and that of correlated ones.
-    """
+    """Half of what halves or thirds differ by beyond chance."""
+    # by chance alone the squared half difference of halves is 1 squared error of the whole, that of the thirds farthest
+    # apart 2.5; correlated strides may themselves be drift, so `by_chance` holds the correlation half: between both
+    # errors
     beyond = 0.0
     for parts, share in ((2, 1.0), (3, 2.5)):
         means = [part.mean() for part in np.array_split(values, parts) if len(part)]

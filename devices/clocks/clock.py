@@ -93,11 +93,9 @@ def _earliest(x_s: FloatArray, late_s: FloatArray, bin_s: float) -> tuple[FloatA
 
 
 def _line_below(x: FloatArray, y: FloatArray) -> tuple[float, float]:
-    """Slope of the line below all points (n,), and how far below the lowest it lies; the mean of x is 0.
-
-    Were points as dense everywhere above the true line as they are next to it, any line below them all would be as
-    likely as `exp(density height)`, its height taken at x = 0. This is the mean of these lines.
-    """
+    """Slope of the line below all points (n,), and how far below the lowest it lies; the mean of x is 0."""
+    # were points as dense everywhere above the true line as next to it, any line below them all would be as likely as
+    # exp(density height), its height taken at x = 0; this is the mean of these lines
     hull_x, hull_y = np.array(_hull_below(x, y)).T
     if len(hull_x) < 2:
         return 0.0, 0.0
@@ -306,10 +304,8 @@ def put_in_order(
 
 
 def _is_too_early(late_s: FloatArray) -> BoolArray:
-    """Which samples (n,), in the order of the sensor's clock, came sooner than all of the five before and after.
-
-    One such stamp, of a message without a checksum, would draw the line below it, and every sample's time with it.
-    """
+    """Which samples (n,), by the sensor's clock, came sooner than all of the five before and after."""
+    # one such stamp, of a message without a checksum, would draw the line below it
     around_s = np.full(len(late_s), np.inf)
     for k in range(1, AGREEING + 1):
         around_s[k:] = np.minimum(around_s[k:], late_s[:-k])

@@ -104,10 +104,7 @@ class LiveClock:
         return stamps_s
 
     def _is_meant(self, device_s: FloatArray, host_s: float) -> BoolArray:
-        """Which samples (n,) have not come sooner than can be; if the next ones do, too, the line was wrong, not they.
-
-        Shown where they say they were taken, later than now, they would hide all others until then.
-        """
+        """Which samples (n,) came no sooner than can be; if the next ones do, too, the line was wrong, not they."""
         if (fit := self._line.fit) is None:
             return np.ones(len(device_s), dtype=bool)
         is_early: BoolArray = fit.host_s(device_s) > host_s + EARLY_S

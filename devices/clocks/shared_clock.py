@@ -85,10 +85,8 @@ def _moved(
 
 
 def _on_one_turn(sensors: Sequence[DecodedSensor]) -> list[FloatArray]:
-    """The shared clock's seconds (n,) of each, moved by whole turns.
-
-    A sensor that was first received after the clock began again cannot show by how many.
-    """
+    """The shared clock's seconds (n,) of each, moved by whole turns."""
+    # one first received after the clock began again cannot show by how many
     first = sensors[0]
     reference_s = float(first.block.time_s[0] - _clock(first).device_s[0])
     moved_s = []

@@ -8,7 +8,8 @@ from enum import StrEnum
 
 import numpy as np
 
-from core.samples import ImuBlock, RecordingKind
+from core.samples import ImuBlock
+from core.session import RecordingKind
 from devices.clocks.live_clock import LiveClock, LiveLine
 from devices.dot.fetching import reached
 from devices.dot.memory import RECORD_HZ

@@ -20,7 +20,8 @@ from typing import Any
 
 import numpy as np
 
-from core.samples import ImuBlock, RecordingKind
+from core.samples import ImuBlock
+from core.session import RecordingKind
 from devices.clocks.host_clock import host_time_ns
 from devices.clocks.live_clock import LiveClock
 from devices.live import Keep, SensorDetails, SourceLostError, SourceRefusedError
@@ -367,7 +368,6 @@ def _library() -> ModuleType:
 
 def _imported() -> ModuleType:
     try:
-        import pylsl
         import pylsl.util
     except (ImportError, RuntimeError, OSError) as problem:  # RuntimeError: its own library is not there
         raise SourceRefusedError("Lab Streaming Layer is not installed", "Install gaitwright[lsl]") from problem

@@ -397,10 +397,7 @@ class _Talk:
         return self._received(lambda stated: stated[:1])[:1] == bytes([Command.DONE])
 
     def asked(self, command: int, answer: int, size: Callable[[bytes], int]) -> bytes:
-        """What it answers, behind the answer's first byte; empty where it does not.
-
-        `size` gives how long that is from its beginning, or finds that it is too short to show it.
-        """
+        """What it answers, behind the answer's first byte, `size` telling how long; empty where it does not."""
         self._channel.write(bytes([command]))
         begin = bytes([Command.DONE, answer])
 

@@ -14,7 +14,8 @@ from struct import Struct
 
 import numpy as np
 
-from core.samples import ImuBlock, RecordingKind
+from core.samples import ImuBlock
+from core.session import RecordingKind
 from devices.clocks.arrival_clock import ArrivalClock
 from devices.clocks.live_clock import LiveClock
 from devices.drivers.witmotion import FORCE_UNIT, RATE_AT, RATE_UNIT, RATES, UNLOCK, scaled, writing

@@ -196,10 +196,7 @@ class XbusFramer:
         return found
 
     def _message(self, held: bytes, start: int, is_end: bool) -> tuple[Message | None, int]:
-        """The message that begins at `start` and where it ends; or none, and where to look next.
-
-        That lies behind all bytes, where more of them have to be waited for.
-        """
+        """The message that begins at `start` and its end; or none, and where to look next: behind all, to wait."""
         body, end = _body(held, start)
         if end > len(held):
             return None, end if end - body <= MOST_DATA and not is_end else start + 1

@@ -11,7 +11,8 @@ from typing import Protocol
 import numpy as np
 
 from core.body import LEG_SITES, Joint, Site
-from core.samples import FloatArray, ImuBlock, Recording, RecordingKind
+from core.samples import FloatArray, ImuBlock
+from core.session import Recording, RecordingKind
 from devices.clocks.host_clock import host_time_ns
 from devices.drivers.shimmer3 import EMULATED as SHIMMER3
 from devices.drivers.shimmer3 import calibrating

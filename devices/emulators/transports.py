@@ -10,6 +10,9 @@ from collections.abc import Callable
 from pathlib import Path
 from typing import Protocol
 
+if sys.platform != "win32":
+    import tty
+
 POLL_S = 0.005
 PIECE = 4096
 
@@ -41,8 +44,6 @@ class PseudoTerminal:
     def __init__(self, link: Path) -> None:
         if sys.platform == "win32":
             raise OSError("there are no pseudo-terminals here")
-        import tty
-
         self.place = str(link)
         self._link = link
         self._own, self._theirs = os.openpty()

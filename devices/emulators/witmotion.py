@@ -1,6 +1,6 @@
 """A WitMotion sensor that is not there: registers, and bursts of frames."""
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable
 from datetime import datetime, timedelta
 
 from devices.clocks.host_clock import host_time_ns
@@ -22,16 +22,14 @@ from devices.drivers.witmotion import (
     UNLOCK,
     frame,
 )
-
-Motion = Callable[[int], Sequence[float]]
-"""Rate in deg/s (3) and force in g (3) of the sample of this number."""
+from devices.emulators.evenly import EvenVoice, Motion
 
 SWITCHED_ON = datetime(2026, 1, 1)
 COMMAND = 5  # bytes
 USUAL_CONTENT = 0b1110  # force, rate, angles; no time
 
 
-class WitVoice:
+class WitVoice(EvenVoice):
     """The `Voice` of one sensor; `number` has up to four characters and follows `name`."""
 
     def __init__(
@@ -44,8 +42,8 @@ class WitVoice:
         name: str = EMULATED,
         now_ns: Callable[[], int] = host_time_ns,
     ) -> None:
-        self._motion, self._now_ns, self._begin_ns = motion, now_ns, now_ns()
-        self._sent, self._is_unlocked, self._rest = 0, False, b""
+        super().__init__(motion, now_ns)
+        self._is_unlocked, self._rest = False, b""
         self.number = f"{name}{number}"[:12]
         padded = self.number.encode().ljust(16, b"\0")
         self.registers = {NUMBER_AT + k: int.from_bytes(padded[2 * k : 2 * k + 2], "little") for k in range(8)}
@@ -57,16 +55,6 @@ class WitVoice:
     @property
     def rate_hz(self) -> float:
         return RATES[self.registers[RATE_AT]]
-
-    def sampled_ns(self, number: int) -> float:
-        """When the sample of this number is taken, by the host's clock."""
-        return self._begin_ns + (number + 1) * 1e9 / self.rate_hz
-
-    def say(self) -> bytes:
-        due = int((self._now_ns() - self._begin_ns) / 1e9 * self.rate_hz)
-        stated = b"".join(self.sample(number) for number in range(self._sent, due))
-        self._sent = max(self._sent, due)
-        return stated
 
     def sample(self, number: int) -> bytes:
         """The burst of one sample."""

@@ -6,9 +6,7 @@ from struct import pack
 
 from devices.clocks.host_clock import host_time_ns
 from devices.drivers.ximu3 import BASE_HZ, EMULATED, END, stuffed
-
-Motion = Callable[[int], Sequence[float]]
-"""Rate in deg/s (3) and force in g (3) of the sample of this number."""
+from devices.emulators.evenly import EvenVoice, Motion
 
 BATTERY_EVERY = 400  # samples
 FIRST_US = 1_000_000
@@ -39,7 +37,7 @@ def text_message(letter: str, us: int, text: str, is_binary: bool) -> bytes:
     return f"{letter},{us},{text}\r\n".encode()
 
 
-class Ximu3Voice:
+class Ximu3Voice(EvenVoice):
     """The `Voice` of one sensor.
 
     Attributes
@@ -58,9 +56,8 @@ class Ximu3Voice:
         name: str = EMULATED,
         now_ns: Callable[[], int] = host_time_ns,
     ) -> None:
-        self._motion, self._now_ns = motion, now_ns
-        self._begin_ns, self._first_us = now_ns(), FIRST_US
-        self._sent = 0
+        super().__init__(motion, now_ns)
+        self._first_us = FIRST_US
         self._rest = b""
         self.strobed = 0
         self.settings: dict[str, object] = {
@@ -82,17 +79,8 @@ class Ximu3Voice:
         divisor = self.settings["inertial_message_rate_divisor"]
         return BASE_HZ / divisor if isinstance(divisor, int) and divisor else 0.0
 
-    def sampled_ns(self, number: int) -> float:
-        """When the sample of this number is taken, by the host's clock."""
-        return self._begin_ns + (number + 1) * 1e9 / self.rate_hz
-
     def say(self) -> bytes:
-        if not self.rate_hz:
-            return b""
-        due = int((self._now_ns() - self._begin_ns) / 1e9 * self.rate_hz)
-        stated = b"".join(self.sample(number) for number in range(self._sent, due))
-        self._sent = max(self._sent, due)
-        return stated
+        return super().say() if self.rate_hz else b""
 
     def sample(self, number: int) -> bytes:
         """What is sent of one sample."""

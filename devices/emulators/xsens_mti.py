@@ -6,9 +6,7 @@ from collections.abc import Callable, Sequence
 from devices.clocks.host_clock import host_time_ns
 from devices.drivers.xbus import REQUESTS, Item, Message, Mid, XbusFramer, item, message
 from devices.drivers.xsens_mti import ALWAYS, EMULATED, FINE_HZ, SETTING
-
-Motion = Callable[[int], Sequence[float]]
-"""Rate in rad/s (3), force in m/s2 (3) and orientation (4) of the sample of this number."""
+from devices.emulators.evenly import EvenVoice, Motion
 
 FASTEST_HZ = 400
 FIRST_TICKS = 0xFFFF_FC00  # its fine time begins again a tenth of a second after it was switched on
@@ -32,11 +30,13 @@ def still(number: int) -> Sequence[float]:
     return (1e-3 * (number % 7), 0.0, 0.0, 0.0, 0.0, 9.81, 1.0, 0.0, 0.0, 0.0)
 
 
-class MtiVoice:
+class MtiVoice(EvenVoice):
     """The `Voice` of one sensor. It measures from the start, as a sensor does that was plugged in.
 
     Parameters
     ----------
+    motion
+        Rate in rad/s (3), force in m/s2 (3) and orientation (4) of the sample of a number.
     rate_hz
         As its owner set it, until it is set to another.
     has_orientation
@@ -53,10 +53,10 @@ class MtiVoice:
         product: str = EMULATED,
         now_ns: Callable[[], int] = host_time_ns,
     ) -> None:
-        self._motion, self._now_ns, self._has_orientation = motion, now_ns, has_orientation
+        super().__init__(motion, now_ns)
+        self._has_orientation = has_orientation
         self._serial, self._product = serial, product
         self._framer = XbusFramer(REQUESTS)
-        self._begin_ns, self._sent = now_ns(), 0
         self.is_measuring = True
         self.settings: dict[int, int] = {
             Item.COUNTER: ALWAYS,
@@ -71,24 +71,23 @@ class MtiVoice:
     def rate_hz(self) -> int:
         return self.settings.get(Item.RATE, 0)
 
-    def sampled_ns(self, number: int) -> float:
-        """When the sample of this number is taken, by the host's clock."""
-        return self._begin_ns + (number + 1) * 1e9 / self.rate_hz
-
     def say(self) -> bytes:
-        due = int((self._now_ns() - self._begin_ns) / 1e9 * self.rate_hz)
-        stated = b"".join(sample(self, number) for number in range(self._sent, due)) if self.is_measuring else b""
-        self._sent = max(self._sent, due)
-        return stated
+        stated = super().say()
+        return stated if self.is_measuring else b""
+
+    def sample(self, number: int) -> bytes:
+        moved = self._motion(number)
+        ticks = (FIRST_TICKS + round(number * FINE_HZ / self.rate_hz)) & 0xFFFF_FFFF
+        data = item(Item.COUNTER, struct.pack(">H", number & 0xFFFF))
+        data += item(Item.FINE_TIME, struct.pack(">I", ticks))
+        if Item.QUATERNION in self.settings:
+            data += item(Item.QUATERNION, struct.pack(">4f", *moved[6:10]))
+        data += item(Item.ACCELERATION, struct.pack(">3f", *moved[3:6]))
+        data += item(Item.RATE, struct.pack(">3f", *moved[:3]))
+        return message(Mid.MT_DATA2, data)
 
     def hear(self, data: bytes) -> bytes:
         return b"".join(self._answer(one) for one in self._framer.feed(data))
-
-    def motion(self, number: int) -> Sequence[float]:
-        return self._motion(number)
-
-    def ticks(self, number: int) -> int:
-        return (FIRST_TICKS + round(number * FINE_HZ / self.rate_hz)) & 0xFFFF_FFFF
 
     def _answer(self, one: Message) -> bytes:
         answer = b""
@@ -114,15 +113,3 @@ class MtiVoice:
             case _:
                 return message(Mid.ERROR, CANNOT)
         return message(one.mid + 1, answer)
-
-
-def sample(voice: MtiVoice, number: int) -> bytes:
-    """The message of one sample."""
-    moved = voice.motion(number)
-    data = item(Item.COUNTER, struct.pack(">H", number & 0xFFFF))
-    data += item(Item.FINE_TIME, struct.pack(">I", voice.ticks(number)))
-    if Item.QUATERNION in voice.settings:
-        data += item(Item.QUATERNION, struct.pack(">4f", *moved[6:10]))
-    data += item(Item.ACCELERATION, struct.pack(">3f", *moved[3:6]))
-    data += item(Item.RATE, struct.pack(">3f", *moved[:3]))
-    return message(Mid.MT_DATA2, data)

@@ -7,7 +7,8 @@ from pathlib import Path
 
 from core.body import Site
 from core.findings import Finding, Severity
-from core.samples import ImuBlock, Recording, RecordingKind, SensorInfo, Session
+from core.samples import ImuBlock, SensorInfo
+from core.session import Recording, RecordingKind, Session
 from core.signal.clock_jumps import jump_of, spans_of
 from devices.files.clock_repair import SPLIT_IT
 from devices.files.refusal import FileRefusedError, quoted

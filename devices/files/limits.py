@@ -19,6 +19,9 @@ import sys
 from collections.abc import Mapping, Sequence
 from pathlib import Path
 
+if sys.platform != "win32":
+    import resource
+
 OPEN_FILES = 128
 
 # the same numbers on every architecture
@@ -64,8 +67,6 @@ def limit_this_process(memory_bytes: int) -> None:
     """
     if sys.platform == "win32":
         return
-    import resource
-
     for limit, most in (
         (resource.RLIMIT_AS, memory_bytes),
         (resource.RLIMIT_FSIZE, 0),
@@ -88,8 +89,6 @@ def limit_processor_time(more_s: float) -> None:
     """
     if sys.platform == "win32":
         return
-    import resource
-
     used = resource.getrusage(resource.RUSAGE_SELF)
     most_s = int(used.ru_utime + used.ru_stime + more_s) + 1
     _, highest_s = resource.getrlimit(resource.RLIMIT_CPU)

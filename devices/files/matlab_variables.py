@@ -12,6 +12,8 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
+from scipy.io import loadmat
+from scipy.io.matlab import MatlabFunction, MatlabOpaque, MatReadError
 
 from core.samples import FloatArray
 from devices.files.hdf5 import SIGNATURE, Hdf5File
@@ -100,9 +102,6 @@ class _Version5(_MatlabFile):
         self._path = path
 
     def variables(self) -> dict[str, Variable]:
-        from scipy.io import loadmat  # here, not above: the window starts without it
-        from scipy.io.matlab import MatReadError
-
         try:
             content = self._path.read_bytes()
             check_elements(content)
@@ -121,8 +120,6 @@ class _Version5(_MatlabFile):
             ) from error
 
     def _plain(self, value: Any, depth: int) -> Variable:
-        from scipy.io.matlab import MatlabFunction, MatlabOpaque
-
         self._count(depth)
         if isinstance(value, MatlabOpaque):
             return ClosedObject(_class_of(value))

@@ -224,13 +224,7 @@ def _sensor(path: Path, asked_hz: float | None) -> ImportedSensor:
 
 
 def _times(stream: MtiStream, asked_hz: float | None, where: str) -> RepairedClock:
-    """Seconds of all rows.
-
-    Raises
-    ------
-    FileRefusedError
-        A message contains neither, or the clock steps back for good.
-    """
+    """Seconds of all rows."""
     if np.isfinite(stream.ticks).all():
         time_s = np.unwrap(stream.ticks, period=2.0**FINE_BITS) / FINE_HZ
     elif asked_hz is None:
@@ -265,13 +259,7 @@ def _rates(
 def _forces(
     stream: MtiStream, is_new: BoolArray, q: FloatArray | None, usual_s: float, where: str
 ) -> tuple[FloatArray, bool]:
-    """(m, 3) m/s2 with gravity, and whether that had to be added.
-
-    Raises
-    ------
-    FileRefusedError
-        Gravity is taken out, and nothing shows which way is down.
-    """
+    """(m, 3) m/s2 with gravity, and whether that had to be added."""
     if np.isfinite(stream.force).any():
         return stream.force[is_new], False
     if np.isfinite(stream.velocity).any():

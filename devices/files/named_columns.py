@@ -198,13 +198,7 @@ def _gyr_unit(table: NamedTable, named: SensorColumns, gyr: FloatArray, findings
 
 
 def _reported_unit(table: NamedTable, names: Sequence[str], quantity: Quantity) -> str:
-    """The unit in the names of three columns, or the one given for them; empty where there is none.
-
-    Raises
-    ------
-    FileRefusedError
-        A unit that is none of the quantity's, or two.
-    """
+    """The unit in the names of three columns, or the one given for them; empty where there is none."""
     units = set()
     for name in names:
         stated = table.units.get(name, "")
@@ -232,10 +226,8 @@ def _reported_unit(table: NamedTable, names: Sequence[str], quantity: Quantity) 
 
 
 def _orientation(q: FloatArray, acc: FloatArray) -> FloatArray | None:
-    """(n, 4) unit quaternions, earth from sensor; None where they do not turn the specific force upwards.
-
-    No name shows whether a program means earth from sensor or sensor from earth; gravity does.
-    """
+    """(n, 4) unit quaternions, earth from sensor; None where they do not turn the specific force upwards."""
+    # no name shows whether a program means earth from sensor or sensor from earth; gravity does
     length = np.linalg.norm(q, axis=1)
     is_whole = np.abs(length - 1.0) < 0.05
     is_felt = is_whole & np.isfinite(acc).all(axis=1)

@@ -124,13 +124,7 @@ def _checked_rate(table: NamedTable, time_s: FloatArray, reported_hz: float | No
 def _unwrapped(
     table: NamedTable, values: FloatArray, rows: np.ndarray[tuple[int], np.dtype[np.intp]], name: str
 ) -> FloatArray:
-    """(n,) stamps or counts without their turns.
-
-    Raises
-    ------
-    FileRefusedError
-        One is missing.
-    """
+    """(n,) stamps or counts without their turns."""
     missing = np.flatnonzero(~np.isfinite(values))
     if len(missing):
         raise FileRefusedError(

@@ -6,6 +6,9 @@ One sensor in each file, or all side by side. A unit may stand in a column's nam
 from collections.abc import Sequence
 from pathlib import Path
 
+import pyarrow as pa
+import pyarrow.parquet as pq
+
 from devices.files.column_names import sensor_columns
 from devices.files.named_columns import trial_of_tables
 from devices.files.named_table import NamedTable, named_table_of
@@ -52,9 +55,6 @@ def _table(path: Path) -> NamedTable:
 
 def _columns(path: Path) -> dict[str, str]:
     """The units of the columns by their names; empty where none is given."""
-    import pyarrow as pa  # here, not above: the window starts without it
-    import pyarrow.parquet as pq
-
     try:
         with path.open("rb") as file:
             schema = pq.read_schema(file)

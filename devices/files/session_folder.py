@@ -14,7 +14,8 @@ from typing import Protocol
 
 from core.body import Site
 from core.findings import Finding, Severity
-from core.samples import ImuBlock, Recording, Session
+from core.samples import ImuBlock
+from core.session import Recording, Session
 from devices.files.refusal import FileRefusedError
 from devices.files.session_toml import (
     FILE_NAME,

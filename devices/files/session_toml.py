@@ -19,7 +19,8 @@ from core.alignment import alignment_of_table, alignment_table
 from core.body import LEG_JOINTS, Joint, Side, Site
 from core.findings import Finding, Severity
 from core.goals import goal_table, goals_of_tables
-from core.samples import Patient, RateKind, Recording, RecordingKind, SensorInfo, Session
+from core.samples import RateKind, SensorInfo
+from core.session import Patient, Recording, RecordingKind, Session
 from core.timed.protocols import TABLE_KEYS, planned_of_table, planned_table
 from devices.files.refusal import FileRefusedError, quoted
 from devices.files.stored_findings import finding_tables, findings_of_tables

@@ -198,8 +198,7 @@ def _since(raw: Ticks, begun: int, period: int) -> Ticks:
 
 
 def _ahead(name: str, offsets: Sequence[tuple[int, int]], count: int, period: int) -> FloatArray:
-    """(count,) ticks by which the clock is ahead, on a line through the radio's values, a few of which may be
-    wrong."""
+    """(count,) ticks by which the clock is ahead, by a line through the radio's values, of which a few may be wrong."""
     at_sample, ahead = np.array(offsets, dtype=float).T
     if len(offsets) < 2:
         return np.full(count, ahead[0])

@@ -171,13 +171,7 @@ def _sensor(path: Path, table: Table, units: Mapping[str, str], name: str, colum
 
 
 def _scale(path: Path, units: Mapping[str, str], names: Sequence[str], quantity: Quantity) -> float:
-    """What makes SI units of three columns.
-
-    Raises
-    ------
-    FileRefusedError
-        Their unit is not given, or none of the quantity.
-    """
+    """What makes SI units of three columns."""
     reported = {unit_of(quantity, units.get(name, "")) for name in names}
     unit = reported.pop() if len(reported) == 1 else ""
     if not unit:

@@ -83,8 +83,7 @@ def write_site(block: ImuBlock, path: Path) -> None:
     ValueError
         An unknown column has the name of one of the block's own.
     """
-    import pyarrow as pa  # here, not above: the window starts without it
-    import pyarrow.csv as pcsv
+    import pyarrow.csv  # here, not above: the window starts without it
 
     columns = {
         TIME: block.time_s,
@@ -95,20 +94,20 @@ def write_site(block: ImuBlock, path: Path) -> None:
         columns |= dict(zip(QUAT, block.q_earth_from_sensor.T, strict=True))
     if block.mag is not None:
         columns |= dict(zip(MAG, block.mag.T, strict=True))
-    arrays = [pa.array(np.ascontiguousarray(column, dtype=float), from_pandas=True) for column in columns.values()]
+    arrays = [pyarrow.array(np.ascontiguousarray(column, dtype=float), from_pandas=True) for column in columns.values()]
     for name, column in block.unknown.items():
         if name in columns:
             raise ValueError(f"the unknown column {name} is one of the block's own")
         is_number = np.issubdtype(column.dtype, np.floating)
         texts = ["" if is_number and np.isnan(v) else LINE_END.sub(" ", str(v)) for v in column]
-        arrays.append(pa.array(texts, pa.string()))
+        arrays.append(pyarrow.array(texts, pyarrow.string()))
         columns[name] = column
     header = ",".join(_header_cell(name) for name in columns)
     with path.open("wb") as file:
         file.write(f"{header}\n".encode())
         if len(block):
-            table = pa.Table.from_arrays(arrays, names=[str(i) for i in range(len(arrays))])
-            pcsv.write_csv(table, file, write_options=pcsv.WriteOptions(include_header=False))
+            table = pyarrow.Table.from_arrays(arrays, names=[str(i) for i in range(len(arrays))])
+            pyarrow.csv.write_csv(table, file, write_options=pyarrow.csv.WriteOptions(include_header=False))
 
 
 class SitesOnDemand(Mapping[Site, ImuBlock]):
@@ -195,13 +194,7 @@ def _header_cell(name: str) -> str:
 
 
 def _check_clock(time_s: FloatArray, table: Table, where: str) -> BoolArray:
-    """(n,) which samples are later than the one before.
-
-    Raises
-    ------
-    FileRefusedError
-        The first stamp that is empty or lies before its predecessor.
-    """
+    """(n,) which samples are later than the one before; refuses an empty stamp and one before its predecessor."""
     is_new = np.ones(len(time_s), dtype=bool)
     empty = np.flatnonzero(~np.isfinite(time_s))
     if len(empty):

@@ -155,30 +155,29 @@ def read_parquet(path: Path, where: str, numeric: Collection[str]) -> Table:
     FileRefusedError
         Not Parquet, a column twice, a column that should hold numbers and does not.
     """
-    import pyarrow as pa  # here, not above: the window starts without it
-    import pyarrow.parquet as pq
+    import pyarrow.parquet  # here, not above: the window starts without it
 
     try:
         with path.open("rb") as file:
-            arrow = pq.ParquetFile(file).read()
+            arrow = pyarrow.parquet.ParquetFile(file).read()
         names = [name.strip() for name in arrow.column_names]
         _refuse_twice(names, where, "header")
         numbers, texts = {}, {}
         for name, column in zip(names, arrow.columns, strict=True):
-            is_number = pa.types.is_integer(column.type) or pa.types.is_floating(column.type)
+            is_number = pyarrow.types.is_integer(column.type) or pyarrow.types.is_floating(column.type)
             if name in numeric:
-                if not (is_number or pa.types.is_decimal(column.type) or pa.types.is_null(column.type)):
+                if not (is_number or pyarrow.types.is_decimal(column.type) or pyarrow.types.is_null(column.type)):
                     raise FileRefusedError(
                         where, "column {name} contains {kind}, not numbers", CORRECT_IT, name=name, kind=column.type
                     )
-                numbers[name] = np.asarray(column.cast(pa.float64(), safe=False).to_numpy(), dtype=float)
+                numbers[name] = np.asarray(column.cast(pyarrow.float64(), safe=False).to_numpy(), dtype=float)
             elif is_number and column.null_count == 0:
                 texts[name] = column.to_numpy()
             else:
                 texts[name] = _as_text(["" if v is None else str(v) for v in column.to_pylist()])
-    except pa.ArrowMemoryError:
+    except pyarrow.ArrowMemoryError:
         raise
-    except (pa.ArrowException, OSError, ValueError, OverflowError) as error:
+    except (pyarrow.ArrowException, OSError, ValueError, OverflowError) as error:
         raise FileRefusedError(
             where, "the file is not a readable Parquet file ({why})", COPY_AGAIN, why=error
         ) from error
@@ -269,16 +268,15 @@ def _read_body(
     file: BinaryIO, names: list[str], required: list[str], numeric: Collection[str], delimiter: str, decimal: str
 ) -> Any:
     """The rows after the header as an Arrow table, or the error that Arrow raised."""
-    import pyarrow as pa
-    import pyarrow.csv as pcsv
+    import pyarrow.csv
 
-    types = {name: pa.float64() if name in numeric else pa.string() for name in names}
+    types = {name: pyarrow.float64() if name in numeric else pyarrow.string() for name in names}
     try:
-        return pcsv.read_csv(
+        return pyarrow.csv.read_csv(
             file,
-            read_options=pcsv.ReadOptions(column_names=names),
-            parse_options=pcsv.ParseOptions(delimiter=delimiter),
-            convert_options=pcsv.ConvertOptions(
+            read_options=pyarrow.csv.ReadOptions(column_names=names),
+            parse_options=pyarrow.csv.ParseOptions(delimiter=delimiter),
+            convert_options=pyarrow.csv.ConvertOptions(
                 column_types=types,
                 include_columns=required,
                 null_values=EMPTY_CELLS,
@@ -286,9 +284,9 @@ def _read_body(
                 decimal_point=decimal,
             ),
         )
-    except pa.ArrowMemoryError:
+    except pyarrow.ArrowMemoryError:
         raise  # which is not about the file's lines
-    except pa.ArrowException as error:
+    except pyarrow.ArrowException as error:
         return error
 
 

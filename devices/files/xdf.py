@@ -168,11 +168,9 @@ def _table(
 
 
 def _columns(stream: XdfStream) -> tuple[dict[str, FloatArray], dict[str, str], list[str]]:
-    """Channels by their labels, their units, and the labels that are left out because several channels have them.
-
-    Where labels alone name no sensor it is one by the rules by which a stream is received live: of a Shimmer's two
-    accelerometers the wide one. Its channels are called by their quantities then.
-    """
+    """Channels by their labels, their units, and labels left out because several channels have them."""
+    # labels that name no sensor are read as of a live stream: of a Shimmer's two accelerometers the wide one, channels
+    # called by their quantities
     labels = list(stream.labels)[: stream.samples.shape[1]]
     numbers = {label: number for number, label in enumerate(labels) if label and labels.count(label) == 1}
     if not sensor_columns(list(numbers)) and len(numbers) == len(labels):

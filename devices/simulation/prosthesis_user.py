@@ -6,7 +6,7 @@ from dataclasses import replace
 
 from core.alignment import NetChange
 from core.body import Side
-from core.samples import RecordingKind
+from core.session import RecordingKind
 from devices.clocks.host_clock import host_time_ns
 from devices.simulation.fitted_prosthesis import BUILT, SPEED_M_S, setting_of
 from devices.simulation.replay import DEMONSTRATION_SESSION, ReplaySource, labelled

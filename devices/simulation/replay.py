@@ -9,7 +9,8 @@ from itertools import count
 import numpy as np
 
 from core.body import LEG_SITES, Site
-from core.samples import BoolArray, ImuBlock, Recording, RecordingKind, SensorInfo, Session
+from core.samples import BoolArray, ImuBlock, SensorInfo
+from core.session import Recording, RecordingKind, Session
 from devices.clocks.host_clock import host_time_ns
 from devices.live import Keep, SensorDetails, SourceLostError, SourceRefusedError
 from devices.simulation.walker import DEMONSTRATION, FreeMotion, Motion, Standing, Walk, WalkerSettings, simulate

@@ -10,7 +10,8 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from core.body import LEG_JOINTS, Joint, Segment, Side, Site
-from core.samples import FloatArray, ImuBlock, Patient, Recording, RecordingKind, SensorInfo, Session
+from core.samples import FloatArray, ImuBlock, SensorInfo
+from core.session import Patient, Recording, RecordingKind, Session
 from devices.simulation.walker_body import (
     COARSE,
     NO_CHANGE,
@@ -208,10 +209,7 @@ def _take(
     faults: Mapping[Site, SensorFaults],
     rides: dict[tuple[Site, RecordingKind], Ride],
 ) -> tuple[Recording, MovedRecording, dict[Site, SensorFaults]]:
-    """Recording `number`, how it was moved, and the sensors' faults at its end.
-
-    `rides` holds how each sensor rode when these straps were first moved so, and is filled where this is the first.
-    """
+    """Recording `number`, how it was moved, the sensors' faults at its end; a first motion fills how each `rides`."""
     required = settings.recordings[number]
     kind = _kind_of(required)
     motions, pelvis, duration_s = _move(settings, number, worn.strapping, legs)
@@ -300,10 +298,8 @@ def _following(leg: Leg, motion: LegMotion, site: Site, gains: Mapping[Joint, fl
 def _move(
     settings: WalkerSettings, number: int, strapping: int, legs: Mapping[Side, Leg]
 ) -> tuple[dict[Side, LegMotion], PelvisMotion | None, float]:
-    """Both legs' poses on the fine clock, in a compass direction of the recording's own, and its duration.
-
-    The pelvis is None where no sensor is on it: then each leg's hip goes its own way.
-    """
+    """Both legs' poses on the fine clock, in the recording's own compass direction, and its duration."""
+    # without a pelvis, each leg's hip goes its own way
     required = settings.recordings[number]
     pelvis = None
     rng = _rng(settings, 6, number)

@@ -10,7 +10,8 @@ from dataclasses import dataclass, field, replace
 import numpy as np
 
 from core.body import Side, Site
-from core.samples import BoolArray, FloatArray, ImuBlock, Patient, Recording, RecordingKind, SensorInfo, Session
+from core.samples import BoolArray, FloatArray, ImuBlock, SensorInfo
+from core.session import Patient, Recording, RecordingKind, Session
 from devices.simulation.walker_body import CourseKind, Leg, TimedCourse, Tissue, WalkerSettings, make_leg
 from devices.simulation.walker_bouts import Bout, CourseStep, PlannedBout, SeatChange, climb, plan_bout, sit, walk_bouts
 from devices.simulation.walker_course_pelvis import course_pelvis

@@ -249,10 +249,7 @@ def _toe_off_pitch(leg: Leg, gait: Gait, hip_ahead_m: float, knee_deg: float, an
 
 
 def _roll_as_one(leg: Leg, plan: WalkPlan, knee: FloatArray, time_s: FloatArray) -> tuple[FloatArray, StepPlan]:
-    """Pitch (n,) of a foot that turns with its shank, flat while the shank leans as in standing, and when it is flat.
-
-    A shoe gives by `STIFF_GIVE_RAD` before the foot follows.
-    """
+    """Pitch (n,) of a foot that turns with its shank, flat while that leans as in standing, and when it is flat."""
     steps = plan.steps[leg.side]
     ahead = np.clip(plan.hip_path_m - steps.ankle_m[_stance_at(steps, time_s)], -0.6, 0.6)
     pitch = np.zeros_like(time_s)
@@ -302,10 +299,7 @@ def _shank_lean(leg: Leg, ahead_m: FloatArray, knee: FloatArray) -> FloatArray:
 
 
 def _bridge(signal: FloatArray, swing: tuple[int, int], step_s: float, middle: float | None = None) -> None:
-    """Replace `signal` (n,) or (n, k) between two indices by a curve that joins on with two derivatives, in place.
-
-    With `middle` it passes through this value, level, at 65 % of the way.
-    """
+    """Replace `signal` between two indices by a smooth curve, in place; `middle` is passed level, at 65 %."""
     ends = []
     for i in swing:
         a, b, c, d, e = signal[i - 2 : i + 3]

@@ -144,11 +144,9 @@ def sensor_poses(
 def _tissue_motion(
     leg: LegMotion, segment: Segment, tissue: Tissue, ride: Ride, rng: np.random.Generator, wobble: float
 ) -> tuple[FloatArray, FloatArray]:
-    """The sensor against its segment, in segment axes: rotation vectors (n, 3) and shifts (n, 3).
-
-    It follows the flexion and rings after each contact. Real tissue follows it further, wobbles slowly, rings after
-    toe-off too, differently each time, and trembles with the muscles.
-    """
+    """The sensor against its segment, in segment axes: rotation vectors (n, 3) and shifts (n, 3)."""
+    # it follows the flexion and rings after each contact; real tissue follows further, wobbles slowly, rings after
+    # toe-off too, differently each time, and trembles with the muscles
     t, share = leg.time_s, TISSUE_SHARE[segment]
     step_s = t[1] - t[0]
     flexion = leg.angles.ankle if segment is Segment.FOOT else leg.angles.knee
@@ -199,10 +197,8 @@ def turn_in_step(
 
 
 def _liveliness(leg: LegMotion) -> float:
-    """How strongly a walk shakes what hangs on it, against one at 1.19 m/s: as the square of how fast the knee bends.
-
-    People after a stroke at 0.4 m/s have sensors that agree about the joint as well as those of others at 1.2.
-    """
+    """How strongly a walk shakes what hangs on it, against 1.19 m/s: as the square of how fast the knee bends."""
+    # after a stroke at 0.4 m/s sensors agree about the joint as well as those of others at 1.2
     rate = np.gradient(leg.angles.knee, leg.time_s[1] - leg.time_s[0])
     moving = rate[np.abs(rate) > MOVING_RAD_S]
     return min(1.0, float(np.mean(moving**2)) / USUAL_KNEE_RAD_S**2) if len(moving) else 0.0

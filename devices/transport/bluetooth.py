@@ -126,13 +126,12 @@ class Radio:
                 "Bluetooth LE sensors cannot connect: a software library is missing",
                 "Install gaitwright[bluetooth]",
             )
-        from bleak import BleakScanner
-        from bleak.exc import BleakError
+        import bleak
 
         async with self.connecting:
             try:
-                found = await BleakScanner.discover(timeout=seconds, return_adv=True)
-            except (BleakError, OSError, EOFError) as problem:
+                found = await bleak.BleakScanner.discover(timeout=seconds, return_adv=True)
+            except (bleak.exc.BleakError, OSError, EOFError) as problem:
                 raise SourceRefusedError(
                     "Bluetooth does not respond on this computer",
                     "Switch it on, or plug in an adapter, then search again",

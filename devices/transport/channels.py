@@ -147,10 +147,9 @@ class UdpChannel:
 
 
 class _UdpPort:
-    """A port of this computer, and the sensors that send to it, distinguished by the address that they send from.
+    """A port of this computer and its senders, by address; of one address, by the sensor's own port."""
 
-    Where several share one address, the sensor's own port decides. Whoever reads takes what has come for all.
-    """
+    # whoever reads takes what has come for all
 
     _known: ClassVar[dict[int, "_UdpPort"]] = {}
     _changing: ClassVar[threading.Lock] = threading.Lock()

@@ -4,6 +4,9 @@ import socket
 import struct
 import sys
 
+if sys.platform != "win32":
+    import fcntl
+
 THIS_COMPUTER = "127.0.0.1"
 ADDRESS_OF = 0xC0206921 if sys.platform == "darwin" else 0x8915  # SIOCGIFADDR
 REQUEST = struct.Struct("16s16s")  # an interface's name, then its address: family and port (4 bytes), IPv4 (4 bytes)
@@ -22,8 +25,6 @@ def _address_of(interface: str) -> str:
     """The interface's address; empty where it has none."""
     if sys.platform == "win32":
         return ""
-    import fcntl
-
     with socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as asking:
         try:
             answer = fcntl.ioctl(asking, ADDRESS_OF, REQUEST.pack(interface.encode(), b""))

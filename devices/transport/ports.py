@@ -15,6 +15,9 @@ from serial.tools import list_ports as listing
 from devices.live import SourceLostError, SourceRefusedError
 from devices.transport.channels import MOST_BYTES, READ_S
 
+if sys.platform != "win32":
+    import grp
+
 MORE_PORTS = "GAITWRIGHT_PORTS"  # further ports, such as emulators', by their paths
 # names of Bluetooth ports that are worth the seconds they take: bound by hand on Linux, made by pairing on macOS
 SENSORS_RADIO = ("rfcomm", "Shimmer3")
@@ -163,8 +166,6 @@ def _refusal(device: str, problem: Exception) -> SourceRefusedError:
 def _group(device: str) -> str:
     if sys.platform == "win32":
         return ""
-    import grp
-
     try:
         return grp.getgrgid(Path(device).stat().st_gid).gr_name
     except (OSError, KeyError):

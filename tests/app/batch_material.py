@@ -7,7 +7,8 @@ from pathlib import Path
 import numpy as np
 
 from core.body import Site
-from core.samples import ImuBlock, Patient, Recording, RecordingKind, Session
+from core.samples import ImuBlock
+from core.session import Patient, Recording, RecordingKind, Session
 from devices.files.session_folder import write_session
 from devices.simulation.walker import FreeMotion, Standing, Walk, WalkerSettings, simulate
 

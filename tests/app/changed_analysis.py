@@ -9,7 +9,7 @@ from app.summary.request import AnalysedVisit
 from core.body import LEG_JOINTS, Joint, Side
 from core.gait.strides import Reason
 from core.results import Analysis, RecordingAnalysis
-from core.samples import RecordingKind, Session
+from core.session import RecordingKind, Session
 from core.verdicts.gates import judged
 from core.verdicts.norms import AgeAndHeight
 

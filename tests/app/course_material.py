@@ -7,7 +7,7 @@ import numpy as np
 from app.summary.course import Course, course_of
 from core.body import Joint, Side
 from core.results import Analysis, Calibration, Method, RecordingAnalysis, SideGait
-from core.samples import Recording
+from core.session import Recording
 from core.timed.protocols import TimedProtocol
 from tests.core.timed.built_tests import built_test
 from tests.core.verdicts.built_walk import Reported, calibrations, each, judged_walk, leg, walk

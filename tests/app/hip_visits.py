@@ -6,7 +6,7 @@ from datetime import UTC, datetime
 from app.summary.facts import Facts
 from app.summary.request import AnalysedVisit, ReportRequest
 from core.results import Analysis
-from core.samples import Session
+from core.session import Session
 from tests.app.changed_analysis import visit_of
 from tests.core.hip.hip_sessions import analysed, walk_of
 

@@ -18,7 +18,7 @@ import numpy as np
 from app.exports.result_folder import write_results
 from core.analysis import analyse
 from core.body import Side, Site
-from core.samples import Session
+from core.session import Session
 from devices.simulation.walker import FreeMotion, Standing, Tissue, Walk, WalkerSettings, simulate
 
 GOLDEN = Path(__file__).parents[1] / "golden" / "six_sensors.json"

@@ -15,7 +15,7 @@ from app.summary.differences import Row, comparisons_of, rows_of, without_common
 from core.analysis import analyse
 from core.body import Side
 from core.results import Analysis, ZeroKind
-from core.samples import Session
+from core.session import Session
 from core.verdicts.gates import judged
 from core.verdicts.measurement_error import Judgement
 from core.verdicts.quantities import PARAMETERS

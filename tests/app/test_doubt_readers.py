@@ -12,7 +12,7 @@ from core.analysis import analyse
 from core.body import Joint, Side
 from core.parameters import BY_COLUMN, ParameterFile, QuantityClass, columns_of
 from core.results import Analysis, ZeroKind
-from core.samples import Session
+from core.session import Session
 from devices.simulation.walker import DEMONSTRATION, simulate
 from tests.app.changed_analysis import recalibrated, with_few_strides
 from tests.app.doubt_readers import Doubts, Stated, stated_in_report, stated_on_screen

@@ -30,7 +30,7 @@ from app.summary.request import AnalysedVisit, ReportRequest
 from core.analysis import analyse
 from core.body import LEG_SITES, Side, Site
 from core.results import Analysis
-from core.samples import Recording, Session
+from core.session import Recording, Session
 from devices.simulation.walker import Standing, Walk, WalkerSettings, simulate
 from devices.simulation.walker_body import GaitChange
 from tests.app.doubt_readers import Stated, stated_in_report, stated_on_screen

@@ -38,7 +38,7 @@ from app.theme.colours import DARK, LIGHT
 from app.theme.notifier import ThemeNotifier
 from app.wizard.keys import Intent, KeyAction
 from app.wording.translation import use_language
-from core.samples import Patient, Recording, RecordingKind, Session
+from core.session import Patient, Recording, RecordingKind, Session
 
 PASSPHRASE = "four short words here"
 SECRET_CODE = "P-0147"

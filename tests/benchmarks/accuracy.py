@@ -19,7 +19,8 @@ from core.angles.measure import Geometry, measure
 from core.body import LEG_JOINTS, LEG_SITES, Joint, Segment
 from core.calibration.zero import standing_twist, wrapped_to_zero
 from core.results import Analysis, JointCalibration, Method, ZeroKind
-from core.samples import RateKind, RecordingKind
+from core.samples import RateKind
+from core.session import RecordingKind
 from core.signal.rotations import angle_between
 from core.signal.sensors import SensorTracks
 from devices.simulation.walker import (

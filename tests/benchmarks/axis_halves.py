@@ -20,7 +20,8 @@ import numpy as np
 from core.analysis import analyse
 from core.body import Joint
 from core.results import Analysis, JointCalibration
-from core.samples import FloatArray, Session
+from core.samples import FloatArray
+from core.session import Session
 from core.signal.rotations import angle_between
 from devices.simulation.walker import (
     PEOPLE,

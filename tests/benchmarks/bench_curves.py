@@ -35,7 +35,7 @@ from app.wizard.walking.step import WalkingStep
 from app.wizard.worn_sensors import SourceChoice
 from app.workers.library_controller import LibraryController
 from core.body import LEG_SITES, Side
-from core.samples import Patient, RecordingKind
+from core.session import Patient, RecordingKind
 from devices.simulation.replay import ReplaySource
 from devices.simulation.walker import FreeMotion, ProsthesisSetting, Standing, Tissue, Walk, WalkerSettings, simulate
 

@@ -15,7 +15,7 @@ import numpy as np
 
 from core.analysis import analyse
 from core.body import Joint, Side
-from core.samples import Patient
+from core.session import Patient
 from devices.simulation.walker import FreeMotion, Standing, Tissue, Walk, WalkerSettings, simulate
 
 SETTINGS = {

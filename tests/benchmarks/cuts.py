@@ -4,7 +4,8 @@ from dataclasses import replace
 
 import numpy as np
 
-from core.samples import ImuBlock, Recording, RecordingKind, Session
+from core.samples import ImuBlock
+from core.session import Recording, RecordingKind, Session
 
 NAMES = "ABCDEF"
 

@@ -29,7 +29,8 @@ from core.live.excitation import HUMAN, Excitation, ExcitationState
 from core.live.orientation import LiveOrientation, OrientedSamples
 from core.live.streams import EvenStream
 from core.results import Method
-from core.samples import FloatArray, RateKind, Session
+from core.samples import FloatArray, RateKind
+from core.session import Session
 from core.signal.sensors import SensorTracks
 from devices.simulation.walker import (
     FreeMotion,

@@ -52,7 +52,8 @@ from core.body import LEG_SITES, Side, Site
 from core.calibration.rest import rest_of
 from core.live.sensors import LiveSensor
 from core.live.stride_values import StrideValue
-from core.samples import ImuBlock, RecordingKind
+from core.samples import ImuBlock
+from core.session import RecordingKind
 from core.targets import Target, TargetMeasure
 from devices.simulation.replay import POLL_S, ReplaySource
 from devices.simulation.walker import DEMONSTRATION, FreeMotion, Standing, Walk, simulate

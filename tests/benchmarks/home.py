@@ -3,9 +3,10 @@
     python -m tests.benchmarks.home [--patients 2000] [--times 5]
 
 A library in a folder, each patient with a session, the latest 40 with two visits whose courses are kept, on a window
-without a display (Qt's offscreen). "Opened": from asking home to show the library until its patients are painted. "Chosen": until the first
-patient's visits are. "Searched": five letters typed one after another, each painted. "At work": the processor time of
-the screen's thread meanwhile. To compare two versions run this file in turn with either on PYTHONPATH.
+without a display (Qt's offscreen). "Opened": from asking home to show the library until its patients are painted.
+"Chosen": until the first patient's visits are. "Searched": five letters typed one after another, each painted. "At
+work": the processor time of the screen's thread meanwhile. To compare two versions run this file in turn with either on
+PYTHONPATH.
 """
 
 import argparse
@@ -31,7 +32,7 @@ from app.storage.stored import Operator, Role
 from app.system.settings import Settings
 from app.theme.notifier import ThemeNotifier, load_fonts
 from app.workers.library_controller import LibraryController
-from core.samples import Patient, Session
+from core.session import Patient, Session
 from tests.app.home.course_library import PASSPHRASE, add_visit, course_of_visit
 
 SEARCHED = "P-012"

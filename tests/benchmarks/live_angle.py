@@ -23,7 +23,8 @@ from core.live.angle import AngleSamples, LiveAngle
 from core.live.orientation import LiveOrientation
 from core.live.streams import EvenStream
 from core.results import JointCalibration
-from core.samples import FloatArray, ImuBlock, RateKind, Recording, RecordingKind, Session
+from core.samples import FloatArray, ImuBlock, RateKind
+from core.session import Recording, RecordingKind, Session
 from devices.simulation.walker import FreeMotion, Standing, Tissue, Walk, WalkerSettings, simulate
 from tests.benchmarks.trials import HINGES
 

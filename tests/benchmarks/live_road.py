@@ -30,7 +30,8 @@ from app.wizard.walking.estimator import WalkingEstimator
 from core.analysis import analyse
 from core.body import LEG_SITES, Side
 from core.live.sensors import LiveSensor
-from core.samples import FloatArray, ImuBlock, RecordingKind
+from core.samples import FloatArray, ImuBlock
+from core.session import RecordingKind
 from devices.simulation.replay import ReplaySource
 from devices.simulation.walker import DEMONSTRATION, FreeMotion, Standing, Walk, simulate
 from tests.safety.journal_material import KEY, NO_ROOM_ASKED

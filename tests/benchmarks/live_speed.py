@@ -26,7 +26,8 @@ from core.calibration.rest import rest_of
 from core.live.free_motion import LiveFreeMotion
 from core.live.sensors import LiveSensor
 from core.live.walking import LiveWalk
-from core.samples import ImuBlock, Session
+from core.samples import ImuBlock
+from core.session import Session
 from devices.simulation.walker import FreeMotion as FreeMotionRecording
 from devices.simulation.walker import Standing, Tissue, Walk, WalkerSettings, simulate
 

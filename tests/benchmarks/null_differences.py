@@ -27,7 +27,8 @@ from app.summary.what_stands_out import STATED_BETWEEN_LEGS
 from core.analysis import analyse
 from core.body import Side, Site
 from core.results import Analysis
-from core.samples import ImuBlock, Recording, RecordingKind, Session
+from core.samples import ImuBlock
+from core.session import Recording, RecordingKind, Session
 from core.verdicts.measurement_error import Difference, Mark
 from core.verdicts.sigmas import HEALTHY_BETWEEN_LEGS
 from devices.files.session_folder import read_session

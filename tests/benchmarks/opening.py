@@ -37,7 +37,7 @@ from app.system.settings import Settings
 from app.theme.notifier import ThemeNotifier, load_fonts
 from app.wizard.wizard import Wizard
 from app.workers.library_controller import LibraryController
-from core.samples import Session
+from core.session import Session
 from devices.simulation.walker import DEMONSTRATION, simulate
 
 PASSPHRASE = "four short words here"

@@ -22,7 +22,8 @@ from core.body import LEG_SITES, Segment, Side, Site
 from core.placement.chains import Chains, find_chains
 from core.placement.labels import doubted_labels
 from core.placement.smoothed_tracks import Tracks
-from core.samples import FloatArray, RateKind, RecordingKind, Session
+from core.samples import FloatArray, RateKind
+from core.session import RecordingKind, Session
 from core.signal.sensors import SensorTracks
 from devices.simulation.walker import FreeMotion, Motion, SensorErrors, Standing, Tissue, Walk, WalkerSettings, simulate
 

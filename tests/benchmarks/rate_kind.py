@@ -9,7 +9,8 @@ import argparse
 from dataclasses import replace
 
 from core.calibration.rate_kind import tracks_of_kind
-from core.samples import RateKind, Session
+from core.samples import RateKind
+from core.session import Session
 from devices.simulation.walker import Tissue, WalkerSettings, simulate
 
 RATES_HZ = (60.0, 100.0, 200.0)

@@ -14,7 +14,7 @@ from PySide6.QtGui import QImage
 from app.reports.patient.document import ReportPreview, make_report
 from app.summary.request import AnalysedVisit, ReportRequest, default_walks
 from core.analysis import analyse
-from core.samples import RecordingKind
+from core.session import RecordingKind
 from devices.simulation.walker import DEMONSTRATION, FreeMotion, Standing, Walk, simulate
 
 PREVIEW_PPI = 80.0  # of a page beside the words in a window of 1280 x 800

@@ -21,7 +21,8 @@ from rerun.chunk import RrdReader
 from app.review.rerun_log import write_log
 from core.analysis import analyse
 from core.results import Analysis
-from core.samples import FloatArray, Session
+from core.samples import FloatArray
+from core.session import Session
 from devices.simulation.walker import FreeMotion, Standing, Walk, WalkerSettings, simulate
 from tests.benchmarks.long import STRIDES, repeated
 

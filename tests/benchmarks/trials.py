@@ -9,7 +9,8 @@ import numpy as np
 
 from core.body import Joint, Site
 from core.calibration.rate_kind import tracks_of_kind
-from core.samples import FloatArray, ImuBlock, RateKind, Recording, RecordingKind, Session
+from core.samples import FloatArray, ImuBlock, RateKind
+from core.session import Recording, RecordingKind, Session
 from devices.simulation.walker import FreeMotion, Standing, Tissue, Walk, WalkerSettings, simulate
 
 JOINTS = (Joint.LEFT_KNEE, Joint.LEFT_ANKLE)

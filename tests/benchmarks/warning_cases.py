@@ -11,7 +11,8 @@ from core.body import LEG_SITES, Joint, Side, Site
 from core.findings import Finding
 from core.gait.chosen_strides import leave_out
 from core.results import Method
-from core.samples import BoolArray, FloatArray, ImuBlock, RateKind, RecordingKind, Session
+from core.samples import BoolArray, FloatArray, ImuBlock, RateKind
+from core.session import RecordingKind, Session
 from core.timed.protocols import PlannedTest, TimedProtocol
 from core.verdicts.quality import look_at
 from devices.simulation.walker import (

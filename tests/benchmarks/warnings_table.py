@@ -23,7 +23,8 @@ import numpy as np
 
 from core.analysis import analyse
 from core.body import LEG_SITES, Segment, Side, Site
-from core.samples import ImuBlock, RateKind, Recording, RecordingKind, Session
+from core.samples import ImuBlock, RateKind
+from core.session import Recording, RecordingKind, Session
 from devices.files.session_folder import read_session
 from devices.simulation.walker import (
     COARSE,

@@ -15,7 +15,7 @@ from functools import partial
 from pathlib import Path
 
 from core.analysis import analyse
-from core.samples import RecordingKind, Session
+from core.session import RecordingKind, Session
 from core.verdicts.model import Assessment
 from devices.simulation.walker import PEOPLE, FreeMotion, Standing, Tissue, Walk, WalkerSettings, simulate
 from tests.benchmarks.null_differences import real_walks

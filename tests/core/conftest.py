@@ -12,7 +12,8 @@ import pytest
 from scipy.spatial.transform import Rotation
 
 from core.body import Joint, Segment, Side, Site
-from core.samples import FloatArray, ImuBlock, Recording, RecordingKind, Session
+from core.samples import FloatArray, ImuBlock
+from core.session import Recording, RecordingKind, Session
 from core.signal.pair import OrientedTrack, Pair, pair_up
 from core.signal.tracks import Track
 

@@ -7,7 +7,8 @@ from pathlib import Path
 import numpy as np
 
 from core.body import LEG_SITES, Segment, Site
-from core.samples import ImuBlock, Recording, RecordingKind, Session
+from core.samples import ImuBlock
+from core.session import Recording, RecordingKind, Session
 from devices.files.session_folder import read_session
 from devices.files.xsens_mtmanager import mtmanager_trial
 from tests.trials_of_files import import_with

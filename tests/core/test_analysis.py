@@ -13,7 +13,8 @@ from scipy.spatial.transform import Rotation
 from core.analysis import analyse
 from core.body import LEG_JOINTS, LEG_SITES, Joint, Side, Site
 from core.results import Analysis, JointCalibration, Method, ZeroKind
-from core.samples import FloatArray, ImuBlock, Patient, RecordingKind, Session
+from core.samples import FloatArray, ImuBlock
+from core.session import Patient, RecordingKind, Session
 from core.signal.rotations import angle_between, joint_frame
 from devices.simulation.walker import Standing, Tissue, Walk, WalkerSettings, simulate
 

@@ -15,7 +15,7 @@ from core.findings import Finding
 from core.placement.chains import find_chains
 from core.placement.labels import exchanged_sites
 from core.results import Analysis
-from core.samples import Session
+from core.session import Session
 from core.signal.pair import OrientedTrack
 from core.signal.tracks import Track
 from core.verdicts.model import Verdict

@@ -10,7 +10,8 @@ import pytest
 from core.analysis import analyse
 from core.body import LEG_SITES, Side
 from core.results import Analysis
-from core.samples import ImuBlock, Session
+from core.samples import ImuBlock
+from core.session import Session
 from devices.simulation.walker import Standing, Tissue, Walk, WalkerSettings, simulate
 from tests.core.recorded_joints import recorded_people
 

@@ -12,7 +12,8 @@ from core.analysis import analyse
 from core.body import LEG_JOINTS, LEG_SITES, Joint, Segment, Site
 from core.findings import Severity
 from core.results import Analysis, JointAngle, JointCalibration
-from core.samples import FloatArray, ImuBlock, Recording, RecordingKind, Session
+from core.samples import FloatArray, ImuBlock
+from core.session import Recording, RecordingKind, Session
 from core.signal.rotations import angle_between, joint_frame
 
 TestData = Callable[[str], Path]

@@ -20,7 +20,8 @@ from core.placement.labels import doubted_labels, exchanged_sites
 from core.placement.links import link
 from core.placement.smoothed_tracks import Tracks, smoothed_in_steps
 from core.placement.steps import at_once
-from core.samples import FloatArray, ImuBlock, Recording, RecordingKind, Session
+from core.samples import FloatArray, ImuBlock
+from core.session import Recording, RecordingKind, Session
 from devices.files.xsens_mtmanager import mtmanager_trial
 from devices.simulation.walker import (
     FreeMotion,

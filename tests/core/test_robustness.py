@@ -12,7 +12,8 @@ from core.analysis import analyse
 from core.body import LEG_SITES, Joint, Site
 from core.findings import Severity
 from core.results import Analysis, Method, ZeroKind
-from core.samples import FloatArray, ImuBlock, Recording, RecordingKind, Session
+from core.samples import FloatArray, ImuBlock
+from core.session import Recording, RecordingKind, Session
 from core.signal.rotations import angle_between
 from devices.simulation.walker import FreeMotion, Standing, Walk, WalkerSettings, simulate
 

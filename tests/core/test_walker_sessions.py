@@ -8,7 +8,8 @@ import pytest
 from core.analysis import analyse
 from core.body import LEG_SITES, Joint, Side, Site
 from core.results import Analysis
-from core.samples import FloatArray, RateKind, SensorInfo, Session
+from core.samples import FloatArray, RateKind, SensorInfo
+from core.session import Session
 from devices.simulation.walker import FreeMotion, SimulatedSession, Standing, Tissue, Walk, WalkerSettings, simulate
 
 pytestmark = pytest.mark.endurance  # minutes in all: the default run has three

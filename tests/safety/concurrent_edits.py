@@ -32,7 +32,7 @@ from app.storage.layout import DATABASE
 from app.storage.library import Library
 from app.storage.stored import Change, Operator, Role
 from app.storage.three_way import Value, Values
-from core.samples import Patient, Recording, RecordingKind, Session
+from core.session import Patient, Recording, RecordingKind, Session
 
 DATA_KEY = bytes(range(32))
 STATIONS = ("aa", "bb")

@@ -26,7 +26,6 @@ from devices.emulators.shimmer3 import ACC_CALIBRATION, CHANNELS, GYR_CALIBRATIO
 from devices.emulators.witmotion import WitVoice
 from devices.emulators.ximu3 import message
 from devices.emulators.xsens_mti import MtiVoice
-from devices.emulators.xsens_mti import sample as mti_sample
 from devices.source import SourceInfo
 from devices.stream import Framer, Row
 from tests.safety.stream_bursts import in_bursts
@@ -104,7 +103,7 @@ def drivers() -> dict[str, Fuzzed]:
         "x-IMU3, binary": Fuzzed(Ximu3Framer, lambda k: message("I", k * 10_000, motion(k), True), True),
         "x-IMU3, text": Fuzzed(Ximu3Framer, lambda k: message("I", k * 10_000, motion(k), False), True),
         "WitMotion": Fuzzed(WitFramer, voice.sample, False),
-        "Xsens MTi": Fuzzed(lambda: MtiFramer(MTI), lambda k: mti_sample(mti, k), False),
+        "Xsens MTi": Fuzzed(lambda: MtiFramer(MTI), mti.sample, False),
         "Shimmer3, with checksums": Fuzzed(lambda: Shimmer3Framer(SHIMMER3), shimmer3.sample, False),
         "CSV": Fuzzed(lambda: CsvFramer(COLUMNS), line, True),
     }

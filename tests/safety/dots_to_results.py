@@ -31,7 +31,8 @@ from app.wizard.sensors.sources import SEARCH
 from app.wizard.sensors.step import SensorsStep
 from app.wizard.step import StepId
 from core.body import LEG_JOINTS, LEG_SITES, Site
-from core.samples import FloatArray, RecordingKind
+from core.samples import FloatArray
+from core.session import RecordingKind
 from devices.clocks.host_clock import host_time_ns
 from devices.emulators.dot import EmulatedDot
 from devices.emulators.dot_patient import worn_air

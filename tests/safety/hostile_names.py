@@ -26,7 +26,7 @@ from app.reports.patient.document import make_report, report_data
 from app.summary.plain_text import plain
 from app.summary.request import AnalysedVisit, ReportRequest
 from core.analysis import analyse
-from core.samples import RecordingKind
+from core.session import RecordingKind
 from devices.simulation.walker import DEMONSTRATION, FreeMotion, Standing, Walk, simulate
 
 MADE_AT = datetime(2026, 11, 21, 22, 15, 30, tzinfo=UTC)

@@ -40,7 +40,7 @@ from app.storage.opened import logged_in, slots_of
 from app.storage.recovery import find_interrupted
 from app.storage.retention import destroy_overdue
 from app.storage.stored import LibraryError, RecordingState, StoredJournal
-from core.samples import Recording, RecordingKind
+from core.session import Recording, RecordingKind
 from devices.files.refusal import FileRefusedError
 from tests.safety.clinic_material import PASSPHRASE, OwnServer, make_clinic, name_of, own_server, silent
 from tests.safety.journal_material import LineDecoder, record_some

@@ -27,7 +27,7 @@ from app.storage.library import Library
 from app.storage.opened import OpenedLibrary, open_library
 from app.storage.slots import Cost
 from app.storage.stored import Operator, RecordingState, Role, StoredJournal
-from core.samples import Patient, Recording, RecordingKind, Session
+from core.session import Patient, Recording, RecordingKind, Session
 
 PASSPHRASE, LEAVING = "four short words here", "another four short words"
 EVENTS = ("open", "os.rename", "os.remove", "sqlite3.connect")

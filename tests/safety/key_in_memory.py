@@ -32,7 +32,7 @@ from app.storage.journal.writer import JournalWriter
 from app.storage.keys import KeySlots
 from app.storage.layout import KEYS
 from app.workers.library_controller import LibraryController
-from core.samples import Patient
+from core.session import Patient
 
 app, folder, passphrase = QCoreApplication([]), Path(sys.argv[1]), sys.argv[2]
 controller, said = LibraryController(), []

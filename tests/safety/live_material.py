@@ -11,7 +11,8 @@ import numpy as np
 from app.storage.journal.decoding import DecodedJournal, decode
 from app.storage.journal.writer import JournalWriter
 from core.body import LEG_SITES
-from core.samples import ImuBlock, IntArray, Recording, RecordingKind, SensorInfo, Session
+from core.samples import ImuBlock, IntArray, SensorInfo
+from core.session import Recording, RecordingKind, Session
 from devices.source import DecodedSensor
 from tests.safety.journal_material import KEY, NO_ROOM_ASKED
 

@@ -33,7 +33,7 @@ from app.storage.layout import KEYS
 from app.storage.library import Library
 from app.storage.slots import Cost
 from app.storage.stored import Operator, Role
-from core.samples import Patient
+from core.session import Patient
 texts = {name: "".join(chr(ord(c) ^ 1) for c in text) for name, text in json.loads(sys.argv[2]).items()}
 folder = Path(sys.argv[1])
 slots = KeySlots(folder / KEYS, Cost(passes=1, memory_kib=64))

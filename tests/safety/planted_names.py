@@ -29,7 +29,8 @@ from app.storage.recovery import find_interrupted, recover
 from app.storage.stored import Operator, Role
 from app.system.logs import start_logging
 from core.body import Site
-from core.samples import ImuBlock, Patient, Recording, RecordingKind, SensorInfo, Session
+from core.samples import ImuBlock, SensorInfo
+from core.session import Patient, Recording, RecordingKind, Session
 from tests.app.storage.library.folder_export import write_folder
 
 ROOT = Path(__file__).parents[2]

@@ -42,7 +42,8 @@ from app.wizard.wizard import Wizard
 from app.workers.library_controller import LibraryController
 from core.body import LEG_JOINTS, LEG_SITES, Joint, Site
 from core.results import Analysis, RecordingAnalysis
-from core.samples import FloatArray, ImuBlock, IntArray, RecordingKind
+from core.samples import FloatArray, ImuBlock, IntArray
+from core.session import RecordingKind
 from devices.clocks.host_clock import host_time_ns
 from devices.emulators.csv_lines import COLUMNS as EMULATED_COLUMNS
 from devices.emulators.patient import FINE_HZ, KINDS, EmulatedPatient, EmulatedSensor

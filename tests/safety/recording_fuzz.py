@@ -33,7 +33,8 @@ from app.storage.journal.decoding import DecodedJournal, decode
 from app.storage.journal.payloads import layout_of
 from app.storage.journal.writer import JournalWriter
 from core.body import Site
-from core.samples import ImuBlock, Recording, RecordingKind
+from core.samples import ImuBlock
+from core.session import Recording, RecordingKind
 from devices.clocks.live_clock import LiveClock
 from devices.decoders import DECODERS
 from devices.drivers.csv_serial import DRIVER as CSV

@@ -23,7 +23,8 @@ from app.storage.database.ids import uuid7
 from app.storage.journal.writer import JournalWriter
 from app.storage.opened import OpenedLibrary, create_library
 from app.storage.stored import Operator, Role, StoredJournal
-from core.samples import ImuBlock, Patient, Recording, RecordingKind, Session
+from core.samples import ImuBlock
+from core.session import Patient, Recording, RecordingKind, Session
 from tests.safety.journal_material import LAYOUT, NAMES, NO_ROOM_ASKED, WALKER
 
 ROOT = Path(__file__).parents[2]

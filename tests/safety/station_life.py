@@ -36,7 +36,7 @@ from app.storage.recovery import adopt_home, find_interrupted, recover
 from app.storage.stored import LibraryError
 from app.workers import library_watch
 from app.workers.library_watch import LibraryWatch
-from core.samples import Recording, RecordingKind
+from core.session import Recording, RecordingKind
 from devices.decoders import DECODERS
 from devices.simulation.replay import ReplaySource
 from tests.safety.clinic_material import PASSPHRASE, silent

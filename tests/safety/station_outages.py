@@ -27,7 +27,8 @@ from app.storage.journal.records import Record, RecordKind
 from app.storage.layout import SUFFIX
 from app.storage.opened import held_alone, open_library
 from app.storage.stored import LibraryError, PlacedSensor
-from core.samples import IntArray, Patient, SensorInfo, Session
+from core.samples import IntArray, SensorInfo
+from core.session import Patient, Session
 from tests.safety.clinic_material import OPERATORS, PASSPHRASE, Clinic, OwnServer, Row, read_lines, rows_of
 from tests.safety.live_material import LOOP, numbered_session
 from tests.safety.station_life import ADOPTING, HANDING_OVER, RECORDING, STOP, is_at, read_all_of, recover_all

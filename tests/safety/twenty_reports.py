@@ -39,7 +39,7 @@ from app.summary.request import AnalysedVisit, ReportRequest, default_walks
 from core.analysis import analyse
 from core.body import LEG_JOINTS, Joint, Side
 from core.results import Analysis, ZeroKind
-from core.samples import RecordingKind, Session
+from core.session import RecordingKind, Session
 from devices.simulation.walker import DEMONSTRATION, FreeMotion, Standing, Walk, simulate
 from tests.app.changed_analysis import recalibrated, with_few_strides
 from tests.benchmarks.null_differences import real_walks

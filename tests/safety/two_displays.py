@@ -37,7 +37,7 @@ from app.storage.clinic.joining import join
 from app.storage.clinic.station import driver_url
 from app.storage.exchange import session_with_samples
 from app.storage.opened import open_library
-from core.samples import RecordingKind
+from core.session import RecordingKind
 from devices.decoders import DECODERS
 from tests.benchmarks.own_display import own_display, own_environment
 from tests.tours.tour import INSIDE, WINDOW, Application, TourError, lead

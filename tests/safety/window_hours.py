@@ -25,7 +25,8 @@ from app.acquisition.acquisition import Acquisition
 from app.main_window import MainWindow
 from app.wizard.step import StepId
 from core.body import LEG_SITES
-from core.samples import ImuBlock, RecordingKind
+from core.samples import ImuBlock
+from core.session import RecordingKind
 from devices.simulation.replay import DEMONSTRATION_SESSION, ReplaySource
 from devices.simulation.walker import simulate
 from tests.safety.window_material import PATIENCE_S, grown, held, linger, opened_window, wait

@@ -34,7 +34,7 @@ from app.wizard.sensors import sources
 from app.wizard.step import StepId
 from app.wizard.worn_sensors import SourceChoice
 from core.body import LEG_SITES, Joint, Side, Site
-from core.samples import RecordingKind
+from core.session import RecordingKind
 from devices.simulation.replay import ReplaySource
 from devices.simulation.walker import DEMONSTRATION, FreeMotion, Standing, Walk, simulate
 from tests.safety.window_material import linger, wait

@@ -218,7 +218,8 @@ MOUSE: tuple[Stop, ...] = (
 SECOND_BY_KEYS: tuple[Stop, ...] = (  # the same patient comes back: nothing is typed, one condition is walked
     Stop("21-second-visit", offers("New session"), ("press Return",), lingers_s=1.0),
     Stop("22-patient", offers("Use last visit's set-up"), ("press Return",), lingers_s=1.0),
-    Stop("24a-standing", lambda seen: at_step("StandStillStep")(seen) and seen.is_recording),  # all by itself
+    Stop("23-stand-still", at_step("StandStillStep"), ("press space",)),
+    Stop("24a-standing", lambda seen: at_step("StandStillStep")(seen) and seen.is_recording),
     Stop("24b-free-motion", lambda seen: at_step("FreeMotionStep")(seen) and seen.is_recording, lingers_s=7.0),
     *walk(15, ("press 1", "press space"), "press space"),
     Stop("24d-keep", offers("Include 1"), ("press i",), lingers_s=1.0),
@@ -268,6 +269,7 @@ RETURNING: tuple[Stop, ...] = (
         (
             Stop("21-second-visit", offers("New session"), ("press Return",)),
             Stop("22-patient", offers("Use last visit's set-up"), ("press Return",)),
+            Stop("23-stand-still", at_step("StandStillStep"), ("press space",)),
             Stop("24a-standing", lambda seen: at_step("StandStillStep")(seen) and seen.is_recording),
             Stop("24b-free-motion", lambda seen: at_step("FreeMotionStep")(seen) and seen.is_recording),
             *walk(15, ("press space",), "press space"),
@@ -283,6 +285,7 @@ RETURNING: tuple[Stop, ...] = (
 SECOND_BY_MOUSE: tuple[Stop, ...] = (
     Stop("21-second-visit", offers("New session"), ("click New session",), lingers_s=1.0),
     Stop("22-patient", offers("Use last visit's set-up"), ("click Use last visit's set-up",), lingers_s=1.0),
+    Stop("23-stand-still", at_step("StandStillStep"), ("click Start countdown",)),
     Stop("24a-standing", lambda seen: at_step("StandStillStep")(seen) and seen.is_recording),
     Stop("24b-free-motion", lambda seen: at_step("FreeMotionStep")(seen) and seen.is_recording, lingers_s=7.0),
     *walk(15, ("click Shoes", "click Start walk"), "click Stop walk"),

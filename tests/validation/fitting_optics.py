@@ -13,7 +13,8 @@ from scipy.spatial.transform import Rotation
 from core.analysis import analyse
 from core.body import Joint, Side, Site
 from core.gait.inclination import lean_about
-from core.samples import BoolArray, FloatArray, ImuBlock, RateKind, Recording, RecordingKind, Session
+from core.samples import BoolArray, FloatArray, ImuBlock, RateKind
+from core.session import Recording, RecordingKind, Session
 from core.signal.orientation import oriented
 from core.signal.tracks import even_tracks
 from tests.benchmarks.gait import optical_foot, recorded_foot

@@ -20,7 +20,8 @@ import numpy as np
 from core.body import Segment, Side, Site
 from core.gait.events import FootEvents, detect_events
 from core.gait.strides import Reason, Strides, strides_of_feet
-from core.samples import ImuBlock, RateKind, Recording, RecordingKind, Session
+from core.samples import ImuBlock, RateKind
+from core.session import Recording, RecordingKind, Session
 from core.signal.sensors import SensorTracks
 from devices.files.session_folder import read_session
 from devices.files.xsens_mtmanager import mtmanager_trial

@@ -14,7 +14,8 @@ from scipy.spatial.transform import Rotation
 
 from core.analysis import analyse
 from core.body import LEG_JOINTS, LEG_SITES, Joint, Segment, Side, Site
-from core.samples import FloatArray, Session
+from core.samples import FloatArray
+from core.session import Session
 from devices.files.references.reading import read_reference
 from devices.simulation.walker import (
     FreeMotion,

@@ -10,7 +10,8 @@ from pathlib import Path
 import numpy as np
 
 from core.body import Side, Site
-from core.samples import ImuBlock, Recording, RecordingKind, Session
+from core.samples import ImuBlock
+from core.session import Recording, RecordingKind, Session
 from devices.files.session_folder import write_session
 from tests.benchmarks.gait import optical_foot
 

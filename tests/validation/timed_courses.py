@@ -18,7 +18,8 @@ from pathlib import Path
 import numpy as np
 
 from core.body import Side
-from core.samples import RateKind, Recording, Session
+from core.samples import RateKind
+from core.session import Recording, Session
 from core.signal.sensors import SensorTracks
 from core.timed.found import TimedTest
 from core.timed.protocols import PlannedTest, TimedProtocol

@@ -16,7 +16,7 @@ from app.storage.stored import LibraryError
 from app.system.progress import Report
 from app.wording.translation import tr
 from core.analysis import analyse
-from core.samples import Session
+from core.session import Session
 from devices.files.refusal import FileRefusedError
 
 Keep = Callable[[bytes], None]

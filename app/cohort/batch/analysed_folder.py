@@ -9,7 +9,7 @@ from app.system.logs import version_of
 from app.system.progress import Report
 from core.analysis import analyse
 from core.results import Analysis, Method
-from core.samples import Session
+from core.session import Session
 
 
 @dataclass(frozen=True, slots=True)

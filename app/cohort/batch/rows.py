@@ -16,7 +16,7 @@ from app.system.logs import version_of
 from core.body import Side
 from core.parameters import SPEED
 from core.results import Analysis
-from core.samples import Recording, RecordingKind, Session
+from core.session import Recording, RecordingKind, Session
 from core.verdicts.quantities import OF_BOTH, OF_HIPS, PARAMETERS
 
 Row = dict[str, str | float | int | bool | None]

@@ -22,7 +22,7 @@ from app.cohort.batch.software import software
 from app.exports.result_folder import SUMMARY, check_place, written_beside
 from app.importing.untrusted_files import read_foreign_session
 from app.system.logs import pseudonymised
-from core.samples import Session
+from core.session import Session
 from core.verdicts.sigmas import PUBLISHED, ErrorFigures, using
 from devices.files.limited_reader import MOST_FILE_BYTES
 from devices.files.refusal import FileRefusedError, one_line

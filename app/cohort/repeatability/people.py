@@ -10,7 +10,7 @@ from app.wording.translation import tr_n
 from core.body import Side
 from core.parameters import SPEED
 from core.results import Analysis
-from core.samples import Patient, Recording, Session
+from core.session import Patient, Recording, Session
 from core.verdicts.own_figures import OwnFigures
 from core.verdicts.repeatability import COLUMNS, Strapping, repeatability_of
 from core.verdicts.sigmas import HEALTHY_BETWEEN_LEGS, ComparisonKind

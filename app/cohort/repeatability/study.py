@@ -12,7 +12,7 @@ from app.system.progress import Report
 from app.system.tables import write_table
 from app.wording.translation import tr
 from core.results import Analysis
-from core.samples import Session
+from core.session import Session
 from core.verdicts.own_figures import MIN_PEOPLE, OwnFigures, figures_from_text, figures_in_json
 from core.verdicts.repeatability import TooFewPeopleError
 from devices.files.refusal import FileRefusedError

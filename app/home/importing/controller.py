@@ -28,7 +28,7 @@ if TYPE_CHECKING:
     from app.storage.exchange import Imported
     from app.storage.opened import OpenedLibrary
     from core.placement.chains import Chains
-    from core.samples import Session
+    from core.session import Session
     from devices.files.trial import ImportedTrial
 
 MOST_SENTENCES = 8

@@ -25,7 +25,7 @@ from app.widgets.small_curve import SmallCurve
 from app.widgets.text import SEMIBOLD, Text
 from app.wording.translation import joined, tr, tr_n
 from core.body import LEG_SITES, Side, Site
-from core.samples import RecordingKind
+from core.session import RecordingKind
 
 if TYPE_CHECKING:
     from app.importing.import_drafts import DraftRecording, DraftSensor, Origin, SessionDraft

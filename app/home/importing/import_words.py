@@ -10,7 +10,8 @@ import numpy as np
 from app.plots.thinning import thin
 from app.wording.translation import figure_text, later, tr, tr_n
 from core.body import Site
-from core.samples import FloatArray, ImuBlock, RecordingKind
+from core.samples import FloatArray, ImuBlock
+from core.session import RecordingKind
 from core.signal.tracks import MAX_REPORTED_GAP_S
 from devices.files.trial import PROGRAMS
 

@@ -192,7 +192,7 @@ class PatientsAtHome(QObject):
         self._look_for_changes()
 
     def _on_no_change(self, _what: str, _remedy: str) -> None:
-        """Who chooses the patient is told why; the list goes without."""
+        """Whoever chooses the patient learns why; the list goes without."""
         self._is_looking = False
 
     def _show_change(self, reading: PatientReading) -> None:

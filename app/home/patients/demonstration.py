@@ -26,7 +26,7 @@ if TYPE_CHECKING:  # what computes is imported once a demonstration is opened
     from app.cohort.batch.executors import ProcessExecutor
     from app.demonstration.patients import SimulatedVisit
     from app.storage.opened import OpenedLibrary
-    from core.samples import Session
+    from core.session import Session
 
 Keep = Callable[[bytes], None]
 

@@ -105,7 +105,7 @@ class HomePage(Themed):
         self.forget_sessions()
 
     def change_patient(self, line: PatientLine) -> None:
-        """Show one patient's line as it is now, wherever it stands."""
+        """Show one patient's line as it is now, wherever it is."""
         self._patients = tuple(line if one.id == line.id else one for one in self._patients or ())
         self.patients.replace_line(line)
 

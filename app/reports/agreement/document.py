@@ -42,7 +42,7 @@ from app.wording.translation import later, spoken_language, tr
 from core.agreement.figures import NAMED_PHASES, Agreement
 from core.body import JointKind
 from core.gait.phases import Phase
-from core.samples import Patient, Session
+from core.session import Patient, Session
 
 TEMPLATE = files("resources") / "report" / "agreement.typ"
 NAME_LENGTH, SENTENCE_LENGTH = 40, 400

@@ -7,7 +7,7 @@ from app.reports.agreement.document import agreement_report
 from app.reports.agreement.pictures import pictures_of
 from app.reports.agreement.study import AgreementStudy, as_shown
 from app.reports.agreement.tables import write_study
-from core.samples import Session
+from core.session import Session
 
 REPORT = "agreement.pdf"
 

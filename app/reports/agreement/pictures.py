@@ -17,7 +17,8 @@ from app.theme.colours import PAPER
 from app.wording.translation import capitalised, later, tr
 from core.body import Joint, JointKind
 from core.gait.phases import PHASES, Phase
-from core.samples import BoolArray, FloatArray, IntArray, Patient
+from core.samples import BoolArray, FloatArray, IntArray
+from core.session import Patient
 
 WIDTH, PLOT, ERROR = 175 * MM, 96.0, 34.0
 LEFT, RIGHT, TITLE, STRIP, GAP, FOOT = 28.0, 6.0, 12.0, 6.0, 8.0, 16.0

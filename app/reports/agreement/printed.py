@@ -9,7 +9,7 @@ from app.wording.body import name_of
 from app.wording.translation import capitalised, joined, later, tr
 from core.agreement.figures import Agreement, AgreementOverWalks
 from core.body import Joint, JointKind, Side
-from core.samples import Patient
+from core.session import Patient
 from core.verdicts.model import Verdict
 from devices.files.refusal import one_line
 

@@ -28,7 +28,8 @@ from core.agreement.figures import Agreement, AgreementOverWalks, agreement_of, 
 from core.body import Joint, Side
 from core.hip.results import HipAngle
 from core.results import Analysis, JointAngle, RecordingAnalysis, ZeroKind
-from core.samples import BoolArray, FloatArray, IntArray, Recording, RecordingKind
+from core.samples import BoolArray, FloatArray, IntArray
+from core.session import Recording, RecordingKind
 from devices.files.references.trial import EVENTS, ReferenceFile, ReferenceTrial
 from devices.files.refusal import FileRefusedError
 

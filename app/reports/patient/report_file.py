@@ -15,7 +15,7 @@ from app.summary.comparison import Contrast
 from app.summary.differences import rows_of, write_compared_cycles, write_differences
 from app.summary.request import AnalysedVisit, ReportRequest, default_walks
 from core.results import Analysis
-from core.samples import Session
+from core.session import Session
 from devices.files.refusal import FileRefusedError
 from devices.files.session_toml import FILE_NAME as SESSION_FILE
 

@@ -37,7 +37,8 @@ from app.storage.database.ids import uuid7
 from app.storage.layout import segment_name
 from app.storage.stored import RecordingState, ResultKind, Role
 from core.body import Joint, Site
-from core.samples import RateKind, RecordingKind
+from core.samples import RateKind
+from core.session import RecordingKind
 
 SIDES = ("left", "right", "both", "none", "")
 WORD = 20  # letters that the longest of our own words may have

@@ -23,7 +23,8 @@ from core.alignment import alignment_of_text
 from core.body import Side, Site
 from core.findings import Finding, Severity
 from core.goals import goals_of_text, goals_text
-from core.samples import Patient, Recording, SensorInfo, Session
+from core.samples import SensorInfo
+from core.session import Patient, Recording, Session
 from core.timed.protocols import planned_of_text
 
 PATIENT_FIELDS = tuple(field.name for field in fields(Patient) if field.name != "goals")

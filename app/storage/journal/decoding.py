@@ -19,7 +19,8 @@ from app.storage.journal.payloads import FLOAT, ROWS, STREAM, Rows, SampleLayout
 from app.storage.journal.reader import Damage, JournalReader, ReadReport
 from app.storage.journal.records import Record, RecordKind
 from core.body import Site
-from core.samples import BoolArray, FloatArray, ImuBlock, Recording
+from core.samples import BoolArray, FloatArray, ImuBlock
+from core.session import Recording
 from core.signal.tracks import nominal_step_s
 from devices.clocks.shared_clock import tied
 from devices.source import DecodedSensor, SensorCounts, SourceInfo, StreamDecoder

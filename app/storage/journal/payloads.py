@@ -11,7 +11,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from core.alignment import alignment_of_table, alignment_table
-from core.samples import FloatArray, ImuBlock, Recording, RecordingKind
+from core.samples import FloatArray, ImuBlock
+from core.session import Recording, RecordingKind
 from core.timed.protocols import TABLE_KEYS, KeyMeaning, PlannedTest, planned_of_table, planned_table
 from devices.files.site_files import ACC, GYR, MAG, QUAT, TIME
 from devices.source import SourceInfo

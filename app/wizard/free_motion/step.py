@@ -39,7 +39,7 @@ from app.wizard.step import Step, StepId
 from app.wording.translation import tr
 from core.body import Joint, Side, Site
 from core.live.free_motion import FreeMotionState
-from core.samples import RecordingKind
+from core.session import RecordingKind
 
 if TYPE_CHECKING:
     from app.wizard.visit import Visit

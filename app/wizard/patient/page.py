@@ -30,7 +30,7 @@ from app.wizard.patient.cards import BandCard, LastVisit, LastVisitCard, TakenCa
 from app.wording.patients import AIDS
 from app.wording.translation import tr
 from core.body import Side
-from core.samples import Patient
+from core.session import Patient
 
 ONE_COLUMN_BELOW = 620  # room for the form, where a row of three fields still reads well
 BAND_CARD_WIDTH = 328

@@ -18,7 +18,7 @@ from app.wording.dates import date
 from app.wording.recordings import name_in_words
 from app.wording.translation import tr
 from core.body import LEG_JOINTS, Side
-from core.samples import Patient, RecordingKind, Session
+from core.session import Patient, RecordingKind, Session
 
 if TYPE_CHECKING:
     from uuid import UUID

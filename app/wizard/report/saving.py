@@ -17,7 +17,7 @@ from app.system.progress import Report
 from app.wizard.report.page import LETTER
 from app.wording.translation import capitalised, filled, tr
 from core.results import Analysis
-from core.samples import Session
+from core.session import Session
 from devices.decoders import DECODERS
 from devices.files.refusal import FileRefusedError
 

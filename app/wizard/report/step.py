@@ -40,7 +40,7 @@ from app.wording.recordings import name_in_words
 from app.wording.translation import tr
 from app.workers.background import Work
 from app.workers.library_controller import LibraryController
-from core.samples import RecordingKind
+from core.session import RecordingKind
 
 if TYPE_CHECKING:
     from app.reports.patient.document import ReportPreview

@@ -32,7 +32,7 @@ from app.wording.findings import place
 from app.wording.recordings import shown_names, where_shown
 from app.wording.translation import capitalised, tr
 from core.body import LEG_JOINTS, Joint
-from core.samples import RecordingKind
+from core.session import RecordingKind
 
 if TYPE_CHECKING:
     from app.editing.session_recording import SessionRecording
@@ -41,7 +41,7 @@ if TYPE_CHECKING:
     from app.summary.request import AnalysedVisit
     from app.wizard.visit import Visit
     from core.results import Analysis
-    from core.samples import Session
+    from core.session import Session
 
 
 class Shown(Enum):

@@ -24,7 +24,7 @@ from devices.simulation.replay import ReplaySource, names_of
 
 if TYPE_CHECKING:
     from app.storage.opened import OpenedLibrary
-    from core.samples import Session
+    from core.session import Session
 
 MOST_LISTED = 100  # whoever wants an older one still exports it as a session folder
 

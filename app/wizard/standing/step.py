@@ -21,7 +21,7 @@ from app.wizard.step import Step, StepId
 from app.wording.translation import tr
 from core.body import LEG_JOINTS, Joint, Site
 from core.live.standing import REQUIRED_S
-from core.samples import RecordingKind
+from core.session import RecordingKind
 
 if TYPE_CHECKING:
     from app.wizard.visit import Visit
@@ -29,7 +29,6 @@ if TYPE_CHECKING:
 SHOWN_MS = 600  # the check mark, before the next step comes by itself
 TICKS = 3  # of 30 Hz: ten looks a second
 SLACK_S = 0.1
-STILL_BEFORE_S = 2.0  # before a count that begins by itself: who stops in passing does not begin it
 
 
 class StandStillStep(Step):
@@ -126,8 +125,6 @@ class StandStillStep(Step):
             self._moved = standing.moved or self._moved
             self._sound(standing.required_s - standing.still_s)
             is_counting = self._phase is StandPhase.COUNTING
-            if self.begins_by_itself and standing.still_s >= STILL_BEFORE_S:
-                self._start()
             if is_counting and standing.is_done and self._is_recording and self._visit.recordings.has_begun:
                 self._finish()
             self._show()
@@ -142,8 +139,7 @@ class StandStillStep(Step):
             return BarState(primary=go_on, others=(again,))
         if self._phase is StandPhase.SKIPPED:
             return BarState(primary=go_on)
-        note = tr("Starts by itself when the patient stands still.") if self.begins_by_itself else ""
-        return BarState(primary=BarAction(tr("Start countdown"), self._start, space, Icon.PLAY), note=note)
+        return BarState(primary=BarAction(tr("Start countdown"), self._start, space, Icon.PLAY))
 
     def on_intent(self, intent: Intent) -> bool:
         if intent.action is not KeyAction.RUN or self._phase is StandPhase.SKIPPED:
@@ -152,12 +148,6 @@ class StandStillStep(Step):
         return True
 
     # what happens
-
-    @property
-    def begins_by_itself(self) -> bool:
-        """Whether stillness begins the count: as at the last visit, and none has been begun in this one."""
-        is_ready = self._phase is StandPhase.READY and not self._visit.recordings.is_recording
-        return is_ready and bool(self._visit.placement_before) and not self._visit.recordings.every
 
     @property
     def _is_recording(self) -> bool:

@@ -13,7 +13,7 @@ from core.alignment import (
     ProsthesisPart,
     changed_between,
 )
-from core.samples import Recording, RecordingKind
+from core.session import Recording, RecordingKind
 
 NOTHING_REPORTED = dict.fromkeys(FIGURES, 0.0)
 

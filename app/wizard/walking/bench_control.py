@@ -20,7 +20,7 @@ from app.wording.recordings import name_in_words
 from app.wording.translation import tr
 from core.alignment import AlignmentChange
 from core.body import Side
-from core.samples import Recording
+from core.session import Recording
 
 if TYPE_CHECKING:
     from app.wizard.visit import Visit

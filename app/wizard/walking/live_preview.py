@@ -15,7 +15,7 @@ from app.wizard.walking.estimator import WalkingEstimator
 from app.wizard.walking.walk_rows import ongoing_walk
 from core.body import LEG_JOINTS, Side
 from core.live.walking import STRIDES_FOR_ANKLE
-from core.samples import Recording
+from core.session import Recording
 
 if TYPE_CHECKING:
     from app.acquisition.acquisition import Acquisition

@@ -28,7 +28,7 @@ from app.wizard.walking.walk_start import WalkStart
 from app.wizard.walking.walking_bar import WalkingBar
 from app.wording.recordings import name_in_words
 from app.wording.translation import tr
-from core.samples import RecordingKind
+from core.session import RecordingKind
 from core.targets import TargetTally, with_tallies
 
 if TYPE_CHECKING:

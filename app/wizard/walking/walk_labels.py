@@ -4,7 +4,7 @@ from collections.abc import Sequence
 
 from app.wording.recordings import ALIGNMENT, LETTERS, name_in_words
 from app.wording.translation import tr
-from core.samples import Patient
+from core.session import Patient
 
 MOST = 9  # as many as there are digits on caps
 ALIGNMENTS = 3

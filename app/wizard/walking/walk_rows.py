@@ -9,7 +9,7 @@ from app.wizard.walking.walk_notice import length_s, strides_of
 from app.wording.numbers import clock
 from app.wording.translation import tr
 from core.body import Side
-from core.samples import RecordingKind
+from core.session import RecordingKind
 
 if TYPE_CHECKING:
     from app.editing.session_recording import Ongoing, SessionRecording

@@ -82,10 +82,8 @@ def read_c3d(path: Path) -> ReferenceFile:
 
 
 def _refuse_cut(path: Path) -> None:
-    """Refuse a file shorter than its own header requires: the library reads beyond its end for ever.
-
-    Of the other two processors that the format knows, whose numbers stand otherwise, the deadline alone is the guard.
-    """
+    """Refuse a file shorter than its own header requires: the library reads beyond its end for ever."""
+    # of the two other processors that the format knows, whose numbers stand otherwise, the deadline alone is the guard
     size = path.stat().st_size
     with path.open("rb") as file:
         header = file.read(BLOCK)

@@ -36,7 +36,7 @@ from app.wording.translation import tr
 from core.analysis import analyse
 from core.body import LEG_SITES, Joint, Side
 from core.results import Analysis
-from core.samples import Session
+from core.session import Session
 from core.targets import Target, TargetMeasure
 from core.timed.found import TimedTest
 from core.timed.live import LiveReadout

@@ -12,7 +12,8 @@ import pytest
 from app.acquisition.acquisition import Acquisition
 from app.acquisition.reader import REOPEN_S
 from app.storage.journal.decoding import decode
-from core.samples import ImuBlock, RecordingKind
+from core.samples import ImuBlock
+from core.session import RecordingKind
 from devices.live import Keep, SensorDetails, SourceLostError, SourceRefusedError
 from devices.simulation.replay import ReplayFaults, ReplaySource
 from devices.source import SourceInfo

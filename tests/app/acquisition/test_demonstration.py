@@ -12,7 +12,8 @@ from core.analysis import analyse
 from core.body import LEG_SITES, Joint, Site
 from core.calibration.rest import rest_of
 from core.live.sensors import LiveSensor
-from core.samples import ImuBlock, RateKind, Recording
+from core.samples import ImuBlock, RateKind
+from core.session import Recording
 from devices.simulation.replay import DEMONSTRATION_SESSION
 from devices.simulation.walker import FreeMotion, Standing, Walk, simulate
 

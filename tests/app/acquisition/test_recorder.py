@@ -25,7 +25,8 @@ from app.storage.stored import LibraryBusyError, LibraryError, Operator, PlacedS
 from core.analysis import analyse
 from core.body import Joint, Site
 from core.results import Analysis
-from core.samples import ImuBlock, Patient, Recording, RecordingKind, SensorInfo, Session
+from core.samples import ImuBlock, SensorInfo
+from core.session import Patient, Recording, RecordingKind, Session
 from devices.simulation.replay import ReplayFaults, ReplaySource
 from devices.simulation.walker import FreeMotion, SimulatedSession, Standing, Walk, WalkerSettings, simulate
 from tests.safety.live_material import Clock, numbered_session

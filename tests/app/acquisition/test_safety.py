@@ -25,7 +25,8 @@ from app.storage.library import Library
 from app.storage.opened import OpenedLibrary
 from app.storage.stored import Operator, PlacedSensor, RecordingState, Role
 from core.results import Analysis, Method
-from core.samples import ImuBlock, Patient, Recording, RecordingKind, SensorInfo, Session
+from core.samples import ImuBlock, SensorInfo
+from core.session import Patient, Recording, RecordingKind, Session
 from devices.simulation.replay import ReplaySource
 from tests.safety.journal_material import ID, KEY
 from tests.safety.live_material import faults_of, numbered_session, open_journal, read_back

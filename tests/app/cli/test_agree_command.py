@@ -8,7 +8,7 @@ import pytest
 from pypdf import PdfReader
 
 from app.cli.main import main
-from core.samples import Session
+from core.session import Session
 from devices.files.session_folder import write_session
 from tests.app.reports.agreement.agreement_material import made, rows_of, write_reference
 

@@ -24,7 +24,8 @@ from app.wording.findings import SENTENCES
 from core.body import Site
 from core.published.angles import DEFAULT_TAU_S
 from core.results import Method
-from core.samples import ImuBlock, Recording, RecordingKind, Session
+from core.samples import ImuBlock
+from core.session import Recording, RecordingKind, Session
 from devices.files.formats import FORMATS
 from devices.files.session_folder import write_session
 

@@ -11,7 +11,7 @@ import pytest
 from app.cli.devices import EMULATED, MOVEMENTS, emulate, list_devices
 from app.cli.main import main
 from core.body import Site
-from core.samples import RecordingKind
+from core.session import RecordingKind
 from devices.catalogue import DRIVERS
 from devices.emulators.patient import FINE_HZ, KINDS, EmulatedPatient
 from devices.transport.ports import MORE_PORTS

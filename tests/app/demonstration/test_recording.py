@@ -21,7 +21,7 @@ from core.alignment import AlignmentChange, PartChange, ProsthesisPart
 from core.body import LEG_SITES, Joint, Side
 from core.parameters import KNEE, SPEED
 from core.results import Analysis
-from core.samples import RecordingKind, Session
+from core.session import RecordingKind, Session
 from core.timed.measures import COLUMNS
 from core.timed.protocols import PlannedTest, TimedProtocol
 from core.verdicts.model import Verdict

@@ -8,7 +8,7 @@ import pytest
 from app.exports.result_folder import write_results
 from core.analysis import analyse
 from core.results import Analysis
-from core.samples import Session
+from core.session import Session
 from devices.simulation.walker import FreeMotion, Standing, Walk, WalkerSettings, simulate
 
 NAME = "Miller"

@@ -14,7 +14,8 @@ from app.exports.bids_motion import write_bids
 from app.exports.exports import Format, export_from_folder
 from core.body import Site
 from core.results import Analysis
-from core.samples import FloatArray, ImuBlock, RateKind, Recording, RecordingKind, SensorInfo, Session
+from core.samples import FloatArray, ImuBlock, RateKind, SensorInfo
+from core.session import Recording, RecordingKind, Session
 from devices.files.bids_motion import bids_motion_trial
 from devices.files.formats import recognised
 from devices.files.imports import ImportedFiles

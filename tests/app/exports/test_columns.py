@@ -15,7 +15,7 @@ from core.alignment import AlignmentChange, PartChange, ProsthesisPart
 from core.analysis import analyse
 from core.goals import Goal, GoalOf
 from core.results import Analysis
-from core.samples import Session
+from core.session import Session
 from core.targets import Target, TargetMeasure, TargetTally, with_tallies
 from core.timed.protocols import PlannedTest, TimedProtocol
 from devices.simulation.walker import FreeMotion, Standing, Walk, WalkerSettings, simulate

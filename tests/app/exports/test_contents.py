@@ -27,7 +27,7 @@ from core.analysis import analyse
 from core.body import Side
 from core.findings import Finding, Severity
 from core.results import Analysis
-from core.samples import Patient, Session
+from core.session import Patient, Session
 
 TYPED = Patient(
     code="P 17",

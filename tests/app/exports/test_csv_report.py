@@ -12,7 +12,8 @@ from app.exports import csv_report
 from app.exports.csv_report import write_angles
 from core.body import LEG_JOINTS, Joint, Side
 from core.results import JointAngle, RecordingAnalysis
-from core.samples import FloatArray, RecordingKind
+from core.samples import FloatArray
+from core.session import RecordingKind
 from core.verdicts.model import READ, Assessment, JointVerdicts, Verdict, Verdicts
 
 GOLDEN = Path(__file__).parents[2] / "golden"

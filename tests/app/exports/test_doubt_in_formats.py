@@ -19,7 +19,7 @@ from app.exports.summary import summarise
 from core.body import Joint, Side
 from core.gait.strides import Reason
 from core.results import Analysis, RecordingAnalysis
-from core.samples import RecordingKind, Session
+from core.session import RecordingKind, Session
 from core.verdicts.gates import judged
 from core.verdicts.model import READ, Assessment, GateReason, JointVerdicts, Verdict, assess
 

@@ -33,7 +33,7 @@ from app.storage.stored import Action, LibraryError, Operator, Role
 from core.alignment import AlignmentChange, PartChange, ProsthesisPart
 from core.goals import Goal, GoalOf
 from core.results import Analysis
-from core.samples import Session
+from core.session import Session
 from core.timed.protocols import PlannedTest, TimedProtocol
 from devices.files.refusal import FileRefusedError
 from devices.files.session_folder import write_session

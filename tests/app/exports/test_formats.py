@@ -21,7 +21,8 @@ from app.exports.opensim_motion import COORDINATES, write_motion
 from app.exports.spreadsheet import write_spreadsheet
 from app.summary.events import events_of
 from core.results import Analysis, RecordingAnalysis
-from core.samples import FloatArray, RecordingKind, Session
+from core.samples import FloatArray
+from core.session import RecordingKind, Session
 
 
 def walk_of(analysis: Analysis) -> RecordingAnalysis:

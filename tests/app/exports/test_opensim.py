@@ -9,7 +9,7 @@ import pytest
 from app.exports.opensim_motion import COORDINATES, write_motion
 from core.body import Side
 from core.results import Analysis, RecordingAnalysis
-from core.samples import RecordingKind, Session
+from core.session import RecordingKind, Session
 from tests.app.exports.test_parts import missing
 
 pytestmark = pytest.mark.endurance

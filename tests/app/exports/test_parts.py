@@ -12,7 +12,8 @@ from app.exports.exports import Format, export_from_folder
 from app.exports.opensim_motion import write_motion
 from core.body import Joint
 from core.results import Analysis, RecordingAnalysis
-from core.samples import FloatArray, RecordingKind, Session
+from core.samples import FloatArray
+from core.session import RecordingKind, Session
 from core.verdicts.model import GateReason, JointVerdicts, Verdict, assess
 from devices.files.references.reading import read_reference
 

@@ -8,7 +8,7 @@ import pytest
 
 from app.exports.exports import Format, export_from_folder
 from core.results import Analysis
-from core.samples import Session
+from core.session import Session
 
 PURPOSE = b"Research use. Not a medical device."
 SIMULATED = b"SIMULATED: nobody was measured."

@@ -20,7 +20,8 @@ from app.exports.result_folder import write_results
 from core.analysis import analyse
 from core.body import LEG_JOINTS, Joint, Side
 from core.results import Analysis
-from core.samples import FloatArray, Session
+from core.samples import FloatArray
+from core.session import Session
 from devices.simulation.walker import FreeMotion, RecordingTruth, Standing, Walk, WalkerSettings, simulate
 
 MOT = {

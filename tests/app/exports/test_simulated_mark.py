@@ -11,7 +11,7 @@ from app.importing.import_drafts import drafts_of, session_of
 from core.analysis import analyse
 from core.body import Site
 from core.results import Analysis
-from core.samples import Recording, RecordingKind, Session
+from core.session import Recording, RecordingKind, Session
 from devices.files.answers import details_of_trial, trial_from
 from devices.files.formats import format_of, read_trial
 from devices.files.imports import add_recording, place_sensors

@@ -20,7 +20,7 @@ from core.results import (
     RecordingAnalysis,
     ZeroKind,
 )
-from core.samples import RecordingKind
+from core.session import RecordingKind
 
 GOLDEN = Path(__file__).parents[2] / "golden"
 

@@ -18,7 +18,7 @@ from app.summary.request import AnalysedVisit, ReportRequest
 from core.analysis import analyse
 from core.body import Side, Site
 from core.results import Analysis
-from core.samples import RecordingKind, Session
+from core.session import RecordingKind, Session
 from core.timed.found import NotMeasured, Rise, Silence, StairStride, TimedPart, TimedTest, Turn
 from core.timed.protocols import PlannedTest, TimedProtocol
 from devices.simulation.walker import DEMONSTRATION, Standing, Walk, simulate

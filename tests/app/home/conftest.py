@@ -18,7 +18,7 @@ from app.storage.stored import Operator, Role
 from app.system.settings import Settings
 from app.theme.notifier import ThemeNotifier, load_fonts
 from app.workers.library_controller import LibraryController
-from core.samples import Patient, Session
+from core.session import Patient, Session
 from tests.app.home.home_library import PASSPHRASE, open_library
 
 

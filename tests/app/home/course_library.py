@@ -14,7 +14,7 @@ from app.summary.course import Course
 from app.summary.course_lanes import CourseVisit
 from app.wizard.resuming import current_course_key
 from core.body import Joint
-from core.samples import Patient, Recording, RecordingKind, Session
+from core.session import Patient, Recording, RecordingKind, Session
 from tests.app.course_material import course, unsure, walked
 
 PASSPHRASE = "four short words here"

@@ -37,7 +37,8 @@ from app.widgets.line_list import PatientLine, SessionLine
 from app.workers.library_controller import LibraryController
 from app.workers.refusals import Refusal
 from core.body import Site
-from core.samples import ImuBlock, Patient, Recording, RecordingKind, SensorInfo, Session
+from core.samples import ImuBlock, SensorInfo
+from core.session import Patient, Recording, RecordingKind, Session
 from devices.files.session_folder import write_session
 from devices.source import SourceInfo
 from tests.app.home.home_library import PASSPHRASE, WAIT_MS, delete_patient, open_library

@@ -27,7 +27,7 @@ from app.widgets.line_list import PatientLine, SessionLine
 from app.workers.library_controller import LibraryController
 from core.body import Site
 from core.goals import GOAL_COLUMNS, Goal, GoalOf
-from core.samples import Patient
+from core.session import Patient
 from devices.simulation.walker import DEMONSTRATION, Standing, Walk, simulate
 from tests.app.home.course_library import PASSPHRASE, add_visit, course_of_visit, make_course_library
 

@@ -46,7 +46,8 @@ from core.results import (
     RecordingAnalysis,
     ZeroKind,
 )
-from core.samples import FloatArray, Patient, RecordingKind, Session
+from core.samples import FloatArray
+from core.session import Patient, RecordingKind, Session
 from devices.simulation.walker import DEMONSTRATION, FreeMotion, Standing, Walk, simulate
 
 TIME_S = np.arange(600) / 100

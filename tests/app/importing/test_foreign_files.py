@@ -9,7 +9,7 @@ import pytest
 from app.cli.main import main
 from app.importing import untrusted_files as foreign_files
 from app.importing.untrusted_files import read_foreign_session, the_reader
-from core.samples import Session
+from core.session import Session
 from devices.files import child, limited_reader
 from devices.files.limited_reader import ReadingEndedError
 from devices.files.session_folder import read_session

@@ -10,7 +10,8 @@ import pytest
 
 from app.importing.import_drafts import Origin, chains_of_motion, drafts_of, session_of
 from core.body import LEG_SITES, Side, Site
-from core.samples import ImuBlock, RecordingKind, SensorInfo
+from core.samples import ImuBlock, SensorInfo
+from core.session import RecordingKind
 from devices.files.refusal import FileRefusedError
 from devices.files.trial import ImportedSensor, ImportedTrial
 from devices.files.xsens_mtmanager import mtmanager_trial

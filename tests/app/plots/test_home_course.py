@@ -27,9 +27,7 @@ from tests.app.home.course_library import SHOES, STICK, VISITS
 from tests.app.home.patients.test_home_page import patient, session
 from tests.app.room import words_cut
 
-STEP = NextStep(
-    NextKind.REPORT, "Write report of 14 Nov", "Not written yet. Measured 14 Nov 2026.", VISITS[4].id
-)
+STEP = NextStep(NextKind.REPORT, "Write report of 14 Nov", "Not written yet. Measured 14 Nov 2026.", VISITS[4].id)
 
 
 @pytest.fixture
@@ -113,7 +111,7 @@ def test_a_click_opens_the_visit_under_it(qtbot: QtBot, page: HomePage) -> None:
     assert reported.args == [UUID(int=2)]
 
 
-def test_what_is_next_stands_with_its_reason_and_is_taken(qtbot: QtBot, page: HomePage) -> None:
+def test_what_is_next_is_shown_with_its_reason_and_is_taken(qtbot: QtBot, page: HomePage) -> None:
     panel = page.panel
     assert (panel.go.text(), panel.go.key) == ("Write report of 14 Nov", "W")
     assert panel.go.accessibleName() == "Write report of 14 Nov, Not written yet. Measured 14 Nov 2026."

@@ -41,7 +41,8 @@ from app.wording.translation import figure_text, tr
 from core.body import LEG_JOINTS, LEG_SITES, Joint, Side, Site
 from core.findings import Finding, Severity
 from core.gait.phases import Phase
-from core.samples import ImuBlock, Patient, SensorInfo
+from core.samples import ImuBlock, SensorInfo
+from core.session import Patient
 from devices.files.trial import ImportedSensor, ImportedTrial
 from tests.app.home.course_library import VISITS
 

@@ -16,7 +16,7 @@ from app.widgets.text import Text
 from app.workers.background import Background
 from core.analysis import analyse
 from core.results import Analysis
-from core.samples import Session
+from core.session import Session
 from devices.simulation.walker import SessionTruth, simulate
 from tests.app.reports.agreement.agreement_material import SETTINGS, rows_of, write_reference
 

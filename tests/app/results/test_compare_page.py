@@ -41,7 +41,7 @@ from core.alignment import AlignmentChange, PartChange, ProsthesisPart
 from core.analysis import analyse
 from core.body import Joint, JointKind, Side
 from core.results import Analysis, ZeroKind
-from core.samples import Session
+from core.session import Session
 from core.verdicts.gates import judged
 from core.verdicts.measurement_error import ErrorSource, Judgement, Mark
 from core.verdicts.sigmas import ComparisonKind

@@ -18,7 +18,7 @@ from core.analysis import analyse
 from core.body import Joint, Side
 from core.goals import Goal, GoalOf
 from core.results import Analysis
-from core.samples import Session
+from core.session import Session
 from devices.simulation.walker import DEMONSTRATION, FreeMotion, Standing, Walk, simulate
 from tests.app.changed_analysis import recalibrated, rewalked, visit_of, walk_of
 from tests.app.reports.patient.test_what_stands_out import with_more

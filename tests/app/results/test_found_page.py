@@ -31,7 +31,7 @@ from core.analysis import analyse
 from core.body import LEG_JOINTS, Joint, Site
 from core.findings import Finding, Severity
 from core.results import Analysis
-from core.samples import Session
+from core.session import Session
 from core.verdicts.diagnostics import JointDiagnostics, diagnostics_of
 from devices.simulation.walker import FreeMotion, Standing, Walk, WalkerSettings, simulate
 from tests.app.room import words_cut

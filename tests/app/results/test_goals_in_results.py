@@ -20,7 +20,7 @@ from core.analysis import analyse
 from core.body import Joint
 from core.goals import Goal, GoalOf
 from core.results import Analysis
-from core.samples import Session
+from core.session import Session
 from devices.simulation.walker import DEMONSTRATION, simulate
 from tests.app.changed_analysis import recalibrated, walk_of
 

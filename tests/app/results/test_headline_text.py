@@ -62,7 +62,7 @@ def test_the_last_sentence_goes_first_and_the_first_one_stays(
     assert headline.shown == BESIDE[0]
 
 
-def test_the_tooltip_and_who_hears_it_have_every_sentence(headline: HeadlineText) -> None:
+def test_the_tooltip_and_the_accessible_name_have_every_sentence(headline: HeadlineText) -> None:
     headline.resize(300, 80)
     assert headline.toolTip() == headline.accessibleName() == headline.text == " ".join([FIRST, *BESIDE])
 

@@ -21,7 +21,7 @@ from app.widgets.table_cells import TextCell
 from core.analysis import analyse
 from core.body import LEG_JOINTS, Joint, Side
 from core.results import Analysis, SideGait, ZeroKind
-from core.samples import Session
+from core.session import Session
 from core.verdicts.model import Verdict
 from core.verdicts.norms import AgeAndHeight, NoBand
 from core.verdicts.quantities import raw_values

@@ -18,7 +18,7 @@ from core.analysis import analyse
 from core.body import Joint, Side
 from core.gait.chosen_strides import leave_out
 from core.results import Analysis
-from core.samples import Session
+from core.session import Session
 from devices.simulation.walker import DEMONSTRATION, Standing, Walk, simulate
 from tests.app.room import words_cut
 

@@ -22,7 +22,7 @@ from app.theme.notifier import ThemeNotifier, load_fonts
 from core.analysis import analyse
 from core.body import Joint, Side
 from core.results import Analysis, ZeroKind
-from core.samples import Session
+from core.session import Session
 from core.verdicts.sigmas import ComparisonKind
 from devices.simulation.walker import DEMONSTRATION, FreeMotion, Standing, Walk, simulate
 from devices.simulation.walker_body import Tissue

@@ -28,7 +28,8 @@ from core.analysis import analyse
 from core.body import LEG_JOINTS, Joint, Side, Site
 from core.gait.phases import PHASES
 from core.results import Analysis, JointAngle, Method, RecordingAnalysis
-from core.samples import FloatArray, ImuBlock, Patient, Recording, RecordingKind, Session
+from core.samples import FloatArray, ImuBlock
+from core.session import Patient, Recording, RecordingKind, Session
 from core.verdicts.model import READ, Assessment, GateReason, JointVerdicts, Verdict, Verdicts, assess
 from devices.simulation.walker import Standing, Walk, WalkerSettings, simulate
 

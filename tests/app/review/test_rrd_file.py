@@ -7,7 +7,7 @@ import pytest
 from app.review.rerun_log import BLUEPRINT, write_log
 from app.review.rrd_file import PLACE_OF_TABLE, checksum, remove_chance
 from core.results import Analysis, Method
-from core.samples import Session
+from core.session import Session
 
 
 @pytest.fixture

@@ -10,7 +10,7 @@ import pytest
 
 from app.review.viewer import Viewer, ViewerRefusedError, viewer_program, why_not
 from core.results import Analysis, Method
-from core.samples import Session
+from core.session import Session
 
 EMPTY = Session(()), Analysis(Method.ROBUST, False, (), ())
 STAND_IN = """#!{python}

@@ -19,7 +19,7 @@ from app.storage.layout import DATABASE
 from app.storage.library import Library
 from app.storage.root import ID_FILE
 from app.storage.stored import BEGINNING, Action, AuditEntry, Checkpoint, LibraryError, NotAllowedError, Operator, Role
-from core.samples import Patient
+from core.session import Patient
 
 DATA_KEY = bytes(range(32))
 KEY = derived_from(DATA_KEY).audit

@@ -12,7 +12,7 @@ from app.storage.database.schema import bring_up_to_date, move
 from app.storage.kept_courses import keep_course
 from app.storage.library import Library
 from app.storage.stored import LibraryError, Operator, Role
-from core.samples import Patient, Session
+from core.session import Patient, Session
 from tests.app.course_material import course, walked
 
 SHOES = course((walked(), "shoes"))

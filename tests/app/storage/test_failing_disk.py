@@ -23,7 +23,7 @@ from app.storage.opened import OpenedLibrary, logged_in
 from app.storage.recovery import find_interrupted, recover
 from app.storage.slots import Cost
 from app.storage.stored import LibraryError, Operator, Role, StoredJournal
-from core.samples import Patient, Recording, RecordingKind, Session
+from core.session import Patient, Recording, RecordingKind, Session
 from tests.safety.failing_disk import FailingDisk, failing_disk, missing
 from tests.safety.journal_material import LINES, NO_ROOM_ASKED, LineDecoder, line, record_some
 

@@ -20,7 +20,8 @@ from core.analysis import analyse
 from core.body import Joint, Side, Site
 from core.findings import Finding, Severity
 from core.results import Analysis
-from core.samples import ImuBlock, Patient, RateKind, Recording, SensorInfo, Session
+from core.samples import ImuBlock, RateKind, SensorInfo
+from core.session import Patient, Recording, Session
 from core.timed.protocols import PlannedTest, TimedProtocol
 from devices.simulation.walker import DEMONSTRATION, Standing, Walk, simulate
 

@@ -24,7 +24,7 @@ from app.storage.stored import (
     Role,
 )
 from core.body import Joint, Site
-from core.samples import Patient, Recording, RecordingKind, Session
+from core.session import Patient, Recording, RecordingKind, Session
 
 DATA_KEY = bytes(range(32))
 FIRST = Operator("HK", "H. Keller", Role.VIEWER)

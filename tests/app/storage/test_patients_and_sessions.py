@@ -34,7 +34,8 @@ from core.alignment import AlignmentChange, PartChange, ProsthesisPart
 from core.body import Joint, Side, Site
 from core.findings import Finding, Severity
 from core.goals import Goal, GoalOf, held, ordered, with_goal
-from core.samples import Patient, RateKind, Recording, RecordingKind, SensorInfo, Session
+from core.samples import RateKind, SensorInfo
+from core.session import Patient, Recording, RecordingKind, Session
 
 DATA_KEY = bytes(range(32))
 FULL = Patient(

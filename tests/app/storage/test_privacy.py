@@ -23,7 +23,8 @@ from pathlib import Path
 from app.storage.library import Library
 from app.storage.stored import Operator, PlacedSensor, Role
 from core.body import Site
-from core.samples import Patient, Recording, RecordingKind, SensorInfo, Session
+from core.samples import SensorInfo
+from core.session import Patient, Recording, RecordingKind, Session
 
 folder, key, names = Path(sys.argv[1]), bytes.fromhex(sys.argv[2]) or None, sys.argv[3:]
 with Library.create(folder, key, Operator("hk", names[0], Role.ADMINISTRATOR)) as library:

@@ -15,7 +15,7 @@ from app.storage.journal.payloads import BELONGING, Belonging, key_text, with_ke
 from app.storage.library import Library
 from app.storage.stored import StoredSession
 from core.alignment import AlignmentChange, PartChange, ProsthesisPart
-from core.samples import Patient, Recording, RecordingKind, Session
+from core.session import Patient, Recording, RecordingKind, Session
 from core.timed.protocols import KeyMeaning, PlannedTest, TimedProtocol
 
 WALK = Recording("walk 1", RecordingKind.WALKING, "walk_1", {}, condition="alignment A")

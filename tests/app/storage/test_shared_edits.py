@@ -14,7 +14,8 @@ from app.storage.stored import BEGINNING, LibraryError, Limits, Operator, Placed
 from app.storage.three_way import Values
 from core.body import Joint, Side, Site
 from core.goals import Goal, GoalOf
-from core.samples import Patient, Recording, RecordingKind, SensorInfo, Session
+from core.samples import SensorInfo
+from core.session import Patient, Recording, RecordingKind, Session
 from tests.app.storage.conftest import DATA_KEY, MakeEngine
 
 FULL = Patient("P-7", 1966, "female", 1.68, 64.0, "knee K", "stick", "left", "none")

@@ -19,7 +19,7 @@ from app.storage.three_way import Values, rebased, three_way
 from core.alignment import AlignmentChange, PartChange, ProsthesisPart
 from core.body import Joint, Side
 from core.goals import Goal, GoalOf, with_goal
-from core.samples import Patient, Recording, RecordingKind, Session
+from core.session import Patient, Recording, RecordingKind, Session
 from core.timed.protocols import PlannedTest, TimedProtocol
 
 WORDS = st.sampled_from(["", "stick", "frame", "none"])

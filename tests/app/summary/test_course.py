@@ -11,7 +11,7 @@ from app.summary.conditions import conditions_of
 from app.summary.course import OF_A_LEG, Course, CourseCondition, change, course_from_json, course_in_json, course_of
 from core.body import Joint, Side
 from core.parameters import CADENCE, KNEE, SPEED, STANCE
-from core.samples import Recording
+from core.session import Recording
 from core.timed.measures import COLUMNS
 from core.timed.protocols import TimedProtocol
 from core.verdicts.measurement_error import Judgement

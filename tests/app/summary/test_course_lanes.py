@@ -170,7 +170,7 @@ def test_a_lane_states_every_value_with_its_day_and_unit() -> None:
     )
 
 
-def test_a_lane_without_a_value_says_so() -> None:
+def test_a_lane_without_a_value_states_that() -> None:
     nothing = lane_in_words(lane(lanes([visit(1, None)]), SPEED_LANE), [visit(1, None)])
     assert nothing == "Walking speed: no value."
 
@@ -210,7 +210,8 @@ def test_what_is_drawn_is_explained_and_nothing_else() -> None:
         "of 100 healthy people."
     )
     assert "arrow" not in key_in_words(lanes([visit(1, shoes())]))
-    assert "Dotted: goal." in key_in_words(lanes([visit(1, shoes())], goals=[goal(SPEED_LANE.column, GoalOf.WALK, 1.0)]))
+    goals = [goal(SPEED_LANE.column, GoalOf.WALK, 1.0)]
+    assert "Dotted: goal." in key_in_words(lanes([visit(1, shoes())], goals=goals))
 
 
 def latest(days_ago: int = 1, *not_reported: Joint, has_walk: bool = True, has_report: bool = True) -> LatestVisit:

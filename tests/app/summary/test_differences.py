@@ -22,7 +22,7 @@ from app.summary.differences import (
 from core.alignment import AlignmentChange, PartChange, ProsthesisPart
 from core.body import Joint, Side
 from core.results import Analysis, Calibration, Method, SideGait, ZeroKind
-from core.samples import Recording, RecordingKind, Session
+from core.session import Recording, RecordingKind, Session
 from tests.core.verdicts.built_walk import Reported, calibrations, judged_walk, leg, walk
 
 

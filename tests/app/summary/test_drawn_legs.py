@@ -9,7 +9,8 @@ from app.summary.drawn_legs import FOOT, HIPS, SHANK, THIGH, UNKNOWN_HEIGHT_M, d
 from core.analysis import analyse
 from core.body import Joint, Side, Site, ankle_of, knee_of
 from core.results import Analysis, RecordingAnalysis
-from core.samples import FloatArray, RecordingKind, Session
+from core.samples import FloatArray
+from core.session import RecordingKind, Session
 from devices.simulation.walker import FreeMotion, Standing, Walk, WalkerSettings, simulate
 
 HEIGHT_M = 1.8

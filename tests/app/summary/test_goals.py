@@ -34,7 +34,7 @@ from core.analysis import analyse
 from core.body import Joint, Side
 from core.goals import NO_GOALS, Goal, GoalOf, agreed_by
 from core.results import RecordingAnalysis
-from core.samples import Patient, Session
+from core.session import Patient, Session
 from core.timed.protocols import TimedProtocol
 from core.verdicts.goals import GoalStanding
 from core.verdicts.model import Verdict

@@ -20,7 +20,7 @@ from core.body import Joint, Side
 from core.goals import Goal, GoalOf
 from core.parameters import CADENCE, KNEE, KNEE_RANGE, SPEED, STANCE
 from core.results import RecordingAnalysis
-from core.samples import Patient, Session
+from core.session import Patient, Session
 from tests.app.course_material import analysis, course, recordings, unsure, walked
 from tests.core.verdicts.built_walk import Reported
 

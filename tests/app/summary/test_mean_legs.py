@@ -9,7 +9,7 @@ from app.summary.mean_legs import ANKLE, HIP, KNEE, TOES, MeanLegs, mean_legs
 from core.analysis import analyse
 from core.body import Joint, Side
 from core.results import Analysis, ZeroKind
-from core.samples import Session
+from core.session import Session
 from devices.simulation.walker import DEMONSTRATION, FreeMotion, Standing, Walk, simulate
 from tests.app.changed_analysis import recalibrated, rewalked, walk_of
 

@@ -9,7 +9,7 @@ from app.summary.pooled_walks import pool_letters, pools_of
 from app.summary.visits import by_condition
 from core.alignment import AlignmentChange, PartChange, ProsthesisPart
 from core.results import Analysis, Calibration, Method
-from core.samples import Recording, RecordingKind
+from core.session import Recording, RecordingKind
 from core.timed.protocols import PlannedTest, TimedProtocol
 from tests.core.verdicts.built_walk import calibrations, judged_walk, walk
 

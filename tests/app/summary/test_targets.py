@@ -7,7 +7,7 @@ import pytest
 
 from app.summary.targets import HEADER, target_rows
 from core.body import Side
-from core.samples import Recording, RecordingKind
+from core.session import Recording, RecordingKind
 from core.targets import Target, TargetMeasure, TargetTally, with_tallies
 
 WALK = Recording("walk 1", RecordingKind.WALKING, "walk_1", {}, condition="=Shoes")

@@ -14,7 +14,7 @@ from app.summary.visits import WalkedVisit, visits_by_condition
 from core.analysis import analyse
 from core.body import Joint, Side
 from core.results import Analysis, ZeroKind
-from core.samples import Session
+from core.session import Session
 from devices.simulation.walker import DEMONSTRATION, FreeMotion, Standing, Walk, simulate
 from devices.simulation.walker_body import Tissue
 from tests.app.changed_analysis import recalibrated, with_few_strides

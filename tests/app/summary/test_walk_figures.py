@@ -35,7 +35,7 @@ from core.body import Joint, Side
 from core.gait.chosen_strides import leave_out
 from core.gait.strides import Reason
 from core.results import Analysis, RecordingAnalysis, ZeroKind
-from core.samples import Recording
+from core.session import Recording
 from core.verdicts.norms import AgeAndHeight, NoBand
 from core.verdicts.quantities import both_sides
 from devices.simulation.walker import DEMONSTRATION, FreeMotion, Standing, Walk, simulate

@@ -5,7 +5,7 @@ from pytestqt.qtbot import QtBot
 from app.editing.session_recording import SessionRecording
 from app.wizard.visit import Visit
 from core.body import Site
-from core.samples import Patient, RecordingKind
+from core.session import Patient, RecordingKind
 
 DEMO_PATIENT = Patient(code="DEMO-7", birth_year=1970)
 

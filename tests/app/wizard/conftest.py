@@ -24,7 +24,7 @@ from app.wizard.wizard import Wizard
 from app.wizard.worn_sensors import SourceChoice
 from app.workers.library_controller import LibraryController
 from core.body import LEG_SITES, Site
-from core.samples import Patient, Session
+from core.session import Patient, Session
 from devices.emulators.dot_faults import DotFaults
 from devices.simulation.replay import ReplaySource
 from devices.simulation.walker import DEMONSTRATION, FreeMotion, Standing, Walk, simulate

@@ -11,7 +11,8 @@ from core.body import LEG_SITES, Joint, Site
 from core.calibration.rest import Rest, rest_of
 from core.live.sensors import LiveSensor
 from core.results import JointCalibration
-from core.samples import ImuBlock, Recording
+from core.samples import ImuBlock
+from core.session import Recording
 from devices.simulation.walker import FreeMotion, Standing, Tissue, Walk, WalkerSettings, simulate
 
 Blocks = Mapping[str, ImuBlock]

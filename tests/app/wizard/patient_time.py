@@ -13,7 +13,8 @@ from pytestqt.qtbot import QtBot
 
 from app.acquisition.acquisition import Acquisition, LiveEstimator
 from app.wizard.worn_sensors import SourceChoice
-from core.samples import ImuBlock, Session
+from core.samples import ImuBlock
+from core.session import Session
 from devices.clocks.host_clock import host_time_ns
 from devices.live import LiveSource
 from devices.simulation.replay import ReplaySource

@@ -24,7 +24,7 @@ from app.wizard.step import StepId
 from app.wizard.walking.step import WalkingStep
 from app.wizard.wizard import Wizard
 from app.workers.library_controller import LibraryController
-from core.samples import Session
+from core.session import Session
 
 TEXTS = {"Enter": "Go on", "Space": "Record again", "L": "Repeat left", "R": "Repeat right", "X": "Exclude"}
 KEYS = {"Enter": Qt.Key.Key_Return, "Space": Qt.Key.Key_Space, "L": Qt.Key.Key_L, "R": Qt.Key.Key_R, "X": Qt.Key.Key_X}

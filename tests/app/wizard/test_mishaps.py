@@ -28,7 +28,7 @@ from app.wizard.walking.step import WATCH_TICKS, WalkingStep
 from app.wizard.wizard import DEAF_S, Wizard
 from app.workers.library_controller import LibraryController
 from core.body import LEG_SITES, Site
-from core.samples import Patient, Recording, RecordingKind, Session
+from core.session import Patient, Recording, RecordingKind, Session
 from tests.app.library_answers import asked
 from tests.app.wizard.begun_visit import begin, record
 

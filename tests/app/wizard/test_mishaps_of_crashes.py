@@ -23,7 +23,7 @@ from app.wizard.wizard import Wizard
 from app.workers.library_controller import LibraryController
 from core.body import Site
 from core.calibration.rest import rest_of
-from core.samples import RecordingKind
+from core.session import RecordingKind
 from tests.app.wizard.begun_visit import begin, record
 
 WAIT_MS = 20_000

@@ -10,7 +10,7 @@ from app.theme.notifier import ThemeNotifier
 from app.wizard.sensors.step import SensorsStep
 from app.wizard.visit import Visit
 from core.body import Site
-from core.samples import RecordingKind
+from core.session import RecordingKind
 from tests.app.wizard.begun_visit import begin, record
 
 

@@ -8,7 +8,7 @@ from app.wizard.visit import Visit
 from app.wording.findings import sentence
 from app.workers.library_controller import LibraryController
 from core.body import Side, Site
-from core.samples import RecordingKind
+from core.session import RecordingKind
 from tests.app.wizard.begun_visit import begin, record
 
 STATED = "Right ankle: The foot has no ankle joint. Its angle is the foot relative to the shank."

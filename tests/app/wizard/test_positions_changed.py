@@ -13,7 +13,8 @@ from app.wizard.evaluation import Evaluation
 from app.wizard.sensors.step import SensorsStep
 from app.wizard.visit import Visit
 from core.body import LEG_JOINTS, Joint, Side, Site
-from core.samples import ImuBlock, Recording, RecordingKind, Session
+from core.samples import ImuBlock
+from core.session import Recording, RecordingKind, Session
 from tests.app.wizard.begun_visit import begin, record
 
 THIGH, SHANK = Site.LEFT_THIGH, Site.LEFT_SHANK

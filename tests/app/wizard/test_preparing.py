@@ -11,7 +11,7 @@ from app.wizard.wizard import Wizard
 from app.wizard.worn_sensors import SourceChoice
 from app.workers.preload import preload
 from core.body import LEG_SITES
-from core.samples import Patient, Session
+from core.session import Patient, Session
 from devices.simulation.replay import ReplaySource
 from tests.app.watchdog import Watchdog
 

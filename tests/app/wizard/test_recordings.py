@@ -16,7 +16,7 @@ from app.storage.stored import LibraryFaultError, RecordingState
 from app.wizard.visit import Visit
 from app.workers.library_controller import LibraryController
 from core.body import LEG_SITES, Side, Site
-from core.samples import RecordingKind
+from core.session import RecordingKind
 from tests.app.wizard.begun_visit import begin, record
 
 WAIT_MS = 20_000

@@ -14,7 +14,7 @@ from app.wizard.wizard import Wizard
 from core.analysis import analyse
 from core.body import LEG_JOINTS, LEG_SITES, Joint, Side, Site
 from core.results import Analysis
-from core.samples import Patient, Recording, RecordingKind, Session
+from core.session import Patient, Recording, RecordingKind, Session
 from devices.files.session_folder import read_session, write_session
 from devices.files.xsens_mtmanager import mtmanager_trial
 from devices.simulation.walker import DEMONSTRATION, simulate

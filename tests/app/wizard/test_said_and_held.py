@@ -20,7 +20,7 @@ from app.theme.notifier import ThemeNotifier
 from app.wizard.step import StepId
 from app.wizard.wizard import Wizard
 from app.workers.library_controller import LibraryController
-from core.samples import Session
+from core.session import Session
 from tests.safety.random_keys import play
 from tests.safety.said_and_held import HeldLibrary, contradictions, left_open
 

@@ -24,7 +24,7 @@ from app.wizard.worn_corrections import opposite
 from app.wizard.worn_sensors import WornSensors
 from app.workers.library_controller import LibraryController
 from core.body import LEG_JOINTS, LEG_SITES, Side, Site, hip_of
-from core.samples import RecordingKind, Session
+from core.session import RecordingKind, Session
 from devices.decoders import DECODERS
 from devices.files.session_folder import read_session
 from devices.simulation.replay import ReplaySource

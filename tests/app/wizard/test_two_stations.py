@@ -25,7 +25,8 @@ from app.wizard.visit import Visit
 from app.wizard.wizard import Wizard
 from app.workers.library_controller import LibraryController
 from core.body import Joint, Side, Site
-from core.samples import Patient, Recording, RecordingKind, SensorInfo, Session
+from core.samples import SensorInfo
+from core.session import Patient, Recording, RecordingKind, Session
 from tests.app.library_answers import asked
 from tests.app.wizard.conftest import PASSPHRASE
 

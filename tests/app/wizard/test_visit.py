@@ -20,7 +20,7 @@ from app.wizard.visit import Visit
 from app.workers.library_controller import LibraryController
 from core.analysis import analyse
 from core.body import LEG_JOINTS, Joint, Side, Site
-from core.samples import Patient, RecordingKind
+from core.session import Patient, RecordingKind
 from tests.app.wizard.begun_visit import begin, record
 from tests.app.wizard.conftest import PASSPHRASE, SPEED
 

@@ -16,7 +16,7 @@ from app.wizard.walk_messages import (
 )
 from app.wizard.walking.step import WalkingStep
 from core.body import LEG_SITES, Side, Site
-from core.samples import RecordingKind
+from core.session import RecordingKind
 from tests.app.wizard.begun_visit import begin, record
 from tests.app.wizard.pressing import press
 

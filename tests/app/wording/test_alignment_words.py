@@ -12,7 +12,7 @@ from app.wording.alignment import (
     turns_words,
 )
 from core.alignment import AlignmentChange, PartChange, ProsthesisPart, changed_between
-from core.samples import Recording, RecordingKind
+from core.session import Recording, RecordingKind
 
 FRONT = ProsthesisPart.FOOT_FRONT_SCREW
 B = AlignmentChange(

@@ -18,7 +18,7 @@ from app.wording.recordings import (
 )
 from app.wording.translation import use_language
 from core.findings import Finding, Severity
-from core.samples import Recording, RecordingKind
+from core.session import Recording, RecordingKind
 
 
 def walk(number: int, condition: str = "", *, is_kept: bool = True, is_restrapped_before: bool = False) -> Recording:

@@ -31,7 +31,7 @@ from app.workers.library_controller import LibraryController
 from app.workers.library_state import Joined, LibraryPlace, OpenedState
 from app.workers.library_watch import LibraryWatch
 from app.workers.refusals import refusal_of
-from core.samples import Patient
+from core.session import Patient
 
 PASSPHRASE = "four short words here"
 WAIT_MS = 20_000  # on a busy machine

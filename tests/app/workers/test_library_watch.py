@@ -27,7 +27,7 @@ from app.storage.root import LibraryGoneError
 from app.storage.slots import Cost
 from app.storage.stored import LibraryError, Operator, Role
 from app.workers.library_controller import LibraryController
-from core.samples import Patient, Recording, RecordingKind, Session
+from core.session import Patient, Recording, RecordingKind, Session
 
 PASSPHRASE = "four short words here"
 WAIT_MS = 20_000  # on a busy machine

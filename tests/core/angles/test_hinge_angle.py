@@ -10,7 +10,8 @@ from core.analysis import analyse
 from core.angles import hinge_angle as drifting
 from core.angles.hinge_angle import hinge_angle, hinge_angle_and_sd
 from core.body import Joint, Site
-from core.samples import FloatArray, RecordingKind
+from core.samples import FloatArray
+from core.session import RecordingKind
 from core.signal.pair import pair_of
 from devices.simulation.walker import FreeMotion, Motion, SensorErrors, WalkerSettings, simulate
 

@@ -10,7 +10,8 @@ from scipy.spatial.transform import Rotation
 
 from core.angles.twist import off_axis_rate, twist
 from core.body import Joint
-from core.samples import FloatArray, RecordingKind
+from core.samples import FloatArray
+from core.session import RecordingKind
 from core.signal.pair import Pair
 
 if TYPE_CHECKING:

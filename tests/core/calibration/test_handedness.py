@@ -9,7 +9,8 @@ import pytest
 from scipy.spatial.transform import Rotation
 
 from core.body import Site
-from core.samples import FloatArray, ImuBlock, Recording, RecordingKind, Session
+from core.samples import FloatArray, ImuBlock
+from core.session import Recording, RecordingKind, Session
 from core.verdicts.quality import look_at
 from devices.simulation.walker_sensors import acceleration, angular_rate
 from tests.core.recorded_joints import recorded_mechanisms, recorded_people

@@ -6,7 +6,8 @@ import pytest
 
 from core.body import Site
 from core.calibration.rate_kind import tracks_of_kind
-from core.samples import RateKind, SensorInfo, Session
+from core.samples import RateKind, SensorInfo
+from core.session import Session
 from devices.simulation.walker import FreeMotion, Standing, Tissue, Walk, WalkerSettings, simulate
 
 LEFT = (Site.LEFT_THIGH, Site.LEFT_SHANK, Site.LEFT_FOOT)

@@ -10,7 +10,8 @@ from core.calibration.coincidence import Coincidence, relative_rotation, solve_r
 from core.calibration.hinge import hinge_residual, in_plane_difference
 from core.calibration.joint_centre import JointCentre
 from core.calibration.refinement import refine_on_hinge
-from core.samples import FloatArray, RecordingKind
+from core.samples import FloatArray
+from core.session import RecordingKind
 from core.signal.datasets import Datasets, gather
 
 if TYPE_CHECKING:

@@ -12,7 +12,8 @@ from core.body import LEG_JOINTS, LEG_SITES, Side, Site
 from core.calibration.strap import Slip, slips, turns_over
 from core.gait.strides import Reason
 from core.results import Method
-from core.samples import ImuBlock, RateKind, Session
+from core.samples import ImuBlock, RateKind
+from core.session import Session
 from core.signal.sensors import SensorTracks
 from core.timed.protocols import PlannedTest, TimedProtocol
 from devices.simulation.walker import (

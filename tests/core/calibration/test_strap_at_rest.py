@@ -8,7 +8,8 @@ from scipy.spatial.transform import Rotation
 
 from core.body import Site
 from core.calibration.strap import Slip, is_refuted
-from core.samples import RateKind, Session
+from core.samples import RateKind
+from core.session import Session
 from core.signal.sensors import SensorTracks
 from devices.simulation.walker import Standing, Walk, WalkerSettings, simulate
 

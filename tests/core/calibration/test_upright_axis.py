@@ -9,7 +9,7 @@ from scipy.spatial.transform import Rotation
 
 from core.body import Joint
 from core.calibration.heading import heading_over
-from core.samples import RecordingKind
+from core.session import RecordingKind
 from core.signal.pair import OrientedTrack, Pair, pair_up
 from core.signal.rotations import wrap
 from core.signal.tracks import Track

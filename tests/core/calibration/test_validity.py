@@ -10,7 +10,8 @@ from core.analysis import analyse
 from core.body import Joint, Site
 from core.calibration.validity import Basis, basis_of, in_force, spans_of_validity
 from core.results import AxisSource, ZeroKind
-from core.samples import ImuBlock, Recording, RecordingKind, Session
+from core.samples import ImuBlock
+from core.session import Recording, RecordingKind, Session
 
 if TYPE_CHECKING:
     from tests.core.conftest import Person

@@ -11,7 +11,7 @@ from core.body import Joint, Side, Site
 from core.gait.chosen_strides import leave_out, left_out_by_hand
 from core.gait.strides import Reason
 from core.results import Analysis, RecordingAnalysis, SideGait
-from core.samples import Session
+from core.session import Session
 from devices.simulation.walker import DEMONSTRATION, Standing, Walk, simulate
 
 LEFT_LEG = (Site.LEFT_THIGH, Site.LEFT_SHANK, Site.LEFT_FOOT)

@@ -10,7 +10,8 @@ from core.analysis import analyse
 from core.body import Joint, Side, Site
 from core.gait.clocks import ClockGate, ClockTie, LegClocks, LegSteps, leg_clocks, stamps_residual_s
 from core.results import RecordingAnalysis
-from core.samples import FloatArray, SensorInfo, Session
+from core.samples import FloatArray, SensorInfo
+from core.session import Session
 from core.verdicts.gates import clocks_verdict
 from core.verdicts.model import Verdict
 from devices.simulation.walker import Standing, Walk, WalkerSettings, simulate

@@ -10,7 +10,8 @@ import numpy as np
 from core.analysis import analyse
 from core.body import LEG_SITES, Joint, Side, Site, hip_of
 from core.results import Analysis, RecordingAnalysis
-from core.samples import FloatArray, RecordingKind
+from core.samples import FloatArray
+from core.session import RecordingKind
 from core.verdicts.gates import judged
 from devices.simulation.walker import (
     FreeMotion,

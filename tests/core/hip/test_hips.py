@@ -10,7 +10,7 @@ from core.body import Joint, Side, Site, hip_of
 from core.gait.clocks import ClockTie
 from core.hip.measure import with_sd
 from core.hip.results import ClockStatus
-from core.samples import Recording, RecordingKind, Session
+from core.session import Recording, RecordingKind, Session
 from core.verdicts.model import Verdict
 from devices.simulation.walker import Standing, Tissue, Walk, simulate
 from devices.simulation.walker_pelvis import pelvis_truth

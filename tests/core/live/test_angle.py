@@ -21,7 +21,8 @@ from core.live.orientation import NOTHING, LiveOrientation, OrientedSamples, joi
 from core.live.pairing import MAX_WAIT_S, Pairing
 from core.live.streams import EvenStream
 from core.results import AxisSource, JointCalibration
-from core.samples import FloatArray, ImuBlock, RateKind, Recording, RecordingKind, Session
+from core.samples import FloatArray, ImuBlock, RateKind
+from core.session import Recording, RecordingKind, Session
 from core.signal.pair import OrientedTrack, pair_up
 from core.signal.rotations import joint_frame, wrap
 from core.signal.tracks import Track

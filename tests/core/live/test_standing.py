@@ -10,7 +10,8 @@ import pytest
 from core.body import LEG_SITES, Site
 from core.calibration.rest import rest_of
 from core.live.standing import REQUIRED_S, LiveStanding, StandingState
-from core.samples import ImuBlock, Recording, RecordingKind
+from core.samples import ImuBlock
+from core.session import Recording, RecordingKind
 from devices.simulation.walker import Standing as StandingRecording
 from devices.simulation.walker import WalkerSettings, simulate
 

@@ -15,7 +15,8 @@ from core.gait.live import FootEvent, LiveEvent
 from core.live.sensors import LiveSensor
 from core.live.walking import LiveWalk, WalkingState
 from core.results import Analysis, JointCalibration
-from core.samples import ImuBlock, Recording
+from core.samples import ImuBlock
+from core.session import Recording
 from devices.simulation.walker import FreeMotion, SimulatedSession, Standing, Tissue, Walk, WalkerSettings, simulate
 
 pytestmark = pytest.mark.endurance  # minutes in all: the default run has three

@@ -19,7 +19,8 @@ from core.published.angles import (
     published_angle,
     unwrapped_about_trend,
 )
-from core.samples import FloatArray, RecordingKind
+from core.samples import FloatArray
+from core.session import RecordingKind
 from core.signal.pair import Pair
 from core.signal.rotations import joint_frame, wrap
 

@@ -16,7 +16,8 @@ from core.published.figures import (
     projected_rates,
     two_ways,
 )
-from core.samples import FloatArray, RecordingKind
+from core.samples import FloatArray
+from core.session import RecordingKind
 from core.signal.pair import Pair
 from core.signal.rotations import angle_between
 

@@ -5,7 +5,8 @@ from dataclasses import replace
 import pytest
 
 from core.body import Site
-from core.samples import RateKind, Session
+from core.samples import RateKind
+from core.session import Session
 from core.signal.clock_drift import about_clocks, clock_drifts
 from core.signal.sensors import SensorTracks
 from devices.simulation.walker import Tissue, Walk, WalkerSettings, simulate

@@ -7,7 +7,8 @@ import numpy as np
 import pytest
 
 from core.body import Site
-from core.samples import FloatArray, ImuBlock, Recording, RecordingKind, Session
+from core.samples import FloatArray, ImuBlock
+from core.session import Recording, RecordingKind, Session
 from core.signal.clock_jumps import ClockJump, jump_of, spans_of
 from core.verdicts.quality import look_at
 from devices.files.session_folder import read_session

@@ -9,7 +9,7 @@ import pytest
 from core.body import Segment, Side, Site
 from core.calibration.rest import rest_of
 from core.live.sensors import LiveSensor, LiveSensors
-from core.samples import Recording
+from core.session import Recording
 from core.timed.found import NotMeasured
 from core.timed.live import LiveTest
 from core.timed.protocols import KeyMeaning, PlannedTest, TimedProtocol

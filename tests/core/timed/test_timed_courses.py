@@ -8,7 +8,8 @@ import pytest
 from core.analysis import analyse
 from core.body import Side, Site
 from core.gait.strides import Reason
-from core.samples import RateKind, Recording, Session
+from core.samples import RateKind
+from core.session import Recording, Session
 from core.signal.sensors import SensorTracks
 from core.timed.found import NotMeasured, TimedTest
 from core.timed.protocols import DEFINITIONS, PlannedTest, TimedProtocol

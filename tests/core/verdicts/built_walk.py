@@ -12,7 +12,8 @@ from core.gait.spatiotemporal import parameters_of
 from core.gait.strides import Reason, Strides
 from core.results import AxisSource, JointCalibration, Method, RecordingAnalysis, SideGait, ZeroKind
 from core.results import JointAngle as Angle
-from core.samples import FloatArray, RecordingKind
+from core.samples import FloatArray
+from core.session import RecordingKind
 from core.signal.reception import Reception
 from core.verdicts.gates import verdicts_of
 from core.verdicts.model import Assessment, Verdict, Verdicts

@@ -13,7 +13,8 @@ import pytest
 from core.analysis import analyse
 from core.body import LEG_SITES, Joint, Side
 from core.results import Analysis, Method
-from core.samples import ImuBlock, Recording, RecordingKind, Session
+from core.samples import ImuBlock
+from core.session import Recording, RecordingKind, Session
 from core.verdicts.diagnostics import diagnostics_of
 from devices.simulation.walker import FreeMotion, Standing, Tissue, Walk, WalkerSettings, simulate
 

@@ -14,7 +14,7 @@ from core.calibration.same_joint import most_disagreement
 from core.gait.clocks import ClockTie
 from core.gait.strides import Reason
 from core.results import Analysis, AxisHalves, Calibration, Method, RecordingAnalysis, ZeroKind
-from core.samples import RecordingKind
+from core.session import RecordingKind
 from core.timed.found import TimedTest
 from core.timed.protocols import TimedProtocol
 from core.verdicts.gates import judged, verdicts_of

@@ -11,7 +11,8 @@ from core.analysis import analyse
 from core.body import LEG_SITES, Joint, Segment, Side, Site
 from core.findings import Severity
 from core.results import Analysis, Method
-from core.samples import FloatArray, ImuBlock, Recording, RecordingKind, Session
+from core.samples import FloatArray, ImuBlock
+from core.session import Recording, RecordingKind, Session
 from core.signal.reception import lost_percent
 from core.verdicts.quality import look_at
 from devices.simulation.walker import (

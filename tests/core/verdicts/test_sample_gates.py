@@ -12,7 +12,8 @@ import pytest
 from core.analysis import analyse
 from core.body import Joint, Side, Site
 from core.results import RecordingAnalysis
-from core.samples import BoolArray, FloatArray, ImuBlock, Session
+from core.samples import BoolArray, FloatArray, ImuBlock
+from core.session import Session
 from core.signal.reception import Reception
 from core.verdicts.gates import verdicts_of
 from core.verdicts.model import Verdict

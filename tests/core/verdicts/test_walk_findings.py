@@ -12,7 +12,7 @@ from core.findings import Finding, Severity
 from core.gait.strides import Reason, Strides, strides_of
 from core.hip.results import PelvisAngles, PelvisTurn
 from core.results import RecordingAnalysis, SideGait
-from core.samples import RecordingKind
+from core.session import RecordingKind
 from core.timed.found import TimedTest, Turn
 from core.timed.protocols import TimedProtocol
 from core.verdicts.model import Assessment, Verdict

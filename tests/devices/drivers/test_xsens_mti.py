@@ -21,7 +21,7 @@ from devices.drivers import xbus
 from devices.drivers.xbus import REQUESTS, Item, Mid, XbusFramer, item, message, values
 from devices.drivers.xsens_mti import DRIVER, EMULATED, VERSION, MtiFramer, XsensMti
 from devices.emulators.transports import Emulation, PseudoTerminal
-from devices.emulators.xsens_mti import MtiVoice, sample
+from devices.emulators.xsens_mti import MtiVoice
 from devices.live import SourceLostError, SourceRefusedError
 from devices.source import DecodedSensor, SourceInfo
 from devices.stream import ByteSource, Decoder
@@ -202,7 +202,7 @@ def test_a_sensor_that_counts_on_after_a_gap_has_lost_what_is_missing() -> None:
     one = Decoder(XsensMti())
     one.begin(INFO)
     for number in numbers:
-        one.feed(sample(voice, number), number / 100.0)
+        one.feed(voice.sample(number), number / 100.0)
     sensor = one.finish()[INFO.sensors[0]]
     assert (sensor.counts.received, sensor.counts.lost) == (269, 31)
     assert np.diff(sensor.block.time_s).max() == pytest.approx(0.31, abs=1e-3)
@@ -214,7 +214,7 @@ def fuzz(frames: int, seed: int) -> None:
     chance, voice = random.Random(seed), MtiVoice("0123")
     framer, clean, expected, longest = MtiFramer(INFO), 0, [], 0
     for number in range(frames):
-        frame = sample(voice, number % 60_000)
+        frame = voice.sample(number % 60_000)
         kind = chance.random()
         if kind < 0.90:
             expected.append(frame)
@@ -262,7 +262,7 @@ def test_a_gap_is_right_to_a_sample_whether_the_sensors_clock_went_on_or_began_a
     for begin, first in ((0, 0), (1300, 0 if is_restarted else 1300)):
         one.begin(INFO)
         for number in range(1000):
-            one.feed(sample(voice, first + number), 50.0 + (begin + number) / 100.0)
+            one.feed(voice.sample(first + number), 50.0 + (begin + number) / 100.0)
     sensor = one.finish()[INFO.sensors[0]]
     assert (sensor.counts.received, sensor.counts.lost, sensor.counts.damaged) == (2000, 300, 0)
     assert np.diff(sensor.block.time_s).max() == pytest.approx(3.01, abs=1e-6)

@@ -80,8 +80,8 @@ def answer(asked, arrays):
     came["own file"] = Path(asked["path"]).read_text()
     return {"what": "read", "details": came}
 
-from devices.files import child
-child._answer = answer
+from devices.files import child, child_tasks
+child_tasks._answer = answer
 child.main()
 """
 

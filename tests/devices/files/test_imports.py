@@ -8,7 +8,8 @@ import pytest
 
 from core.body import Site
 from core.findings import Finding, Severity
-from core.samples import ImuBlock, RateKind, Recording, RecordingKind, SensorInfo, Session
+from core.samples import ImuBlock, RateKind, SensorInfo
+from core.session import Recording, RecordingKind, Session
 from devices.files.formats import read_trial
 from devices.files.imports import add_recording, folder_for, free_name, parse_map, place_trial
 from devices.files.refusal import FileRefusedError

@@ -20,7 +20,8 @@ from hypothesis import strategies as st
 
 from core.body import Site
 from core.findings import Finding, Severity
-from core.samples import ImuBlock, Session
+from core.samples import ImuBlock
+from core.session import Session
 from devices.files import limited_reader
 from devices.files.answers import (
     Array,

@@ -11,7 +11,7 @@ import pytest
 from core.analysis import analyse
 from core.body import Joint, Site
 from core.findings import Severity
-from core.samples import Recording, RecordingKind, Session
+from core.session import Recording, RecordingKind, Session
 from devices.files.formats import format_of
 from devices.files.opensim_orientations import opensim_trial
 from devices.files.refusal import FileRefusedError

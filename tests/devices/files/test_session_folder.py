@@ -16,7 +16,8 @@ from hypothesis.extra import numpy as npst
 from core.analysis import analyse
 from core.body import LEG_JOINTS, LEG_SITES, Side, Site
 from core.findings import Finding, Severity
-from core.samples import ImuBlock, Patient, RateKind, Recording, RecordingKind, SensorInfo, Session
+from core.samples import ImuBlock, RateKind, SensorInfo
+from core.session import Patient, Recording, RecordingKind, Session
 from devices.files import session_folder, site_files
 from devices.files.refusal import FileRefusedError
 from devices.files.session_folder import read_session, write_session

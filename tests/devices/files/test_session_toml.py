@@ -8,7 +8,8 @@ import pytest
 
 from core.alignment import AlignmentChange, PartChange, ProsthesisPart
 from core.body import Joint, Site
-from core.samples import Patient, RateKind, SensorInfo
+from core.samples import RateKind, SensorInfo
+from core.session import Patient
 from core.timed.protocols import PlannedTest, TimedProtocol
 from devices.files.refusal import FileRefusedError
 from devices.files.session_toml import default_sensor, parse, render, unknown_keys

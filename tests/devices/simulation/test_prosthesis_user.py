@@ -7,7 +7,8 @@ import pytest
 
 from core.alignment import NetChange, ProsthesisPart
 from core.body import Side
-from core.samples import ImuBlock, RecordingKind
+from core.samples import ImuBlock
+from core.session import RecordingKind
 from devices.simulation.fitted_prosthesis import BUILT, DEG_PER_TURN, setting_of
 from devices.simulation.prosthesis_user import ProsthesisUser
 from devices.simulation.replay import DEMONSTRATION_NAMES

@@ -6,7 +6,8 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from core.samples import ImuBlock, RecordingKind, Session
+from core.samples import ImuBlock
+from core.session import RecordingKind, Session
 from devices.live import SourceLostError, SourceRefusedError
 from devices.simulation.replay import (
     BUFFER_S,

@@ -9,7 +9,8 @@ from scipy.ndimage import correlate1d
 from scipy.signal import butter, sosfiltfilt
 
 from core.body import LEG_JOINTS, LEG_SITES, Joint, Segment, Side, Site
-from core.samples import BoolArray, FloatArray, ImuBlock, RecordingKind
+from core.samples import BoolArray, FloatArray, ImuBlock
+from core.session import RecordingKind
 from devices.simulation.walker import (
     NO_ERRORS,
     CourseKind,

@@ -14,7 +14,7 @@ from app.cohort.batch import done, run, task
 from app.cohort.batch.analysed_folder import write_analysed
 from app.cohort.batch.done import batch_at, read_mark
 from app.cohort.batch.software import software
-from core.samples import Patient
+from core.session import Patient
 from core.verdicts.sigmas import PUBLISHED, ErrorFigures, in_use
 from devices.files.session_folder import write_session
 from tests.app.batch_material import results_in, swinging_session, walked_session, write_swinging

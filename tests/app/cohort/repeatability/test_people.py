@@ -11,7 +11,7 @@ from app.cohort.repeatability.study import FIGURES, TABLE, read_figures, study, 
 from app.cohort.repeatability.table import ATTACHED_AGAIN, BETWEEN_LEGS, HEADS, csv_rows, rows_of
 from core.parameters import SPEED, STANCE, QuantityKind
 from core.results import Analysis
-from core.samples import Patient, Session
+from core.session import Patient, Session
 from core.verdicts.own_figures import Between, OwnEstimate, OwnFigures, OwnSigma
 from core.verdicts.repeatability import TooFewPeopleError
 from devices.files.refusal import FileRefusedError

@@ -23,7 +23,7 @@ from app.system.settings import Settings
 from app.theme.notifier import ThemeNotifier, load_fonts
 from app.wizard.resuming import read_analysed, session_to_analyse
 from app.workers.library_controller import LibraryController
-from core.samples import Session
+from core.session import Session
 from devices.simulation.walker import FreeMotion, Standing, Walk, WalkerSettings, simulate
 from tests.app.home.course_library import PASSPHRASE, make_course_library
 

@@ -14,7 +14,7 @@ from app.home.importing.import_page import ImportPage
 from app.widgets.text import Text
 from app.workers.library_controller import LibraryController
 from core.body import Site
-from core.samples import RecordingKind
+from core.session import RecordingKind
 from tests.app.home.home_library import WAIT_MS
 
 FindData = Callable[[str], Path]

@@ -19,7 +19,8 @@ from app.storage.patients import Patients
 from app.storage.stored import Operator, PlacedSensor, Role, ServerSilentError
 from app.wording.dates import date
 from core.body import Site
-from core.samples import Recording, RecordingKind, SensorInfo, Session
+from core.samples import SensorInfo
+from core.session import Recording, RecordingKind, Session
 from tests.app.home.home_library import PASSPHRASE, WAIT_MS, delete_patient, deletion_dialog
 from tests.app.home.test_home import codes, restores, sessions
 

@@ -16,7 +16,7 @@ from app.storage.opened import OpenedLibrary
 from app.system.settings import Settings
 from app.theme.notifier import ThemeNotifier, load_fonts
 from app.workers.library_controller import LibraryController
-from core.samples import Patient, Session
+from core.session import Patient, Session
 from devices.simulation.walker import Standing, Walk, WalkerSettings
 from tests.app.home.home_library import delete_patient
 

@@ -191,7 +191,7 @@ def test_values_and_states_of_visits_stand_under_one_another(look: ThemeNotifier
     assert rights[0] == rights[1], "columns are those of the list"
 
 
-def test_the_last_change_stands_in_a_patients_line_once_it_is_known(page: HomePage) -> None:
+def test_the_last_change_is_in_a_patients_line_once_it_is_known(page: HomePage) -> None:
     page.show_patients([patient(1), patient(2)])
     page.change_patient(replace(patient(2), change="knee +18° since 1 Jul", arrow=Arrow(is_up=True, is_filled=True)))
     cells = page.patients.cells

@@ -13,7 +13,7 @@ from app.storage.journal.reader import ReadReport
 from app.storage.recovery import Recovered
 from app.storage.stored import StoredRecording
 from app.wizard.walk_messages import recovery_costs
-from core.samples import Recording, RecordingKind
+from core.session import Recording, RecordingKind
 
 CUT = ReadReport(records=90)
 WHOLE = replace(CUT, footer=Footer("stopped", 0, 0))

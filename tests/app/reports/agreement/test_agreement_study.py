@@ -16,7 +16,7 @@ from app.reports.agreement.tables import agreement_table, curve_table, summary_o
 from core.analysis import analyse
 from core.body import LEG_JOINTS, Joint, JointKind, Side
 from core.results import Analysis, RecordingAnalysis, ZeroKind
-from core.samples import Patient, Session
+from core.session import Patient, Session
 from core.verdicts.model import Assessment, JointVerdicts, Verdict
 from devices.files.references.reading import read_reference
 from devices.files.references.trial import EVENTS, ReferenceFile, ReferenceTrial

@@ -8,7 +8,7 @@ import pytest
 from app.summary.request import AnalysedVisit, ReportRequest
 from core.analysis import analyse
 from core.body import Side
-from core.samples import RecordingKind
+from core.session import RecordingKind
 from devices.simulation.walker import DEMONSTRATION, FreeMotion, Standing, Walk, simulate
 
 MADE_AT = datetime(2026, 11, 21, 22, 15, 30, tzinfo=timezone(timedelta(hours=1)))

@@ -17,7 +17,7 @@ from app.summary.facts import Facts
 from app.summary.joint_panels import thin_part
 from app.summary.request import AnalysedVisit, ReportRequest
 from core.body import Joint, Side
-from core.samples import Patient
+from core.session import Patient
 from tests.app.changed_analysis import recalibrated, with_few_strides
 from tests.app.reports.patient.test_what_stands_out import with_more
 
@@ -140,7 +140,7 @@ def test_without_a_mean_there_is_no_table(request_of_demonstration: ReportReques
     assert len(page(request_of_demonstration)["table"]["rows"]) == 5
 
 
-def test_a_comment_is_beside_the_summary_with_who_wrote_it_and_a_long_one_says_where_it_goes_on(
+def test_a_comment_is_beside_the_summary_with_who_wrote_it_and_a_long_one_states_where_it_goes_on(
     request_of_demonstration: ReportRequest,
 ) -> None:
     assert page(request_of_demonstration)["comment"] is None

@@ -28,7 +28,7 @@ from app.theme.notifier import ThemeNotifier
 from core.body import Side
 from core.goals import NO_GOALS
 from core.parameters import KNEE
-from core.samples import Patient, Session
+from core.session import Patient, Session
 from tests.app.course_material import analysis, recordings, walked
 
 MADE_AT = datetime.datetime(2026, 11, 27, tzinfo=datetime.UTC)

@@ -36,7 +36,7 @@ from core.body import Joint, Side
 from core.goals import Goal, GoalOf, agreed_by
 from core.parameters import BETWEEN_LEGS, BY_COLUMN, ParameterFile, QuantityClass, columns_of
 from core.results import Analysis, ZeroKind
-from core.samples import Session
+from core.session import Session
 from core.verdicts.gates import judged
 from core.verdicts.measurement_error import Difference, Judgement
 from tests.app.changed_analysis import recalibrated, rewalked, walk_of, with_few_strides

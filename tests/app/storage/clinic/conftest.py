@@ -20,7 +20,7 @@ from app.storage.library import Library
 from app.storage.opened import OpenedLibrary, logged_in
 from app.storage.slots import Cost
 from app.storage.stored import Operator, Role
-from core.samples import Session
+from core.session import Session
 from devices.simulation.walker import FreeMotion, Standing, Walk, WalkerSettings, simulate
 
 PASSPHRASE = "four short words here"

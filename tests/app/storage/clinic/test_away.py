@@ -20,7 +20,7 @@ from app.storage.stored import LibraryError, NotAllowedError, Role
 from app.workers.library_holder import LibraryHolder
 from app.workers.library_state import NotOpened, OpenedState
 from core.goals import Goal, GoalOf, ordered
-from core.samples import Patient, Session
+from core.session import Patient, Session
 from tests.app.storage.clinic.conftest import PASSPHRASE, silent
 from tests.app.storage.clinic.test_stations import found, read, record
 

@@ -19,7 +19,7 @@ from app.storage.layout import DATABASE, MOVING
 from app.storage.library import Library
 from app.storage.opened import OpenedLibrary, open_library
 from app.storage.stored import LibraryError, Operator, Role
-from core.samples import Session
+from core.session import Session
 from tests.app.storage.clinic.conftest import PASSPHRASE, OpenAt, silent
 
 pytestmark = pytest.mark.endurance  # each starts with an empty server

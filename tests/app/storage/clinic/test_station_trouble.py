@@ -30,7 +30,7 @@ from app.storage.recovery import find_interrupted
 from app.storage.retention import destroy_recording
 from app.storage.stored import LibraryError, LibraryFaultError, ServerSilentError, StoredPatient
 from core.findings import Finding, Severity
-from core.samples import Recording, RecordingKind, Session
+from core.session import Recording, RecordingKind, Session
 from tests.app.storage.clinic.conftest import OpenAt, silent
 from tests.app.storage.clinic.silent_server import SilentServer
 from tests.app.storage.clinic.test_stations import Stations, found, read, record

@@ -21,7 +21,7 @@ from app.storage.opened import OpenedLibrary
 from app.storage.stored import LibraryError
 from app.workers import library_watch
 from app.workers.library_controller import LibraryController
-from core.samples import Patient, Session
+from core.session import Patient, Session
 from tests.app.storage.clinic.conftest import PASSPHRASE, OpenAt
 from tests.app.storage.clinic.test_stations import record
 

@@ -27,7 +27,8 @@ from app.storage.opened import OpenedLibrary, slots_of
 from app.storage.recovery import adopt_home, find_interrupted
 from app.storage.retention import destroy_recording
 from app.storage.stored import ChangedMeanwhileError, LibraryError, RecordingState, StoredJournal, StoredRecording
-from core.samples import ImuBlock, Recording, RecordingKind
+from core.samples import ImuBlock
+from core.session import Recording, RecordingKind
 from devices.source import SourceInfo
 from tests.app.storage.clinic.conftest import ANY_ROOM, PASSPHRASE, Login, OpenAt, change_row, silent
 

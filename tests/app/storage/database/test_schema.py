@@ -16,7 +16,7 @@ from app.storage.database.models import Base
 from app.storage.database.schema import NEWEST, alembic_config, bring_up_to_date, move
 from app.storage.library import Library
 from app.storage.stored import LibraryError
-from core.samples import Patient, Session
+from core.session import Patient, Session
 from tests.safety.migration_kills import update_killed
 
 

@@ -12,7 +12,8 @@ from app.storage.journal.payloads import SampleLayout, layout_of
 from app.storage.journal.reader import JournalReader
 from app.storage.journal.writer import JournalWriter
 from core.body import Site
-from core.samples import ImuBlock, Recording, RecordingKind
+from core.samples import ImuBlock
+from core.session import Recording, RecordingKind
 from devices.simulation.walker import DEMONSTRATION, simulate
 from devices.source import SensorCounts, SourceInfo
 from tests.safety.journal_material import (

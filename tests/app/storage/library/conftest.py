@@ -20,7 +20,8 @@ from app.storage.opened import OpenedLibrary
 from app.storage.slots import Cost
 from app.storage.stored import Operator, PlacedSensor, RecordingState, Role, StoredJournal, StoredRecording
 from core.body import Site
-from core.samples import ImuBlock, Patient, Recording, RecordingKind, SensorInfo, Session
+from core.samples import ImuBlock, SensorInfo
+from core.session import Patient, Recording, RecordingKind, Session
 from devices.source import SourceInfo
 
 PASSPHRASE = "four short words here"

@@ -21,7 +21,7 @@ from app.storage.keys import KeySlots
 from app.storage.layout import DATABASE, IN_USE, KEYS, RECORDINGS
 from app.storage.opened import OpenedLibrary, held_alone, open_library
 from app.storage.stored import Action, LibraryError, StoredRecording
-from core.samples import Patient
+from core.session import Patient
 
 PASSPHRASE = "four short words here"
 NOON = datetime.datetime(2026, 11, 21, 12, tzinfo=datetime.UTC)

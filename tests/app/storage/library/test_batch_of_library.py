@@ -17,7 +17,7 @@ from app.storage.opened import OpenedLibrary
 from app.storage.pseudonyms import Pseudonyms
 from app.storage.stored import Action, StoredSession
 from app.system.progress import Report
-from core.samples import Patient, Session
+from core.session import Patient, Session
 from tests.app.batch_material import results_in, swinging_session
 
 ANY_ROOM = Room(start_bytes=0, kept_bytes=0)

@@ -10,7 +10,7 @@ from app.storage.opened import OpenedLibrary
 from app.storage.stored import Limits, StoredSession
 from app.wizard.resuming import current_course_key, read_analysed
 from core.body import Joint, Side, Site
-from core.samples import Patient, Session
+from core.session import Patient, Session
 from devices.simulation.walker import DEMONSTRATION, Standing, Walk, simulate
 from tests.app.course_material import course, walked
 

@@ -23,7 +23,8 @@ from app.storage.stored import LibraryError, RecordingState
 from core.body import LEG_JOINTS, LEG_SITES, Joint, Site
 from core.findings import Finding, Severity
 from core.goals import Goal, GoalOf
-from core.samples import ImuBlock, Patient, RateKind, Recording, RecordingKind, SensorInfo, Session
+from core.samples import ImuBlock, RateKind, SensorInfo
+from core.session import Patient, Recording, RecordingKind, Session
 from devices.files.session_folder import read_session, write_session
 from devices.simulation.walker import FreeMotion, Standing, Walk, WalkerSettings, simulate
 from tests.app.storage.library.folder_export import write_folder

@@ -35,7 +35,7 @@ from app.storage.recovery import adopt_home, find_interrupted
 from app.storage.root import LibraryGoneError
 from app.storage.slots import Cost
 from app.storage.stored import LibraryBusyError, LibraryError, Operator, Role, StoredRecording
-from core.samples import Recording, RecordingKind
+from core.session import Recording, RecordingKind
 from tests.app.storage.library.conftest import ANY_ROOM, PASSPHRASE
 
 LEAVING = "another four short words"

@@ -20,7 +20,7 @@ from app.storage.opened import OpenedLibrary, held_alone
 from app.storage.recovery import find_interrupted
 from app.storage.slots import Cost
 from app.storage.stored import Action, StoredRecording
-from core.samples import Recording, RecordingKind
+from core.session import Recording, RecordingKind
 from devices.simulation.walker import FreeMotion, Standing, Walk, WalkerSettings, simulate
 from tests.app.storage.library.folder_export import write_folder
 

@@ -18,7 +18,7 @@ from app.storage.journal.reader import JournalReader
 from app.storage.opened import OpenedLibrary, held_alone
 from app.storage.recovery import adopt, adopt_home, find_interrupted, recover
 from app.storage.stored import Action, LibraryError, RecordingState, StoredRecording
-from core.samples import Recording, RecordingKind
+from core.session import Recording, RecordingKind
 from devices.files.formats import read_trial
 from devices.files.site_files import read_site
 from tests.app.storage.library.conftest import SENSOR, samples

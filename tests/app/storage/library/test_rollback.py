@@ -11,7 +11,7 @@ from app.storage.library import Library
 from app.storage.opened import OpenedLibrary, open_library
 from app.storage.rollback import Rollback, SeenLibraries
 from app.storage.stored import Action, NotAllowedError, Operator, Role
-from core.samples import Patient
+from core.session import Patient
 
 PASSPHRASE = "four short words here"
 

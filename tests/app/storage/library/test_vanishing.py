@@ -30,7 +30,7 @@ from app.storage.opened import OpenedLibrary, create_library, open_library
 from app.storage.recovery import adopt_home, find_interrupted, recover
 from app.storage.root import ID_FILE, LibraryGoneError
 from app.storage.stored import LibraryError, Operator, RecordingState, Role, StoredJournal
-from core.samples import Patient, Recording, RecordingKind, Session
+from core.session import Patient, Recording, RecordingKind, Session
 from tests.app.storage.library.conftest import ANY_ROOM, PASSPHRASE, Record
 from tests.safety.homecoming_kills import bring_home_killed
 from tests.safety.journal_material import LINES, NO_ROOM_ASKED, LineDecoder, line

@@ -25,7 +25,7 @@ from app.wizard.wizard import Wizard
 from app.wizard.worn_tiles import worn_tiles
 from core.body import LEG_JOINTS, Joint, Site
 from core.placement.labels import groups_of
-from core.samples import RecordingKind
+from core.session import RecordingKind
 from tests.app.wizard.begun_visit import begin, record
 from tests.app.wizard.free_motion.test_hints import motion, state
 from tests.app.wizard.pressing import press

@@ -22,7 +22,7 @@ from app.wizard.worn_corrections import opposite
 from app.workers.library_controller import LibraryController
 from core.body import LEG_JOINTS, LEG_SITES, Joint, Side, Site
 from core.live.free_motion import FreeMotionState
-from core.samples import RecordingKind
+from core.session import RecordingKind
 from devices.simulation.replay import ReplaySource
 from tests.app.wizard.begun_visit import begin, record
 from tests.app.wizard.free_motion.test_hints import motion, state

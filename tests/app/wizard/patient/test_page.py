@@ -12,7 +12,7 @@ from app.theme.notifier import ThemeNotifier
 from app.wizard.patient.cards import LastVisit
 from app.wizard.patient.page import PatientDraft, PatientPage
 from core.body import Side
-from core.samples import Patient
+from core.session import Patient
 
 KNOWN = Patient(
     code="P-0147",

@@ -17,7 +17,8 @@ from app.wizard.patient.step import PatientStep
 from app.wizard.visit import Visit
 from app.workers.library_controller import LibraryController
 from core.body import Joint, Side, Site
-from core.samples import Patient, Recording, RecordingKind, SensorInfo, Session
+from core.samples import SensorInfo
+from core.session import Patient, Recording, RecordingKind, Session
 from tests.app.wizard.pressing import press
 
 

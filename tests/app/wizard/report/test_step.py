@@ -33,7 +33,7 @@ from app.workers.library_controller import LibraryController
 from core.analysis import analyse
 from core.body import Site
 from core.results import Analysis
-from core.samples import RecordingKind, Session
+from core.session import RecordingKind, Session
 from tests.app.wizard.begun_visit import begin
 from tests.app.wizard.pressing import press
 

@@ -14,6 +14,7 @@ from PySide6.QtWidgets import QApplication, QFileDialog
 from pytestqt.qtbot import QtBot
 
 from app.results.result_page import STRIDES
+from app.results.thin_line import ThinLine
 from app.storage.exchange import import_session
 from app.storage.opened import OpenedLibrary
 from app.summary.comparison import Contrast
@@ -27,7 +28,8 @@ from app.workers.library_controller import LibraryController
 from core.body import LEG_JOINTS, Joint, Side
 from core.gait.chosen_strides import left_out_by_hand
 from core.results import RecordingAnalysis
-from core.samples import FloatArray, RecordingKind, Session
+from core.samples import FloatArray
+from core.session import RecordingKind, Session
 from core.verdicts.measurement_error import ErrorSource
 from devices.simulation.walker import DEMONSTRATION, simulate
 from tests.app.library_answers import asked

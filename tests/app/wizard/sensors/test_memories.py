@@ -18,7 +18,7 @@ from app.wizard.sensors.step import SensorsStep
 from app.wizard.visit import Visit
 from app.wizard.worn_sensors import SourceChoice
 from app.workers.library_controller import LibraryController
-from core.samples import RecordingKind
+from core.session import RecordingKind
 from devices.dot.messages import start_recording
 from devices.dot.samples import DRIVER
 from devices.emulators.dot import EmulatedDot

@@ -17,7 +17,8 @@ from app.wizard.sensors.step import REPLAY, SensorsStep
 from app.wizard.visit import Visit
 from app.workers.library_controller import LibraryController
 from core.body import LEG_SITES
-from core.samples import Patient, RecordingKind, SensorInfo, Session
+from core.samples import SensorInfo
+from core.session import Patient, RecordingKind, Session
 from devices.files.session_folder import write_session
 from tests.app.wizard.pressing import press
 from tests.safety.live_material import numbered, numbered_session

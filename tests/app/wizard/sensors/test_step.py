@@ -20,7 +20,7 @@ from app.wizard.walking.step import WalkingStep
 from app.wizard.wizard import Wizard
 from app.wizard.worn_sensors import SourceChoice
 from core.body import Site
-from core.samples import Session
+from core.session import Session
 from devices.live import SourceRefusedError
 from devices.simulation.replay import ReplaySource
 from tests.app.wizard.pressing import press

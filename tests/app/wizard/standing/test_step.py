@@ -16,7 +16,7 @@ from app.wizard.standing.page import StandPhase
 from app.wizard.standing.step import StandStillStep
 from app.wizard.visit import Visit
 from core.body import Joint, Site
-from core.samples import RecordingKind
+from core.session import RecordingKind
 from devices.simulation.replay import ReplaySource
 from tests.app.wizard.begun_visit import begin
 from tests.app.wizard.pressing import press
@@ -56,27 +56,6 @@ def test_movement_is_seen_before_the_count_begins(qtbot: QtBot, step: StandStill
     assert (verb.text, verb.key) == ("Start countdown", "Space")
 
 
-def test_with_the_last_visits_set_up_stillness_begins_the_count_and_without_it_only_a_key(
-    qtbot: QtBot, step: StandStillStep, visit: Visit, worn: dict[str, Site]
-) -> None:
-    assert not step.begins_by_itself
-    visit.placement_before = worn
-    assert step.bar().note == "Starts by itself when the patient stands still."
-    ticks(qtbot, step, lambda: phase(step) is StandPhase.COUNTING)
-    assert not step.begins_by_itself  # another one begins by a key
-
-
-def test_nobody_who_moves_begins_a_count(
-    qtbot: QtBot, step: StandStillStep, visit: Visit, worn: dict[str, Site], source: ReplaySource
-) -> None:
-    visit.placement_before = worn
-    source.ask(RecordingKind.WALKING)
-    ticks(qtbot, step, lambda: bool(step.page.view.moving))
-    step.tick()
-    assert phase(step) is StandPhase.READY
-
-
-@pytest.mark.endurance
 def test_three_seconds_are_recorded_and_the_wizard_goes_on_by_itself(
     qtbot: QtBot, step: StandStillStep, visit: Visit, worn: dict[str, Site]
 ) -> None:

@@ -6,7 +6,7 @@ from typing import Any
 from core.alignment import AlignmentChange, PartChange, ProsthesisPart
 from core.body import Side
 from core.results import Analysis, Calibration, Method
-from core.samples import Recording, RecordingKind, Session
+from core.session import Recording, RecordingKind, Session
 from tests.core.verdicts.built_walk import calibrations, judged_walk, leg, walk
 
 PYLON = ProsthesisPart.PYLON

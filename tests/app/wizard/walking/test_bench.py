@@ -28,7 +28,7 @@ from app.wizard.walking.walk_list import WalkRow, WalkState
 from core.alignment import AlignmentChange, NetChange, PartChange, ProsthesisPart
 from core.body import Joint, Side
 from core.results import SideGait
-from core.samples import Recording, Session
+from core.session import Recording, Session
 from core.timed.protocols import PlannedTest, TimedProtocol
 from tests.app.room import words_cut
 from tests.app.wizard.walking.bench_material import OF_B, OF_C, PYLON, WALKED, bench_visit, recording

@@ -17,7 +17,7 @@ from app.wizard.walking.timed_chooser import TimedChooser
 from app.wizard.walking.timed_control import TimedControl
 from app.wizard.walking.timed_result import TimedAttempt, TimedResult, TimedResultView
 from app.workers.library_controller import LibraryController
-from core.samples import Session
+from core.session import Session
 from core.timed.measures import COLUMNS
 from core.timed.protocols import TimedProtocol
 from tests.app.course_material import analysis, course, recordings, timed

@@ -24,7 +24,7 @@ from app.wizard.walking.walk_list import WalkState
 from app.wizard.worn_sensors import WornSensors
 from core.alignment import AlignmentChange, PartChange, ProsthesisPart
 from core.body import Joint, Side, Site
-from core.samples import Patient, RecordingKind
+from core.session import Patient, RecordingKind
 from core.targets import Target, TargetMeasure, TargetTally, tallies_of
 from devices.simulation.replay import ReplaySource
 from tests.app.wizard.begun_visit import begin

@@ -12,7 +12,7 @@ from app.wizard.keys import Intent, KeyAction
 from app.wizard.visit import Visit
 from app.wizard.walking.step import WalkingStep
 from core.body import Site
-from core.samples import Patient, RecordingKind, Session
+from core.session import Patient, RecordingKind, Session
 from core.timed.protocols import PlannedTest, TimedProtocol
 from devices.simulation.walker import DEMONSTRATION, Standing, Walk, simulate
 from tests.app.wizard.begun_visit import begin

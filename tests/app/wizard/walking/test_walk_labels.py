@@ -2,7 +2,7 @@
 
 from app.wizard.walking.walk_labels import MOST, is_alignment, label_after, labels_for, stored_label
 from app.wording.translation import use_language
-from core.samples import Patient
+from core.session import Patient
 
 ANYBODY, PROSTHETIC = Patient(), Patient(prosthetic_side="left")
 

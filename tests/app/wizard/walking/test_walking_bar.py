@@ -16,7 +16,7 @@ from app.wizard.walking.timed_control import TimedControl
 from app.wizard.walking.walk_start import WalkStart
 from app.wizard.walking.walking_bar import WalkingBar, Walks
 from app.wording.recordings import shown_names
-from core.samples import Recording, RecordingKind
+from core.session import Recording, RecordingKind
 from core.timed.protocols import PlannedTest, TimedProtocol
 from tests.app.wizard.walking.bench_material import WALKED, bench_visit
 
