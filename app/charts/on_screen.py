@@ -264,8 +264,9 @@ def _paint_toe_offs(painter: QPainter, theme: Theme, frame: Frame, width: float,
     least: float = QFontMetrics(theme.font(12)).horizontalAdvance(chart.sign) + theme.px(8)
     painter.setFont(theme.font(12, QFont.Weight.Medium))
     labels = toe_off_labels(chart.curves)
-    if least + sum(metrics.horizontalAdvance(label) + 1 + theme.px(4) for label in labels.values()) > width:
-        labels = toe_off_labels(chart.curves, has_word=False)
+    for first in toe_offs_in_order(chart.curves, 0)[:1]:  # its word goes where the sign leaves it no room
+        if float(frame.x(first.toe_off_percent)) - metrics.horizontalAdvance(labels[first.side]) - theme.px(5) < least:
+            labels = toe_off_labels(chart.curves, has_word=False)
     for i, curve in enumerate(toe_offs_in_order(chart.curves, 0)):
         _paint_toe_off(painter, frame, curve, theme.side_pen(curve.side, TOE_OFF_PX))
         painter.setPen(theme.text(curve.side))

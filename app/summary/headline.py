@@ -165,7 +165,8 @@ def change_sentence_since(
     _, now, size = rounded(column, (*values, abs(difference)))
     unit = unit_and_decimals(column)[0]
     stated = tr("{clause}, down {size} since {day}.") if difference < 0 else tr("{clause}, up {size} since {day}.")
-    return stated.format(clause=clause_of(column, side, now + unit), size=size + unit, day=day)
+    sentence = stated.format(clause=clause_of(column, side, now + unit), size=size + unit, day=day)
+    return sentence.removesuffix("..") + "." if sentence.endswith("..") else sentence  # a shortened month has its own
 
 
 def clause_of(column: str, side: Side | None, value: str) -> str:

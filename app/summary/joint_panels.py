@@ -1,5 +1,6 @@
 """Charts of page one: both legs of a joint as on the screen, from a walk's facts and its headline."""
 
+from collections.abc import Sequence
 from dataclasses import replace
 
 import numpy as np
@@ -10,8 +11,11 @@ from app.charts.stride_chart import Axis, StrideChart, StrideCurve, usual_range_
 from app.summary import panels
 from app.summary.conditions import Part
 from app.summary.facts import Facts, joint_of
-from app.summary.headline import Headline
+from app.summary.headline import Headline, headline_of
 from app.summary.marks_on_curves import bracket_of, labels_of
+from app.summary.report_dates import date_of
+from app.summary.request import AnalysedVisit
+from app.summary.visits import by_condition
 from app.summary.walk_figures import why_in_figures
 from app.wording.body import name_of
 from app.wording.translation import capitalised
@@ -43,6 +47,22 @@ def joint_chart(facts: Facts, kind: JointKind, headline: Headline, thin: Part | 
         labels=() if facts.has_no_zero(kind) else tuple(labels_of(facts, kind)),
         hidden=tuple(HiddenCurve(side, why_in_figures(facts.verdicts.joint(joint_of(kind, side)))) for side in hidden),
     )
+
+
+def thin_part(facts: Facts, visits: Sequence[AnalysedVisit]) -> Part | None:
+    """The walk's condition at the earlier visit whose curves are drawn thin, as its headline names it.
+
+    Parameters
+    ----------
+    visits
+        The earlier ones that were read, in order of time.
+    """
+    since = headline_of(facts).since
+    for visit in reversed(visits) if since is not None else ():
+        if since is not None and date_of(visit.session.started) == since.day:
+            walked = by_condition(visit.analysis, visit.session.recordings).get(facts.condition)
+            return replace(walked, day=since.day) if walked is not None else None
+    return None
 
 
 def _lowered(facts: Facts, bracket: Deviation) -> Deviation:

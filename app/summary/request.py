@@ -69,7 +69,9 @@ class ReportRequest:
     thin
         The condition at the earlier visit whose curves page one draws thin; None: none is.
     course
-        The patient's visits in order of time, this one the last; from two on, a page shows the course.
+        The patient's visits in order of time, this one the last: page one states what has changed.
+    has_course_page
+        Whether a page shows the course, from two visits on.
     """
 
     visit: AnalysedVisit
@@ -84,6 +86,7 @@ class ReportRequest:
     course: tuple[CourseVisit, ...] = ()
     comment_by: str = ""
     thin: Part | None = None
+    has_course_page: bool = True
 
     def __post_init__(self) -> None:
         if self.made_at.tzinfo is None:

@@ -11,7 +11,7 @@ import typst
 from app.reports.blocks import Block
 from app.reports.patient.comparison_page import comparison_of, comparison_page, not_compared_page
 from app.reports.patient.curves_page import curves_page
-from app.reports.patient.first_page import first_page
+from app.reports.patient.first_page import comment, first_page
 from app.reports.patient.method_page import words_page
 from app.reports.patient.time_page import time_page
 from app.reports.patient.timed_page import timed_page
@@ -103,9 +103,8 @@ class ReportPreview:
         _, facts, data = self._known
         comparison = comparison_of(request)
         pages, at = data["pages"], data["pages_of_walk"]
-        first = first_page(request, facts, comparison)
         return data | {
-            "first_page": first,
+            "first_page": data["first_page"] | {"comment": comment(request)},
             "pages": [*pages[:at], words_page(request, facts, comparison), *pages[at + 1 :]],
         }
 
@@ -114,8 +113,8 @@ def _differ_in_words_only(one: ReportRequest, other: ReportRequest) -> bool:
     are_same = one.visit.session is other.visit.session and one.visit.analysis is other.visit.analysis
     if not (are_same and one.earlier is other.earlier and one.made_at.date() == other.made_at.date()):
         return False
-    named = ("walks", "software_version", "operator", "clinic", "paper", "course", "comment_by", "thin")
-    return all(getattr(one, name) == getattr(other, name) for name in named)
+    named = ("walks", "software_version", "operator", "clinic", "paper", "course", "has_course_page")
+    return one.thin is other.thin and all(getattr(one, name) == getattr(other, name) for name in named)
 
 
 def _whole_seconds(moment: datetime) -> datetime:
@@ -137,7 +136,7 @@ def report_data(request: ReportRequest) -> dict[str, Any]:
         *([tests] if (tests := timed_page(request, facts)) else []),
         *([comparison_page(comparison, facts)] if comparison is not None else []),
         *([alone] if (alone := not_compared_page(request)) else []),
-        *([course] if (course := trend_page(request.course, condition, facts)) else []),
+        *([course] if request.has_course_page and (course := trend_page(request.course, condition, facts)) else []),
     ]
     title = ", ".join(
         filter(

@@ -33,6 +33,7 @@ from app.wizard.report.leaving_dialog import LeavingDialog
 from app.wizard.report.page import LETTER
 from app.wizard.report.printing import ReportPrinter, printed_pages
 from app.wizard.report.saving import OTHERS, Export, exporting, file_name, previews, saving_report
+from app.wizard.report.thin_line import ThinLineSource
 from app.wizard.resuming import course_to, courses_before, read_analysed
 from app.wizard.step import Step, StepId
 from app.wording.recordings import name_in_words
@@ -77,6 +78,8 @@ class ReportStep(Step):
         visit.preview.done.connect(self._on_previewed)
         visit.preview.failed.connect(self._on_preview_failed)
         visit.evaluation.done.connect(self._show)
+        self._thin = ThinLineSource(visit, self)
+        self._thin.changed.connect(self._show)
 
     @property
     def page(self) -> "ReportFrame":
@@ -270,6 +273,7 @@ class ReportStep(Step):
         if not walks:
             return None
         chosen, (comment, comment_by) = self.page.report.added.chosen, self.comments.printed
+        course = self._course(visit)
         return ReportRequest(
             visit=visit,
             walks=walks,
@@ -280,7 +284,9 @@ class ReportStep(Step):
             operator=evaluation.session.operator,
             clinic=self._clinic,
             earlier=self._earlier_chosen(),
-            course=self._course(visit) if "course" in chosen else (),
+            course=course,
+            has_course_page="course" in chosen,
+            thin=self._thin.line(visit, walks, course),
             paper=self.page.report.paper.choice,
         )
 
@@ -353,6 +359,8 @@ class ReportStep(Step):
         if (clinic, before) != (self._clinic, self._before):
             self._clinic, self._before = clinic, before
             self._show()
+        if before:
+            self._thin.read()
 
     def _earlier_chosen(self) -> AnalysedVisit | None:
         """The earlier visit to compare with, once it is read."""

@@ -9,11 +9,12 @@ from uuid import UUID
 
 import pypdf
 
-from app.reports.patient.document import facts_of, make_report
+from app.reports.patient.document import facts_of, make_report, report_data
 from app.reports.patient.first_page import first_page
 from app.summary.course import course_of
 from app.summary.course_lanes import CourseVisit
 from app.summary.facts import Facts
+from app.summary.joint_panels import thin_part
 from app.summary.request import AnalysedVisit, ReportRequest
 from core.body import Joint, Side
 from core.session import Patient
@@ -71,6 +72,29 @@ def test_a_first_visit_has_no_change_and_a_return_has_its_change_day_and_thin_li
     assert rows["Knee flexion, stance to swing"]["since"] == "L\u00a0+20.0°"
     assert not any(row["strip"] for row in rows.values())
     assert "7 Oct" in again["charts"][0][0]["picture"]["svg"]
+
+
+def test_the_thin_line_is_the_visit_that_the_headline_names(request_of_demonstration: ReportRequest) -> None:
+    request = returned(request_of_demonstration, -20.0)
+    session, analysis = request.visit.session, request.visit.analysis
+    before = AnalysedVisit(replace(session, started=f"{LAST.isoformat()}T09:00:00"), analysis)
+    other = AnalysedVisit(replace(session, started="2026-09-02T09:00:00"), analysis)
+    line = thin_part(facts_of(request), [other, before])
+    assert line is not None
+    assert (line.day, line.short_name) == (LAST, "7 Oct")
+    assert thin_part(facts_of(request), [other]) is None
+    assert thin_part(facts_of(request_of_demonstration), [other, before]) is None
+
+
+def test_the_course_tells_page_one_what_changed_also_without_its_own_page(
+    request_of_demonstration: ReportRequest,
+) -> None:
+    request = returned(request_of_demonstration, -20.0)
+    with_page, without = (
+        report_data(replace(request, thin=None, has_course_page=has_page)) for has_page in (True, False)
+    )
+    assert len(with_page["pages"]) == len(without["pages"]) + 1
+    assert with_page["first_page"] == without["first_page"]
 
 
 def test_the_amber_box_comes_only_where_something_is_not_good(request_of_demonstration: ReportRequest) -> None:

@@ -55,7 +55,8 @@ def without_zero(request: ReportRequest) -> ReportRequest:
 
 def readable(request: ReportRequest) -> dict[str, list[str]]:
     """What the table of data quality states: shape, height and timing of each joint, then of both legs, of distance."""
-    (blocks,) = (page for page in report_data(request)["pages"] if page[0].get("label") == "quality")
+    pages = report_data(request)["pages"]
+    (blocks,) = (page for page in pages if any(block.get("label") == "quality" for block in page))
     found = [row["cells"] for row in next(block["rows"] for block in blocks if block["kind"] == "table")]
     rows = {cells[0]["said"]: [cell["said"] for cell in cells[1:]] for cells in found}
     note = next(block["said"] for block in blocks if block["kind"] == "note")
