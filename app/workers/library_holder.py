@@ -30,7 +30,7 @@ from app.storage.rollback import Rollback, SeenLibraries
 from app.storage.root import GONE
 from app.storage.stored import LibraryError, Operator, Role, ServerSilentError
 from app.system.progress import Report
-from app.wording.translation import tr
+from app.wording.translation import later, tr
 from app.workers.library_opening import demonstration, let_keyring_remember, tidy
 from app.workers.library_state import (
     Closed,
@@ -128,7 +128,7 @@ class LibraryHolder:
 
         def opening() -> Opening:
             if kept is None:
-                raise LibraryLockedError("The library is locked", "Type the passphrase, then try again")
+                raise LibraryLockedError(later("The library is locked"), later("Type the passphrase, then try again"))
             again = open_away if kept.is_away else logged_in
             return again(kept.folder, kept.data_key, kept.code), ""
 

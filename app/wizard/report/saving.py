@@ -15,7 +15,7 @@ from app.storage.stored import LibraryError
 from app.summary.request import ReportRequest
 from app.system.progress import Report
 from app.wizard.report.page import LETTER
-from app.wording.translation import capitalised, filled, tr
+from app.wording.translation import capitalised, filled, later, tr
 from core.results import Analysis
 from core.session import Session
 from devices.decoders import DECODERS
@@ -58,7 +58,9 @@ def saving_report(
         report(0.0, tr("writing"))
         with _refusals_in_words(out):
             if opened.folder.resolve() in out.resolve().parents:
-                raise FileRefusedError(str(out), "this lies inside the library", "Choose a folder outside the library")
+                raise FileRefusedError(
+                    str(out), later("this lies inside the library"), later("Choose a folder outside the library")
+                )
             check_report_place(out)
             with opened.library.audit.exporting(about("session", session_id), format=REPORT_FORMAT, is_document=True):
                 replace_report(make_report(request), out)

@@ -11,7 +11,7 @@ from app.summary.facts import Facts
 from app.summary.joint_panels import thin_part
 from app.summary.request import AnalysedVisit
 from core.results import Analysis
-from core.samples import Session
+from core.session import Session
 
 if TYPE_CHECKING:
     from app.wizard.visit import Visit

@@ -297,7 +297,7 @@ def test_a_visit_is_compared_by_its_condition_and_by_the_error_between_visits(
 def test_an_earlier_visit_without_this_curve_is_named(page: ResultPage, analysis: Analysis, session: Session) -> None:
     walked = return_to(page, session, analysis, analysis, analysis, is_read=False)
     older = with_conditions(session, walk_1="stick", walk_2="AFO")
-    changed = [one._replace(recordings=older.recordings) for one in walked[:-1]]
+    changed = [WalkedVisit(one.name, one.analysis, older.recordings, one.day, one.agreed) for one in walked[:-1]]
     page.show_visits(visits_by_condition([*changed, walked[-1]]), conditions_in_words(walked))
     assert words_beside(page) == ["The earlier visit has no curve in this condition."] * 2
     assert thin_curves(page) == {}

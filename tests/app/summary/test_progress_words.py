@@ -60,10 +60,10 @@ def test_a_change_within_its_error_is_no_statement_but_has_its_interval() -> Non
 
 
 def test_a_change_between_one_error_and_what_page_one_asks_for_names_its_error() -> None:
-    found = words(visit(7, shoes(50.0)), visit(11, shoes(57.0)))
-    assert found.sentence == "Since 3 July: knee +7° (error ±6.9°)."
+    found = words(visit(7, shoes(50.0)), visit(11, shoes(58.0)))
+    assert found.sentence == "Since 3 July: knee +8° (error ±7.4°)."
     goal = Goal("knee_stance_to_swing_deg", GoalOf.LEFT, 70.0, EARLY)
-    assert words(visit(7, shoes(50.0)), visit(11, shoes(57.0)), goals=(goal,)).sentence == "Since 3 July: knee +7°."
+    assert words(visit(7, shoes(50.0)), visit(11, shoes(58.0)), goals=(goal,)).sentence == "Since 3 July: knee +8°."
 
 
 def test_stance_is_in_points_and_names_the_side_that_is_not_the_affected_one() -> None:

@@ -98,7 +98,7 @@ def test_the_result_shows_what_has_changed_and_draws_it(qtbot: QtBot, look: Them
         f"+0.06{space}m/s since 20 Jul, within {error}. +0.41{space}m/s since 20 Jun, beyond {error}."
     )
     assert view.course.isVisible()
-    assert "beyond error (0.18)" in [text.text() for text in view.course.findChildren(Text)]
+    assert "+0.41 since 20 Jun" in [text.text() for text in view.course.findChildren(Text)]
 
 
 def test_a_first_test_has_no_course_and_nothing_is_stated_of_a_change(qtbot: QtBot, look: ThemeNotifier) -> None:
