@@ -128,9 +128,13 @@ def curves_of_walk(
 
 def toe_off_labels(curves: Sequence[StrideCurve], *, has_word: bool = True) -> dict[Side, str]:
     """Name each toe-off: the word at the earlier line, which has the room at its left, if anywhere."""
-    bare = "{side} {percent:.0f} %"
-    labels = tr("toe-off {side} {percent:.0f} %") if has_word else bare, bare
     in_order = toe_offs_in_order(curves, 0)
+    percents = [curve.toe_off_percent for curve in in_order]
+    # where whole percents would part what hardly differs, both have a decimal
+    is_close = len(percents) > 1 and round(percents[0]) != round(percents[1]) and abs(percents[0] - percents[1]) < 1
+    bare = "{side} {percent:.1f} %" if is_close else "{side} {percent:.0f} %"
+    worded = tr("toe-off {side} {percent:.1f} %") if is_close else tr("toe-off {side} {percent:.0f} %")
+    labels = worded if has_word else bare, bare
     return {
         curve.side: label.format(side=curve.letter, percent=curve.toe_off_percent)
         for label, curve in zip(labels, in_order, strict=False)

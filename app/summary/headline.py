@@ -8,14 +8,14 @@ the same one.
 import datetime
 import math
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from enum import StrEnum
 
 from app.charts.cycles import is_mean_enough
 from app.summary.comparison import compare_legs
 from app.summary.course_lanes import CourseVisit
 from app.summary.facts import Facts
-from app.summary.interval_words import evidence, interval_words, may_be_error_sentence
+from app.summary.interval_words import edge_decimals, evidence, interval_words
 from app.summary.measure_sentences import CLAUSES, unit_and_decimals, unit_in_sentence, who_in_sentence
 from app.summary.numbers_in_words import DAGGER, fixed, signed
 from app.summary.trend_lines import TrendLine, trend_columns, trend_lines, walked_visits
@@ -82,7 +82,7 @@ def headline_of(facts: Facts) -> Headline:
     if found is None:
         found = Headline(Rule.NOTHING, tr("No value of this walk is reported."))
     last = _since_last(facts, walked, lines, found)
-    beside = (*found.beside, last) if found.rule is Rule.SINCE_FIRST else (last, *found.beside)
+    beside = (*found.beside[:2], last, *found.beside[2:])  # behind what the first sentence is about
     since = found.since if found.since is not None else walked[-2] if len(walked) > 1 else None
     shown = tuple(filter(None, beside))[:MOST_BESIDE]
     return Headline(found.rule, found.first, shown, found.column, found.side, since)
@@ -180,15 +180,16 @@ def clause_of(column: str, side: Side | None, value: str) -> str:
     return stated.format(side=capitalised(side_name(side)), measure=name_in_sentence(column), value=value)
 
 
-def evidence_in_sentences(column: str, found: Difference) -> tuple[str, ...]:
+def evidence_in_sentences(column: str, found: Difference, *, is_of_legs: bool = False) -> tuple[str, ...]:
     """What is known of a difference beside its size, sentence by sentence, so that the last can be left out."""
     stated = evidence(column, found)
     likely = interval_words(column, found)
     if not likely or not stated:
         return (stated,) if stated else ()
-    first = f"{capitalised(likely)}.{f' {DAGGER}' if found.is_unverified else ''}"
-    rest = stated.removeprefix(first).strip()
-    return (first, rest) if rest else (first,)
+    dagger = f" {DAGGER}" if found.is_unverified else ""
+    rest = stated.removeprefix(f"{capitalised(likely)}.{dagger}").strip()
+    whose = tr("Difference {likely}.") if is_of_legs else tr("Change {likely}.")
+    return tuple(filter(None, [whose.format(likely=likely) + dagger, rest]))
 
 
 def rounded(column: str, values: Sequence[float], *, is_other_shown: bool = True) -> tuple[str, ...]:
@@ -224,7 +225,7 @@ def _between_legs(facts: Facts) -> Headline | None:
             is_usual = mark is Mark.ERROR and math.isfinite(found.healthy)
             stated = _legs_pattern(is_less=found.difference < 0, is_usual=is_usual)
             sentence = stated.format(clause=clause, size=points, other=side_name(second))
-            beside = evidence_in_sentences(column, found)[: None if mark is Mark.HEALTHY else 1]
+            beside = evidence_in_sentences(column, found, is_of_legs=True)[: None if mark is Mark.HEALTHY else 1]
             return Headline(rule, sentence, (*beside, *_unsure(facts)), column, first)
     return None
 
@@ -257,8 +258,18 @@ def _similar(facts: Facts) -> Headline | None:
     else:
         stated = tr("Left and right are similar: {measure} {left} and {right}.")
     first = stated.format(measure=name_in_sentence(column), left=shown[0] + unit, right=shown[1] + unit)
-    may_be = may_be_error_sentence(column, legs[column]) + (f" {DAGGER}" if legs[column].is_unverified else "")
+    may_be = _may_be_error(column, legs[column], sides) + (f" {DAGGER}" if legs[column].is_unverified else "")
     return Headline(Rule.SIMILAR, first, (may_be, *_unsure(facts)), column)
+
+
+def _may_be_error(column: str, found: Difference, sides: tuple[Side, Side]) -> str:
+    """What the legs' difference may be, with its sign, as the table has it."""
+    unit, decimals = unit_and_decimals(column)
+    unit = f"\N{NO-BREAK SPACE}{tr('points')}" if unit_of(column) is Unit.PERCENT else unit
+    low, high = (signed(edge, edge_decimals(column, found)) + unit for edge in found.interval)
+    stated = tr("{first} − {second} {size}, which may be measurement error: anything from {low} to {high} fits.")
+    size = signed(found.difference, decimals) + unit
+    return stated.format(first=sides[0].letter, second=sides[1].letter, size=size, low=low, high=high)
 
 
 def _unsure(facts: Facts) -> list[str]:
@@ -268,7 +279,20 @@ def _unsure(facts: Facts) -> list[str]:
 
 
 def _one_leg(facts: Facts) -> Headline | None:
-    """What one leg has of the knee, else of stance; else the walking speed."""
+    """What both legs have of the knee, where nothing is judged; one leg of knee or stance; else the walking speed."""
+    known = {side: facts.value(side, KNEE) for side in facts.gait}
+    if len(known) > 1 and all(is_mean_enough(found.n) and math.isfinite(found.mean) for found in known.values()):
+        left, right = (f"{fixed(known[side].mean, 0)}°" for side in Side)
+        stated = tr("Knee from stance to swing: left {left}, right {right}.")
+        return Headline(Rule.ONE_LEG, stated.format(left=left, right=right), (), KNEE)
+    alone = next(iter(facts.gait)) if len(facts.gait) == 1 else None
+    if alone is not None and (found := _leg_of(facts)) is not None:
+        note = tr("Only the {side} leg was measured.").format(side=side_name(alone))
+        return replace(found, beside=(note,))
+    return _leg_of(facts)
+
+
+def _leg_of(facts: Facts) -> Headline | None:
     for side in facts.first_and_second:
         for column in (KNEE, STANCE):
             found = facts.value(side, column)

@@ -13,7 +13,7 @@ def interval_in_figures(column: str, found: Difference, unit: str = "") -> str:
     """Both ends with their signs and `unit`, as a table has them: "−13 to +4"; a dash where there is none."""
     if not found.is_judged:
         return NOTHING
-    low, high = (signed(edge, _edge_decimals(column, found)) + unit for edge in found.interval)
+    low, high = (signed(edge, edge_decimals(column, found)) + unit for edge in found.interval)
     return tr("{low} to {high}").format(low=low, high=high) + (DAGGER if found.is_unverified else "")
 
 
@@ -21,7 +21,7 @@ def interval_words(column: str, found: Difference) -> str:
     """Where a difference beyond its error is likely to be, by size: "likely between 3° and 15°"; else nothing."""
     if not found.exceeds:
         return ""
-    decimals, unit = _edge_decimals(column, found), unit_in_sentence(column)
+    decimals, unit = edge_decimals(column, found), unit_in_sentence(column)
     low, high = (fixed(abs(edge), decimals) for edge in sorted(found.interval, key=abs))
     low, high = low + (unit if unit_of(column) is Unit.DEGREES else ""), high + unit
     return tr("likely between {low} and {high}").format(low=low, high=high)
@@ -42,7 +42,7 @@ def may_be_error_sentence(column: str, found: Difference) -> str:
     """What a difference within its error may be: all that its interval holds."""
     decimals = unit_and_decimals(column)[1]
     size = fixed(abs(found.difference), decimals) + unit_in_sentence(column)
-    low, high = (signed(edge, _edge_decimals(column, found)) + unit_and_decimals(column)[0] for edge in found.interval)
+    low, high = (signed(edge, edge_decimals(column, found)) + unit_and_decimals(column)[0] for edge in found.interval)
     stated = tr("Difference {size}, which may be measurement error: anything from {low} to {high} fits.")
     return stated.format(size=size, low=low, high=high)
 
@@ -76,7 +76,7 @@ def speed_sentence(column: str, found: Difference) -> str:
     return stated.format(share=share, change=change) + (f" {DAGGER}" if part.is_unverified else "")
 
 
-def _edge_decimals(column: str, found: Difference) -> int:
+def edge_decimals(column: str, found: Difference) -> int:
     """Of the ends of an interval: whole degrees, unless both ends would read the same or one of them as nothing."""
     low, high = map(round, found.interval)
     is_whole = unit_of(column) is Unit.DEGREES and low != high and low and high

@@ -112,7 +112,7 @@ def _where(facts: Facts, places: Sequence[Place]) -> str:
     sides = [side for side in Side if side in places]
     joints = [joint for joint in places if isinstance(joint, Joint) and joint.side not in sides]
     if not sides and not joints:
-        return tr("Left vs right")
+        return tr("Timing between the legs")
     if len(sides) == len(Side) and not joints:
         return tr("Both legs")
     if not sides and len(joints) > 1 and len(joints) == len(facts.verdicts.joints):

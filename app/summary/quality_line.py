@@ -24,6 +24,7 @@ class QualitySentence:
     to_do: str = ""
     more: str = ""
     line: QualityLine | None = None
+    others: int = 0
 
     @property
     def is_good(self) -> bool:
@@ -46,7 +47,7 @@ def quality_sentence(facts: Facts, found: DataQuality | None = None) -> QualityS
     first = pattern.format(where=line.where, verdict=_in_sentence(line.verdict))
     more = len(known.lines) - 1
     words = tr_n("And {count} more.", "And {count} more.", more).format(count=more) if more else ""
-    return QualitySentence(first, line.why, line.to_do, words, line)
+    return QualitySentence(first, line.why, line.to_do, words, line, more)
 
 
 def _in_sentence(verdict: Verdict) -> str:
@@ -54,10 +55,16 @@ def _in_sentence(verdict: Verdict) -> str:
     return word[:1].lower() + word[1:]
 
 
+def strides_in_words(facts: Facts) -> str:
+    """How many strides of each leg are used: "12 and 13 strides"."""
+    counts = [str(facts.strides(side)) for side in Side if side in facts.gait]
+    return tr("{counts} strides").format(counts=joined(counts))
+
+
 def in_order(facts: Facts) -> str:
     """Strides of each leg, and what was looked at without finding anything."""
     counts = [str(facts.strides(side)) for side in Side if side in facts.gait]
-    parts = [tr("{counts} strides").format(counts=joined(counts))]
+    parts = [strides_in_words(facts)]
     if facts.verdicts.between.verdict is Verdict.READ and len(counts) > 1:
         is_by_hips = facts.walk.clocks is not None and facts.walk.clocks.tie is ClockTie.PELVIS
         parts.append(one_time_in_words(facts.walk) if is_by_hips else tr("sensors synchronised"))

@@ -18,7 +18,7 @@ from app.summary.numbers_in_words import NOTHING, fixed, signed
 from app.summary.trend_lines import walked_visits
 from app.summary.walk_figures import NOT_REPORTED
 from app.wording.dates import day_in_words
-from app.wording.measures import limit
+from app.wording.measures import bare_limit
 from app.wording.translation import tr
 from core.body import Side
 from core.goals import GoalOf
@@ -281,5 +281,8 @@ def _with_goals(facts: Facts, tile: Tile, *kinds: GoalOf) -> Tile:
     is_lettered = len(sides) > 1 or first.of is GoalOf.BETWEEN
     stated = goal_sentence(own[0]) if own[0] in facts.reported_goals else ""
     return replace(
-        tile, goals=values, goal=goal_mark(first) if is_lettered else f"{tr('goal')} {limit(first)}", goal_words=stated
+        tile,
+        goals=values,
+        goal=goal_mark(first) if is_lettered else f"{tr('goal')} {bare_limit(first)}",
+        goal_words=stated,
     )

@@ -61,16 +61,14 @@ def without_family(rows: Sequence[LegsRow]) -> list[LegsRow]:
 
 
 def since_last(facts: Facts, column: str) -> tuple[Side, Difference] | None:
-    """What a measure of the affected leg, else the left, has changed by since the last visit that has it."""
+    """What a measure of the affected leg, else the left, has changed by since the last visit, if both have it."""
     walked = walked_visits(facts.course, facts.condition)
     parts = [visit.course.condition(facts.condition) for visit in walked if visit.course is not None]
     side = facts.first_and_second[0]
-    for then in reversed(parts[:-1]):
-        if then is not None and parts[-1] is not None:
-            changed = change(parts[-1], then, column, side)
-            if changed is not None and changed.is_reported:
-                return side, changed
-    return None
+    if len(parts) < 2 or parts[-1] is None or parts[-2] is None:
+        return None
+    changed = change(parts[-1], parts[-2], column, side)
+    return (side, changed) if changed is not None and changed.is_reported else None
 
 
 def _weight(facts: Facts, row: LegsRow) -> tuple[bool, bool, int, tuple[bool, int, bool, float]]:

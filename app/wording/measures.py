@@ -160,10 +160,19 @@ def least_span(column: str) -> float:
 
 def limit(goal: Goal) -> str:
     """The value of a goal with its unit: "60°"; decimals that say nothing are left out but of metres and speed."""
+    return _number(goal) + short_unit(goal.column)
+
+
+def bare_limit(goal: Goal) -> str:
+    """The same beside a value that has its unit: "1.10", but "55°"."""
+    return _number(goal) + ("°" if _unit(goal.column) is Unit.DEGREES else "")
+
+
+def _number(goal: Goal) -> str:
     whole = (Unit.DEGREES, Unit.PERCENT, Unit.SECONDS)
     count = max(1, decimals(goal.column)) if _unit(goal.column) in whole else decimals(goal.column)
     number = figure_text(goal.value, f".{count}f")
-    return (number.removesuffix(".0") if count == 1 else number) + short_unit(goal.column)
+    return number.removesuffix(".0").removesuffix(",0") if count == 1 else number
 
 
 def required(goal: Goal) -> str:

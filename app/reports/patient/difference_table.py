@@ -8,6 +8,7 @@ from app.charts.drawing import MM, Picture, box, line, picture
 from app.charts.joint_on_paper import CHIP, chip_picture
 from app.summary.facts import Facts
 from app.summary.goals import goal_mark
+from app.summary.headline import Headline, headline_of
 from app.summary.interval_words import interval_in_figures
 from app.summary.numbers_in_words import CARE, DAGGER, NOTHING, dagger_note, fixed, marked, signed
 from app.summary.trend_lines import walked_visits
@@ -27,7 +28,7 @@ MOST_ROWS = 5
 HIP = "hip_range_deg"
 MARK, STRIP, STRIP_HEIGHT = 7.0, 20 * MM, 12.0
 ZONES, HALVES = 2.3, 1.6  # half a drawing: so many times healthy people's difference, else half of the interval
-FILLED, HOLLOW = 2.4, 2.0  # radii
+MARGIN = 2.4  # so that what reaches an edge is seen whole
 
 
 def difference_table(facts: Facts) -> dict[str, object] | None:
@@ -44,10 +45,10 @@ def difference_table(facts: Facts) -> dict[str, object] | None:
     return {
         "title": tr("Largest differences") if len(sides) > 1 else tr("Values"),
         "sides": [chip_picture(side, CHIP, side_name(side)).as_data() for side in sides],
-        "heads": [less, tr("likely between"), tr("Reference")] if len(sides) > 1 else [],
+        "heads": [less, tr("likely between"), tr("95 of 100")] if len(sides) > 1 else [],
         "since": since,
         "rows": [_row(facts, row, sides, has_last=has_last) for row in rows],
-        "marks": _marks(rows, sides),
+        "marks": _marks(rows, sides, headline_of(facts)),
     }
 
 
@@ -108,14 +109,16 @@ def _since(facts: Facts, row: LegsRow, unit: str) -> str:
     return f"{side.letter}\u00a0{signed(found.difference, row.decimals)}{unit}{dagger}"
 
 
-def _marks(rows: Sequence[LegsRow], sides: Sequence[Side]) -> list[dict[str, object]]:
+def _marks(rows: Sequence[LegsRow], sides: Sequence[Side], headline: Headline) -> list[dict[str, object]]:
     """What is beside the numbers, in words: each mark's picture, or none."""
     stated: list[dict[str, object]] = []
     if len(sides) > 1:
-        beyond = tr("beyond the reference: 95 of 100 healthy people differ by less")
-        stated.append({"picture": mark_picture(Mark.HEALTHY).as_data(), "said": beyond})
-        stated.append({"picture": mark_picture(Mark.ERROR).as_data(), "said": tr("beyond measurement error")})
-        if any(row.difference.is_judged and row.difference.is_unverified for row in rows):
+        stated.append({"picture": None, "said": tr("95 of 100: healthy people who differ by less.")})
+        words = {Mark.HEALTHY: tr("beyond that"), Mark.ERROR: tr("beyond measurement error")}
+        used = {row.difference.mark for row in rows}
+        stated += [{"picture": mark_picture(mark).as_data(), "said": words[mark]} for mark in words if mark in used]
+        is_in_table = any(row.difference.is_judged and row.difference.is_unverified for row in rows)
+        if is_in_table or DAGGER in headline.then:
             stated.append({"picture": None, "said": dagger_note()})
     if any(Verdict.CARE in row.verdicts.values() for row in rows):
         stated.append({"picture": None, "said": tr("{mark}: caution.").format(mark=CARE)})
@@ -132,11 +135,12 @@ def mark_picture(mark: Mark) -> Picture:
 def strip(row: LegsRow) -> Picture:
     """A difference with its likely interval over what 95 of 100 healthy people differ by."""
     found: Difference = row.difference
-    reach = ZONES * found.healthy if math.isfinite(found.healthy) else HALVES * found.error
+    usual = ZONES * found.healthy if math.isfinite(found.healthy) else HALVES * found.error
+    reach = max(usual, abs(found.difference) + found.error)
     y, half = STRIP_HEIGHT / 2, STRIP / 2
 
     def x(value: float) -> float:
-        return half + (half - FILLED) * min(max(value / reach, -1.0), 1.0)
+        return half + (half - MARGIN) * min(max(value / reach, -1.0), 1.0)
 
     parts = []
     if math.isfinite(found.healthy):
@@ -146,8 +150,5 @@ def strip(row: LegsRow) -> Picture:
     low, high = (x(edge) for edge in found.interval)
     parts.append(line(low, y, high, y, PAPER.ink, 0.9))
     parts += [line(end, y - 2.2, end, y + 2.2, PAPER.ink, 0.9) for end in (low, high)]
-    is_hollow, radius = found.mark is Mark.ERROR, FILLED if found.mark is not Mark.NONE else HOLLOW
-    fill = PAPER.paper if is_hollow else PAPER.ink
-    centre = f'cx="{x(found.difference):.2f}" cy="{y}" r="{radius}"'
-    parts.append(f'<circle {centre} fill="{fill}" stroke="{PAPER.ink}" stroke-width="0.9"/>')
+    parts.append(line(x(found.difference), y - 4, x(found.difference), y + 4, PAPER.ink, 2.0))  # dots are the marks
     return picture(parts, STRIP, STRIP_HEIGHT)

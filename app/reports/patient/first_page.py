@@ -1,6 +1,7 @@
 """The page usable alone: who, what changed or differs, the clinician's comment, four values, both curves, a table."""
 
 import math
+from dataclasses import replace
 
 from app.charts.drawing import MM
 from app.charts.joint_on_paper import CHIP, chip_picture, draw_joint
@@ -13,13 +14,14 @@ from app.summary.headline import Headline, headline_of
 from app.summary.joint_panels import joint_chart
 from app.summary.numbers_in_words import fixed
 from app.summary.plain_text import CONDITION_LENGTH, plain_lines, typed
-from app.summary.quality_line import in_order, quality_sentence
+from app.summary.quality_line import quality_sentence, strides_in_words
+from app.summary.report_dates import date_of
 from app.summary.request import ReportRequest
 from app.summary.tiles import Tile, TileValue, tiles_of
 from app.wording.body import side_name
 from app.wording.patients import aids_in_words
 from app.wording.recordings import name_in_words
-from app.wording.translation import capitalised, tr
+from app.wording.translation import capitalised, tr, tr_n
 from core.body import Side
 from core.parameters import KNEE, STANCE
 
@@ -36,7 +38,11 @@ def first_page(request: ReportRequest, facts: Facts, comparison: Comparison | No
         "summary": {"heading": tr("Summary"), "first": headline.first, "then": headline.then},
         "comment": comment(request),
         "caution": caution(facts),
-        "tiles": [_tile(tile) for tile in tiles_of(facts) if tile.column != STANCE or len(facts.gait) != 1],
+        "tiles": [
+            _tile(tile, has_earlier=request.earlier is not None)
+            for tile in tiles_of(facts)
+            if tile.column != STANCE or len(facts.gait) != 1
+        ],
         "charts": charts(request, facts, headline, comparison),
         "table": difference_table(facts),
         "quality": _quality(facts),
@@ -91,7 +97,9 @@ def caution(facts: Facts) -> dict[str, str] | None:
     found = quality_sentence(facts)
     if found.is_good:
         return None
-    return {"first": found.first, "then": " ".join(filter(None, [found.then, found.more]))}
+    more = tr_n("{count} more on page {page}.", "{count} more on page {page}.", found.others)
+    others = more.replace("{count}", str(found.others)) if found.others else ""
+    return {"first": found.first, "then": " ".join(filter(None, [found.then, others]))}
 
 
 def charts(
@@ -102,7 +110,8 @@ def charts(
         return [[{"said": tr("No joint angle was measured.")}]]
     thin = request.thin
     if thin is None and comparison is not None and comparison.kind is Contrast.VISITS:
-        thin = comparison.against
+        day = date_of(request.earlier.session.started) if request.earlier is not None else None
+        thin = replace(comparison.against, day=day)  # a chart's key has room for a day
     found = [
         joint_chart(facts, kind, headline, thin) if facts.has_joint(kind) else panels.why_no_joint(facts, kind)
         for kind in KINDS
@@ -118,17 +127,18 @@ def charts(
 
 def source(facts: Facts) -> list[str]:
     """Whose the grey curve is, or why there is none; and where the data quality is judged in detail."""
-    return [panels.band_in_words(facts), tr("Data quality in detail: page {page}.")]
+    labels = tr("Values at dots are peak angles; a bracket is the value of the first sentence.")
+    return [panels.band_in_words(facts), labels, tr("Data quality in detail: page {page}.")]
 
 
 def _quality(facts: Facts) -> list[str]:
     found = quality_sentence(facts)
     if found.is_good:
         return [found.first, found.then]
-    return [tr("Data quality: caution."), in_order(facts)] if facts.gait else [found.first, found.then]
+    return [tr("Data quality: caution."), f"{strides_in_words(facts)}."] if facts.gait else [found.first, found.then]
 
 
-def _tile(tile: Tile) -> dict[str, object]:
+def _tile(tile: Tile, *, has_earlier: bool) -> dict[str, object]:
     is_known = any(math.isfinite(value.value) for value in tile.values)
     change, only = tile.change, tile.values[0]
     pattern = tr("{change}, beyond error") if change.is_beyond_error else tr("{change}, within error")
@@ -139,7 +149,7 @@ def _tile(tile: Tile) -> dict[str, object]:
         "unit": tile.unit if is_known else "",
         "bar": bar(tile).as_data() if is_known else None,
         "arrow": arrow(change).as_data() if change.rises is not None and change.size.strip("0.,°") else None,
-        "change": stated or (tile.why if is_known else ""),
+        "change": (stated if change.day or not has_earlier else "") or (tile.why if is_known else ""),
         "then": " · ".join(filter(None, [tile.last, tile.goal])),
         "alt": tile.in_words,
     }
@@ -160,7 +170,7 @@ def _chip(side: Side | None) -> dict[str, object] | None:
 
 def _side_in_words(side: str, *, is_prosthetic: bool) -> str:
     if side not in (*Side, "both"):
-        return ""
+        return tr("affected side not recorded") if side not in NOT_STATED[1:] else ""
     name = tr("both") if side == "both" else side_name(Side(side))
     pattern = tr("prosthetic side: {side}") if is_prosthetic else tr("affected side: {side}")
     return pattern.format(side=name)

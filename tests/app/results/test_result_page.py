@@ -352,7 +352,7 @@ def test_the_headline_is_over_the_mean_cycle_and_nothing_scrolls_for_it(page: Re
     page.set_room(*in_wizard)
     show(page, analysis)
     assert page.headline.text.startswith(
-        "Left and right are similar: knee 59° and 60° from stance to swing. Difference "
+        "Left and right are similar: knee 59° and 60° from stance to swing. L − R "
     )
     assert page.headline.text.endswith("° fits.")
     show(page, with_more(analysis, Side.LEFT, "knee_stance_to_swing_rad", -20.0))

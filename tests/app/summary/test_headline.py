@@ -62,7 +62,7 @@ def test_a_change_since_the_last_visit_comes_before_all_else() -> None:
     assert plain(found) == "Left knee flexes 58° from stance to swing, up 18° since 23 Sep."
     assert found.since is not None
     assert found.since.day == DAYS[1]
-    assert found.then.startswith("Likely between ")
+    assert found.then.startswith("Change likely between ")
 
 
 def test_a_change_within_error_makes_no_headline() -> None:

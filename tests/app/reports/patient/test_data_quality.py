@@ -94,7 +94,7 @@ def test_legs_whose_clocks_are_not_known_to_agree_can_each_be_read(visit: Analys
     recordings = tuple(apart if one is walk else one for one in visit.analysis.recordings)
     found = data_quality(Facts(replace(visit, analysis=replace(visit.analysis, recordings=recordings)), apart))
     (line,) = found.lines
-    assert line.where == "Left vs right"
+    assert line.where == "Timing between the legs"
     assert found.first == "All four joints are reported."
     assert "left and right sensors synchronised" not in found.in_order
 

@@ -440,7 +440,7 @@ def test_step_time_beyond_its_error_is_stated_where_no_finding_is(
     assert first.startswith("Left step time is ") is bool(word)
     assert word in first
     assert "healthy" not in first
-    assert ("Likely between 0." in first) is bool(word)
+    assert ("Difference likely between 0." in first) is bool(word)
 
 
 def candidate(**changes: Any) -> Candidate:
@@ -493,7 +493,7 @@ def test_where_nothing_is_found_both_legs_are_stated_with_their_values_and_what_
     one = r"\d\d(\.\d)?°"
     assert re.fullmatch(rf"Left and right are similar: knee {one} and {one} from stance to swing\.", first)
     assert re.fullmatch(
-        r"Difference \d\.\d°, which may be measurement error: anything from -10° to \+7° fits\.", second
+        r"L − R -?\d\.\d°, which may be measurement error: anything from -10° to \+7° fits\.", second
     )
 
 
@@ -505,7 +505,7 @@ def test_between_error_and_healthy_people_a_difference_is_stated_and_they_are_na
     first, second, *_ = nothing(request_of_demonstration, with_more(analysis, Side.LEFT, "stance_percent", 3.6))
     size, healthy = r"3\.[5-7] points", "many healthy people differ as much"
     assert re.fullmatch(rf"Left stance is 6\d\.\d %, {size} more than the right; {healthy}\.", first)
-    assert re.fullmatch(r"Likely between 0\.\d and 6\.\d % of the gait cycle\.", second)
+    assert re.fullmatch(r"Difference likely between 0\.\d and 6\.\d % of the gait cycle\.", second)
     assert not any("similar" in one for one in (first, second))
     usual = " ".join(nothing(request_of_demonstration, analysis))
     assert "healthy people" not in usual
