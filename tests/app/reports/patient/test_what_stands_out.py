@@ -493,7 +493,7 @@ def test_where_nothing_is_found_both_legs_are_stated_with_their_values_and_what_
     one = r"\d\d(\.\d)?°"
     assert re.fullmatch(rf"Left and right are similar: knee {one} and {one} from stance to swing\.", first)
     assert re.fullmatch(
-        r"L − R -?\d\.\d°, which may be measurement error: anything from -10° to \+7° fits\.", second
+        r"L - R -?\d\.\d°, which may be measurement error: anything from -10° to \+7° fits\.", second
     )
 
 
