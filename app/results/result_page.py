@@ -212,7 +212,7 @@ class ResultPage(Themed):
         """Give the focus to the first choice of the page."""
         if self._behind is Behind.QUALITY:
             self.quality.focus()
-        elif self.legs.isVisible():
+        elif not self.legs.isHidden():
             self.legs.setFocus()  # arrows move the cursor at once
         else:
             (self.whole.methods if self.view.isHidden() else self.view).focus()
