@@ -225,7 +225,7 @@ def changes(page: HomePage) -> list[Text]:
 
 
 def test_tab_and_screen_readers_go_through_the_patient_as_it_is_read(qtbot: QtBot, page: HomePage) -> None:
-    page.show_sessions(page.sessions.lines, [*VISITS, replace(VISITS[0], id=UUID(int=9), course=None)], STEP)
+    page.show_sessions([session(1, "Shoes")], [*VISITS, replace(VISITS[0], id=UUID(int=9), course=None)], STEP)
     page.activateWindow()
     page.search.setFocus()
     qtbot.waitUntil(page.search.hasFocus)
