@@ -188,8 +188,9 @@ class ResultPage(Themed):
         """
         room = PageRoom.of(width, height)
         self._width, self._height = width, height
-        if not self._has_chosen_legs:  # where there is little room the ankle is shown first
-            self.show_legs.show_on(not room.is_compact)
+        if not self._has_chosen_legs and self.show_legs.isChecked() is room.is_compact:
+            self.show_legs.show_on(not room.is_compact)  # where there is little room the ankle is shown first
+            self._show_moving_legs()
         if room != self._room or self._is_placed_otherwise():
             self._room = room
             self._place()

@@ -472,3 +472,13 @@ def test_a_folded_part_is_reported_as_not_checked_and_is_received_only_unfolded(
             assert any((one.kind, one.name) == named for one in reported) is is_unfolded
             fold.click()
         fold.click()
+
+
+def test_legs_are_drawn_where_room_came_after_the_walk(qtbot: QtBot, analysis: Analysis) -> None:
+    """The wizard fills the page before it has a size."""
+    page = ResultPage(ThemeNotifier())
+    qtbot.addWidget(page)
+    page.set_room(0.0, 0.0)
+    show(page, analysis)
+    page.set_room(*WIDE)
+    assert page.legs.picture.legs is not None
