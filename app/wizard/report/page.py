@@ -3,7 +3,7 @@
 from collections.abc import Sequence
 from uuid import UUID
 
-from PySide6.QtCore import Signal
+from PySide6.QtCore import QEvent, Signal
 from PySide6.QtWidgets import QBoxLayout, QFrame, QHBoxLayout, QWidget
 
 from app.theme.notifier import ThemeNotifier
@@ -129,8 +129,14 @@ class ReportPage(Themed):
         self.reading.setMinimumHeight(self._look.theme.px(360) if is_narrow else 0)
         self._fit_card()
 
+    def event(self, event: QEvent) -> bool:
+        is_done = super().event(event)
+        if event.type() == QEvent.Type.LayoutRequest:  # the words beside are wider in another font or language
+            self._fit_card()
+        return is_done
+
     def _fit_card(self) -> None:
-        words = self._look.theme.px(WORDS_WIDTH)
+        words = max(self._look.theme.px(WORDS_WIDTH), self._card.minimumSizeHint().width())
         self._card.setMinimumWidth(words)
         self._card.setMaximumWidth(QWIDGETSIZE_MAX if self._is_narrow else words)
 
