@@ -12,7 +12,7 @@ numbered here, and `rrd_file` does the rest.
 
 import tempfile
 import uuid
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 from itertools import count
 from pathlib import Path
 
@@ -454,13 +454,18 @@ def _layout(session: Session, analysis: Analysis, timeline: str | None) -> tuple
         file = Path(folder) / "layout.rbl"
         _blueprint(session, analysis, timeline).save(APPLICATION, file)
         reader = RrdReader(file)
-        chunks = sorted(reader.stream(store=reader.blueprints()[0]), key=lambda chunk: chunk.entity_path)
+        chunks = in_order(reader.stream(store=reader.blueprints()[0]))
     stream = rr.RecordingStream._from_native(new_blueprint(APPLICATION, make_default=False, make_thread_default=False))
     messages = rr.memory_recording(stream)
     rr.send_chunks(
         [_numbered(chunk.to_record_batch(), number) for number, chunk in enumerate(chunks, start=1)], recording=stream
     )
     return messages.storage, str(stream.get_recording_id()).encode()
+
+
+def in_order(chunks: Iterable[Chunk]) -> list[Chunk]:
+    """Sort chunks by their places, and those of one place, which come as chance has it, by their columns."""
+    return sorted(chunks, key=lambda chunk: (chunk.entity_path, sorted(chunk.to_record_batch().schema.names)))
 
 
 def _numbered(batch: pa.RecordBatch, number: int) -> Chunk:

@@ -327,7 +327,7 @@ class Visit(QObject):
             shown = before if len(before) <= MOST_EARLIER else [*before[: MOST_EARLIER - 1], before[-1]]
             return [read_analysed(opened, line.id, report) for line in reversed(shown)]
 
-        self._controller.run_long(work, self._on_earlier_read, self._on_refused, None, self)
+        self._controller.run_long(work, self._on_earlier_read, self._on_refused, None, self, is_quiet=True)
 
     def close(self) -> None:
         """Let go of the sensors and wait for what runs; a recording that goes on is stopped first."""

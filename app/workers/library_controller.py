@@ -83,8 +83,10 @@ class LibraryController(QObject):
         self._long.done.connect(self._on_long_done)
         self._long.failed.connect(self._on_long_failed)
         self._long.stopped.connect(self._on_long_stopped)
-        self._long.idle.connect(self._lock_now)
+        self._long.idle.connect(self._on_long_idle)
         self._long_job: Job | None = None
+        self._quiet: Callable[[], object] | None = None  # begins the long work again, where nobody waits for it
+        self._waiting: list[Callable[[], object]] = []  # quiet work that began too early, or was interrupted
         self._long_ended: WeakMethod[Callable[[bool], object]] | None = None
         self._long_progressed: WeakMethod[Callable[[float, str], object]] | None = None
 
@@ -143,13 +145,16 @@ class LibraryController(QObject):
         failed: Failed | None,
         progressed: Callable[[float, str], object] | None,
         owner: QObject,
+        *,
+        is_quiet: bool = False,
     ) -> None:
         """Do what takes long, an import or a backup, beside the calls; one at a time, and `stop_long` ends it.
 
-        Nothing more is received from what was stopped.
+        Nothing more is received from what was stopped. Quiet work, which nobody asked for, waits for the other, and
+        gives way to it: it begins again afterwards.
         """
         job = Job(nothing, weak(done), weak(failed), ref(owner))
-        begin = partial(self._begin_long, work, job, weak(progressed))
+        begin = partial(self._begin_long, work, job, weak(progressed), is_quiet=is_quiet)
         if self._is_locked:
             self._held.append(begin)
         else:
@@ -383,13 +388,23 @@ class LibraryController(QObject):
         work: Callable[["OpenedLibrary", Report], object],
         job: Job,
         progressed: "WeakMethod[Callable[[float, str], object]] | None",
+        *,
+        is_quiet: bool,
     ) -> None:
         if self._state is None:
             self._show_refusal(job, *nothing_open())
             return
+        begin = partial(self._begin_long, work, job, progressed, is_quiet=is_quiet)
         if self._long.is_busy:  # what was stopped is waited for by the next
-            self._show_refusal(job, tr("Another task is still running."), tr("Wait until it has finished, or stop it."))
-            return
+            if is_quiet:
+                self._waiting.append(begin)
+                return
+            if self._quiet is None:
+                what, remedy = tr("Another task is still running."), tr("Wait until it has finished, or stop it.")
+                self._show_refusal(job, what, remedy)
+                return
+            self._waiting.append(self._quiet)
+        self._quiet = begin if is_quiet else None
         self._long_job, self._long_progressed = job, progressed
         library, lock = self._state.library, self._holder.long_work
 
@@ -411,13 +426,20 @@ class LibraryController(QObject):
         for ask in held:
             ask()
 
-    def _lock_now(self) -> None:
+    def _on_long_idle(self) -> None:
+        waiting, self._waiting = self._waiting, []
+        if self._is_locked:
+            self._held += waiting
+        else:
+            for begin in waiting:
+                begin()
         if self._is_to_be_locked:
             self.lock()
 
     def _end_library(self) -> None:
         """What is asked next closes the library: not before the last recording has ended."""
         self._ask_held()
+        self._waiting.clear()
         self.stop_long()
         self._end_watch()
         if self._state is not None:

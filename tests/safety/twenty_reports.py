@@ -99,6 +99,7 @@ def sessions() -> Iterator[tuple[str, ReportRequest]]:
     alignments = _alignments()
     yield "alignments A, B, C", of(alignments, analyse(alignments))
     yield "three visits", of(base, analysis, **_course(base, analysis))
+    yield "a confirmed comment", of(base, analysis, comment="Walks further; the left foot drags.", comment_by="Kern")
     earlier = replace(base, started="2026-10-01T09:00:00+01:00")
     yield "an earlier visit", of(base, analysis, earlier=AnalysedVisit(earlier, analysis))
     data = os.environ.get("GAITWRIGHT_TEST_DATA", "")

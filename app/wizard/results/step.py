@@ -360,15 +360,20 @@ class ResultsStep(Step):
 
     def _on_courses(self, before: tuple[UUID, tuple[CourseVisit, ...]]) -> None:
         if before != self._before:
+            is_first, (_, visits) = before[0] != self._before[0], before
             self._before, self._held = before, None
             if self._shown is not None and self._frame is not None:
                 self._hold(self._frame.results(), self._shown)
+            if is_first and any(visit.course is None for visit in (*visits[:1], *visits[-1:])):
+                self._visit.read_earlier()  # an imported visit: its course is kept then
 
     def _on_no_courses(self, _what: str, _remedy: str) -> None:
         """No harm: the answer is then of this visit alone."""
 
     def _on_earlier_read(self, found: "list[tuple[Session, Analysis]]") -> None:
         """Show the visits in the order of time, this one last."""
+        if any(visit.course is None for visit in self._before[1]):
+            self._read_courses()
         session = self._visit.evaluation.session
         if self._shown is None or self._frame is None or session is None:
             return

@@ -351,9 +351,7 @@ def test_the_headline_is_over_the_mean_cycle_and_nothing_scrolls_for_it(page: Re
     in_wizard = (1064.0, 672.0)  # of a window of 1280 x 800 with its rail
     page.set_room(*in_wizard)
     show(page, analysis)
-    assert page.headline.text.startswith(
-        "Left and right are similar: knee 59° and 60° from stance to swing. L − R "
-    )
+    assert page.headline.text.startswith("Left and right are similar: knee 59° and 60° from stance to swing. L − R ")
     assert page.headline.text.endswith("° fits.")
     show(page, with_more(analysis, Side.LEFT, "knee_stance_to_swing_rad", -20.0))
     assert page.headline.text.startswith("Left knee flexes 39° from stance to swing, 21° less than the right.")
@@ -472,3 +470,13 @@ def test_a_folded_part_is_reported_as_not_checked_and_is_received_only_unfolded(
             assert any((one.kind, one.name) == named for one in reported) is is_unfolded
             fold.click()
         fold.click()
+
+
+def test_legs_are_drawn_where_room_came_after_the_walk(qtbot: QtBot, analysis: Analysis) -> None:
+    """The wizard fills the page before it has a size."""
+    page = ResultPage(ThemeNotifier())
+    qtbot.addWidget(page)
+    page.set_room(0.0, 0.0)
+    show(page, analysis)
+    page.set_room(*WIDE)
+    assert page.legs.picture.legs is not None

@@ -217,6 +217,18 @@ def test_two_writings_are_the_same_bytes(tmp_path: Path) -> None:
     assert (tmp_path / "first").read_bytes() == (tmp_path / "second").read_bytes()
 
 
+def test_the_layout_is_in_one_order_however_rerun_gives_its_parts(tmp_path: Path) -> None:
+    write_log(*visit(), tmp_path / "session.rrd")
+    reader = RrdReader(tmp_path / "session.rrd")
+    chunks = list(reader.stream(store=reader.blueprints()[0]))
+    assert len({chunk.entity_path for chunk in chunks}) < len(chunks)  # one place has several
+    names = [
+        [(chunk.entity_path, chunk.to_record_batch().schema.names) for chunk in rerun_log.in_order(given)]
+        for given in (chunks, chunks[::-1])
+    ]
+    assert names[0] == names[1]
+
+
 def test_no_name_and_no_path_is_inside(tmp_path: Path) -> None:
     session, analysis = visit()
     write_log(session, analysis, tmp_path / "session.rrd")

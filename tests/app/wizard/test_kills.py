@@ -227,6 +227,6 @@ def test_amid_the_report(
     assert step.page.report.comment.toPlainText() == COMMENT
     qtbot.waitUntil(step.can_save, timeout=WAIT_MS)
     step.save_in(str(out))
-    qtbot.waitUntil(lambda: step.saved == out, timeout=WAIT_MS)
+    qtbot.waitUntil(lambda: step.exported == out, timeout=WAIT_MS)
     (report,) = out.glob("*.pdf")
     assert report.read_bytes().startswith(b"%PDF")

@@ -495,6 +495,46 @@ def test_long_work_shows_progress_and_is_stopped(qtbot: QtBot, controller: Libra
     assert asker.results == []
 
 
+def test_quiet_work_gives_way_to_what_is_asked_and_begins_again_afterwards(
+    qtbot: QtBot, controller: LibraryController, folder: Path
+) -> None:
+    opened(qtbot, controller, folder)
+    asker, began, may_end = Asker(), [], Event()
+
+    def quiet(_library: OpenedLibrary, report: Report) -> str:
+        began.append("quiet")
+        while not may_end.is_set():
+            report(0.5, "an earlier visit")
+        return "quiet"
+
+    def asked_for(_library: OpenedLibrary, _report: Report) -> str:
+        may_end.set()
+        return "asked for"
+
+    controller.run_long(quiet, asker.on_done, asker.on_failed, None, asker, is_quiet=True)
+    qtbot.waitUntil(lambda: began == ["quiet"], timeout=WAIT_MS)
+    controller.run_long(asked_for, asker.on_done, asker.on_failed, None, asker)
+    qtbot.waitUntil(lambda: len(asker.results) == 2, timeout=WAIT_MS)
+    assert asker.results == ["asked for", "quiet"]
+    assert began == ["quiet", "quiet"]
+    assert asker.refusals == []
+
+
+def test_quiet_work_waits_for_what_was_asked_before(qtbot: QtBot, controller: LibraryController, folder: Path) -> None:
+    opened(qtbot, controller, folder)
+    asker, may_end = Asker(), Event()
+
+    def asked_for(_library: OpenedLibrary, _report: Report) -> str:
+        may_end.wait(WAIT_MS / 1000)
+        return "asked for"
+
+    controller.run_long(asked_for, asker.on_done, asker.on_failed, None, asker)
+    controller.run_long(lambda *_: "quiet", asker.on_done, asker.on_failed, None, asker, is_quiet=True)
+    may_end.set()
+    qtbot.waitUntil(lambda: asker.results == ["asked for", "quiet"], timeout=WAIT_MS)
+    assert asker.refusals == []
+
+
 def test_long_work_gives_its_result_or_its_refusal(qtbot: QtBot, controller: LibraryController, folder: Path) -> None:
     opened(qtbot, controller, folder)
     asker = Asker()

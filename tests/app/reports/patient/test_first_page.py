@@ -86,7 +86,7 @@ def test_the_thin_line_is_the_visit_that_the_headline_names(request_of_demonstra
     assert thin_part(facts_of(request_of_demonstration), [other, before]) is None
 
 
-def test_the_course_tells_page_one_what_changed_also_without_its_own_page(
+def test_page_one_has_what_changed_over_the_course_also_without_its_own_page(
     request_of_demonstration: ReportRequest,
 ) -> None:
     request = returned(request_of_demonstration, -20.0)
