@@ -275,8 +275,8 @@ class ResultPage(Themed):
         self._choices = QWidget()
         choices = QHBoxLayout(self._choices)
         choices.setContentsMargins(0, 0, 0, 0)
-        self._thin_name = Text(self._look, tr("Thin line"), size=12, tone="ink2")
-        for widget in (self.part, self.recordings, self._thin_name, self.thin, self.show_legs, self._against):
+        self.thin_name = Text(self._look, tr("Thin line"), size=12, tone="ink2")
+        for widget in (self.part, self.recordings, self.thin_name, self.thin, self.show_legs, self._against):
             choices.addWidget(widget)
         self._figures = QWidget()
         self._tables = QBoxLayout(QBoxLayout.Direction.LeftToRight, self._figures)
@@ -418,7 +418,7 @@ class ResultPage(Themed):
 
     def _has_room_for_name(self) -> bool:
         """Whether the thin line's name has room before its choice, with nothing cut."""
-        shown = (self.view, self.recordings, self._thin_name, self.thin, self.show_legs)
+        shown = (self.view, self.recordings, self.thin_name, self.thin, self.show_legs)
         needed = sum(one.sizeHint().width() for one in shown) + self._look.theme.px(len(shown) * GAP)
         return self._inner_width >= needed
 
@@ -462,7 +462,7 @@ class ResultPage(Themed):
         self.recordings.setVisible(view != COMPARE and self.recordings.count() > (1 if view == ANSWER else 0))
         has_thin = has_curves and self.thin.count() > 1 and not is_compact
         self.thin.setVisible(has_thin)
-        self._thin_name.setVisible(has_thin and self._has_thin_name)
+        self.thin_name.setVisible(has_thin and self._has_thin_name)
         self.show_legs.setVisible(has_curves)
         self._against.setVisible(view == COMPARE)
         self._compared_as.setVisible(view == COMPARE and is_compact and not self._room.is_narrow)

@@ -220,7 +220,7 @@ def test_the_name_of_the_thin_line_goes_where_the_page_becomes_too_narrow_for_it
         page.resize(look.theme.px(width), look.theme.px(672))
         settle()
         assert page.thin.isVisible()
-        assert page._thin_name.isVisible() is has_name
+        assert page.thin_name.isVisible() is has_name
         assert page.minimumSizeHint().width() <= look.theme.px(width)
 
 
