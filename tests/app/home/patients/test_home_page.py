@@ -193,11 +193,7 @@ def test_values_and_states_of_visits_stand_under_one_another(look: ThemeNotifier
 
 
 @pytest.mark.parametrize("speed", ["", "1.13 m/s"])
-<<<<<<< HEAD
 def test_a_heading_is_shown_only_over_a_column_that_has_values(look: ThemeNotifier, speed: str) -> None:
-=======
-def test_only_a_column_that_has_values_has_a_head(look: ThemeNotifier, speed: str) -> None:
->>>>>>> fb
     line = replace(session(1, "Shoes"), speed=speed)
     painted = []
     for heads in (("Walking speed", "Left knee"), ("", "")):
