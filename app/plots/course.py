@@ -253,8 +253,11 @@ class LaneRow:
         arrow, who = arrow_of(lane, one.since_first), ""
         if has_sides and one.line.side is not None:
             who = f"{one.line.side.letter} "
-        text = Text(self._look, who + words, 13, MEDIUM if arrow is not None and arrow.is_filled else REGULAR)
-        self.changes.add(self._beside(*([ChangeArrow(self._look, arrow)] if arrow is not None else []), text))
+        text = Text(
+            self._look, who + words, 13, MEDIUM if arrow is not None and arrow.is_filled else REGULAR, wraps=True
+        )
+        before = [ChangeArrow(self._look, arrow)] if arrow is not None else []
+        self.changes.add(self._beside(*before, text, wide=text))
 
     def _beside(self, *parts: QWidget, wide: QWidget | None = None) -> QWidget:
         """Parts in a row; `wide` takes what the others leave."""

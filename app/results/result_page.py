@@ -91,6 +91,7 @@ class ResultPage(Themed):
         self._width = self._height = 0.0
         self._has_tools = False  # views, recordings and methods in one row
         self._has_choices = False  # views and what else is chosen in one row
+        self._has_thin_name = False  # before the choice of the thin line
         self._thin: Mapping[Side, ThinBend] = {}
         self._drawn: tuple[AnalysedVisit, RecordingAnalysis, MeanLegs | None] | None = None
         self._mended_by_motion: Side | None = None  # whose free motion would mend the gravest cause
@@ -342,7 +343,7 @@ class ResultPage(Themed):
         for widget in (self.view, self.to_answer, self.whole.methods, self._choices):
             self._controls.removeWidget(widget)
         left = Qt.AlignmentFlag.AlignLeft
-        self._has_tools, self._has_choices = self._do_tools_fit(), self._do_choices_fit()
+        self._has_tools, self._has_choices, self._has_thin_name = self._fitting
         self._controls.addWidget(self.view, 0, 0, left)
         self._controls.addWidget(self.to_answer, 0, 1, left)
         self._controls.setColumnStretch(4, 1)
@@ -388,7 +389,11 @@ class ResultPage(Themed):
         return 24 if self._room.is_on_grid else 16
 
     def _is_placed_otherwise(self) -> bool:
-        return (self._has_tools, self._has_choices) != (self._do_tools_fit(), self._do_choices_fit())
+        return (self._has_tools, self._has_choices, self._has_thin_name) != self._fitting
+
+    @property
+    def _fitting(self) -> tuple[bool, bool, bool]:
+        return self._do_tools_fit(), self._do_choices_fit(), self._has_room_for_name()
 
     def _do_tools_fit(self) -> bool:
         """Whether views, recordings and methods fit into one row."""
@@ -457,7 +462,7 @@ class ResultPage(Themed):
         self.recordings.setVisible(view != COMPARE and self.recordings.count() > (1 if view == ANSWER else 0))
         has_thin = has_curves and self.thin.count() > 1 and not is_compact
         self.thin.setVisible(has_thin)
-        self._thin_name.setVisible(has_thin and self._has_room_for_name())
+        self._thin_name.setVisible(has_thin and self._has_thin_name)
         self.show_legs.setVisible(has_curves)
         self._against.setVisible(view == COMPARE)
         self._compared_as.setVisible(view == COMPARE and is_compact and not self._room.is_narrow)

@@ -268,9 +268,10 @@ class VisitHead(TableCell):
         if room.width() < WIDE_VISIT_FROM * theme.scale:
             return
         _, *rights = self.columns.rights(int(room.width()) - theme.px(NEXT_ROOM), theme)
-        for head, right in zip(self.columns.heads, rights, strict=True):
+        widths = self.columns.widths(theme)[:2]
+        for head, right, width in zip(self.columns.heads, rights, widths, strict=True):
             left = right - head.width(theme)
-            if left > title.width(theme) + theme.px(GAP):
+            if width and left > title.width(theme) + theme.px(GAP):
                 head.paint(painter, room.adjusted(left, 0, 0, 0), theme)
 
 

@@ -1,6 +1,7 @@
 """Find the patient, begin: patients at the left with a search, the one that is chosen at the right."""
 
 from collections.abc import Sequence
+from itertools import pairwise
 from uuid import UUID
 
 from PySide6.QtCore import QEvent, QModelIndex, QObject, QRectF, QSize, Qt, Signal
@@ -71,6 +72,8 @@ class HomePage(Themed):
         self.view = Segmented(look, tr("View"), [(PATIENTS, tr("Patients"), ""), (PATIENT, tr("Patient"), "")])
         self._build()
         self._connect()
+        for before, after in pairwise(self.tab_order):
+            self.setTabOrder(before, after)
         self.forget_patients()
         self.show_patient("", "")
         self._on_look_changed()

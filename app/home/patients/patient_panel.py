@@ -28,6 +28,7 @@ from app.widgets.button import Button, ButtonKind
 from app.widgets.card import Card
 from app.widgets.choice import Choice
 from app.widgets.header import Tag
+from app.widgets.heard_order import hear_as_laid_out
 from app.widgets.line_list import LineList, SessionLine
 from app.widgets.segmented import Segmented
 from app.widgets.tall_page import TallPage
@@ -186,6 +187,7 @@ class PatientPanel(TallPage):
         title = Text(self._look, tr("Progress"), size=16, weight=SEMIBOLD)
         for number, part in enumerate((title, self.shown, self.condition, self.count, self.goals)):
             head.insertWidget(number, part, int(part is self.count))
+        hear_as_laid_out(self.course)
         self.sessions.setVerticalScrollBarPolicy(Qt.ScrollBarPolicy.ScrollBarAlwaysOff)
         self.sessions.setSizePolicy(QSizePolicy.Policy.Expanding, QSizePolicy.Policy.Fixed)
         self.sessions.fitted.connect(self._fit_sessions)

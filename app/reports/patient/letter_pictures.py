@@ -136,8 +136,11 @@ def _segment(
         (at[0] + sign * radius * across[0], at[1] + sign * radius * across[1])
         for at, radius, sign in ((start, half[0], 1), (end, half[1], 1), (end, half[1], -1), (start, half[0], -1))
     ]
-    (a, b, c, d), (r0, r1) = ([f"{x:.2f} {y:.2f}" for x, y in corners], half)
-    path = f"M{a}L{b}A{r1:.2f} {r1:.2f} 0 0 0 {c}L{d}A{r0:.2f} {r0:.2f} 0 0 0 {a}Z"
+    ((ax, ay), (bx, by), (cx, cy), (dx, dy)), (r0, r1) = corners, half
+    path = (
+        f"M{ax:.2f} {ay:.2f}L{bx:.2f} {by:.2f}A{r1:.2f} {r1:.2f} 0 0 0 {cx:.2f} {cy:.2f}"
+        f"L{dx:.2f} {dy:.2f}A{r0:.2f} {r0:.2f} 0 0 0 {ax:.2f} {ay:.2f}Z"
+    )
     dashed = f' stroke-dasharray="{dash}"' if dash else ""
     return f'<path d="{path}" fill="{fill}" stroke="{edge}" stroke-width="2"{dashed}/>'
 

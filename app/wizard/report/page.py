@@ -3,8 +3,8 @@
 from collections.abc import Sequence
 from uuid import UUID
 
-from PySide6.QtCore import Signal
-from PySide6.QtWidgets import QBoxLayout, QFrame, QHBoxLayout, QWidget
+from PySide6.QtCore import QEvent, Signal
+from PySide6.QtWidgets import QBoxLayout, QFrame, QHBoxLayout, QSizePolicy, QWidget
 
 from app.theme.notifier import ThemeNotifier
 from app.widgets.card import Card
@@ -19,6 +19,7 @@ from app.wizard.report.comment_editor import CommentEditor
 from app.wording.translation import LANGUAGES, spoken_language, tr
 
 WORDS_WIDTH = 320
+PADDING = 20
 NARROW_BELOW = 900
 QWIDGETSIZE_MAX = (1 << 24) - 1  # as Qt has it, and does not hand out
 LETTER = "letter"  # among the files to export
@@ -66,6 +67,8 @@ class ReportPage(Themed):
         self.formats.choose(FIRST_CHOICE)
         self.paper = Segmented(look, tr("Paper"), [("a4", tr("A4"), ""), ("letter", tr("Letter"), "")])
         self.earlier = Choice(look, tr("Compare with"))
+        self.earlier.let_shrink(WORDS_WIDTH - 2 * PADDING, WORDS_WIDTH - 2 * PADDING)  # conditions are typed
+        self.earlier.setSizePolicy(QSizePolicy.Policy.Preferred, QSizePolicy.Policy.Fixed)  # as wide as its card
         self._earlier_title = Text(look, tr("Compare with"), size=16, weight=SEMIBOLD)
         self._also = Text(look, tr("Files to export"), size=16, weight=SEMIBOLD)
         self._sheet = Text(look, tr("Paper"), size=16, weight=SEMIBOLD)
@@ -77,7 +80,7 @@ class ReportPage(Themed):
         self.language = Segmented(look, tr("Language of the patient letter"), languages)
         if spoken_language() in LANGUAGES:
             self.language.choose(spoken_language())
-        self._card = Card(look, padding=20, spacing=12)
+        self._card = Card(look, padding=PADDING, spacing=12)
         above: list[QWidget] = [self.editor, self._earlier_title, self.earlier]
         for part in above:
             self._card.column.addWidget(part)
@@ -129,8 +132,14 @@ class ReportPage(Themed):
         self.reading.setMinimumHeight(self._look.theme.px(360) if is_narrow else 0)
         self._fit_card()
 
+    def event(self, event: QEvent) -> bool:
+        is_done = super().event(event)
+        if event.type() == QEvent.Type.LayoutRequest:  # the words beside are wider in another font or language
+            self._fit_card()
+        return is_done
+
     def _fit_card(self) -> None:
-        words = self._look.theme.px(WORDS_WIDTH)
+        words = max(self._look.theme.px(WORDS_WIDTH), self._card.minimumSizeHint().width())
         self._card.setMinimumWidth(words)
         self._card.setMaximumWidth(QWIDGETSIZE_MAX if self._is_narrow else words)
 

@@ -22,10 +22,11 @@ from app.widgets.line_list import SessionLine
 from app.widgets.text import Text
 from core.goals import Goal, GoalOf
 from core.timed.protocols import TimedProtocol
+from tests.app.accessibility.accessible_tree import tab_stops, wrong_hearing
 from tests.app.course_material import course, timed
 from tests.app.home.course_library import SHOES, STICK, VISITS
 from tests.app.home.patients.test_home_page import patient, session
-from tests.app.room import words_cut
+from tests.app.room import settle, words_cut
 
 STEP = NextStep(NextKind.REPORT, "Write report of 14 Nov", "Not written yet. Measured 14 Nov 2026.", VISITS[4].id)
 
@@ -204,6 +205,35 @@ def test_no_word_is_cut_at_any_size(
     assert page.minimumSizeHint().width() <= width
     assert words_cut(page) == []
     look.set_scale(1.0)
+
+
+@pytest.mark.usefixtures("pseudo_language")
+def test_a_change_longer_than_its_column_wraps(page: HomePage) -> None:
+    assert words_cut(page.panel.course) == []
+    assert any(one.height() > 1.5 * one.fontMetrics().height() for one in changes(page) if one.text().startswith("[+"))
+
+
+def test_a_change_that_has_room_stays_in_one_line(page: HomePage) -> None:
+    found = [one for one in changes(page) if "since" in one.text()]
+    assert found
+    assert all(one.height() < 1.5 * one.fontMetrics().height() for one in found)
+
+
+def changes(page: HomePage) -> list[Text]:
+    settle()
+    return [one for row in page.panel.course.rows.values() for one in row.changes.findChildren(Text)]
+
+
+def test_tab_and_screen_readers_go_through_the_patient_as_it_is_read(qtbot: QtBot, page: HomePage) -> None:
+    page.show_sessions(page.sessions.lines, [*VISITS, replace(VISITS[0], id=UUID(int=9), course=None)], STEP)
+    page.activateWindow()
+    page.search.setFocus()
+    qtbot.waitUntil(page.search.hasFocus)
+    settle()
+    stops = tab_stops(page)
+    assert stops == [widget for widget in page.tab_order if widget.isVisible()]
+    assert {page.panel.condition, page.panel.course.compute} <= set(stops)
+    assert wrong_hearing(page) == []
 
 
 def test_a_goal_is_in_the_second_line_where_it_was_agreed_before_the_visit(page: HomePage) -> None:

@@ -143,7 +143,7 @@ def importing_files(look: ThemeNotifier) -> QWidget:
 
 
 class ScrolledQuestions(QScrollArea):
-    """The page as home holds it: it is as high as its groups need."""
+    """The page as home holds it: it is as high as its words and groups need."""
 
     def __init__(self, page: QuestionsPage) -> None:
         super().__init__()
@@ -167,7 +167,7 @@ def questions(look: ThemeNotifier) -> QWidget:
 def no_table(look: ThemeNotifier) -> QWidget:
     page = QuestionsPage(look)
     page.show_refused(tr("The table cannot be evaluated."), tr("See the log for details."))
-    return page
+    return ScrolledQuestions(page)
 
 
 def settings(look: ThemeNotifier) -> QWidget:

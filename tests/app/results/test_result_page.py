@@ -351,9 +351,7 @@ def test_the_headline_is_over_the_mean_cycle_and_nothing_scrolls_for_it(page: Re
     in_wizard = (1064.0, 672.0)  # of a window of 1280 x 800 with its rail
     page.set_room(*in_wizard)
     show(page, analysis)
-    assert page.headline.text.startswith(
-        "Left and right are similar: knee 59° and 60° from stance to swing. L − R "
-    )
+    assert page.headline.text.startswith("Left and right are similar: knee 59° and 60° from stance to swing. L − R ")
     assert page.headline.text.endswith("° fits.")
     show(page, with_more(analysis, Side.LEFT, "knee_stance_to_swing_rad", -20.0))
     assert page.headline.text.startswith("Left knee flexes 39° from stance to swing, 21° less than the right.")

@@ -52,6 +52,15 @@ def analysis() -> Analysis:
     return analyse(session())
 
 
+def two_walks() -> tuple[AnalysedVisit, list[WalkedVisit]]:
+    """Both the recording and what is thin beside it can be chosen."""
+    other = replace(walk_of(analysis()), name="walk 2")
+    walked = next(one for one in session().recordings if one.name == walk_of(analysis()).name)
+    recordings = (*session().recordings, replace(walked, name=other.name))
+    found = replace(analysis(), recordings=(*analysis().recordings, other))
+    return visit_of(found, replace(session(), recordings=recordings), AgeAndHeight(50, 1.8)), []
+
+
 def return_visit() -> tuple[AnalysedVisit, list[WalkedVisit]]:
     """A third visit with goals: a change since the first of another year has the longest sentence and tiles."""
     first = with_more(analysis(), Side.LEFT, "knee_stance_to_swing_rad", -22.0)
@@ -195,6 +204,24 @@ def test_legs_asked_for_where_room_is_short_fit_too(placed: Place, language: str
     settle()
     assert page.legs.isVisible()
     assert_fits(page)
+
+
+@pytest.mark.usefixtures("language")
+@pytest.mark.parametrize("language", ["de"], indirect=True)
+def test_the_name_of_the_thin_line_goes_where_the_page_becomes_too_narrow_for_it(
+    qtbot: QtBot, look: ThemeNotifier
+) -> None:
+    page = ResultPage(look)
+    qtbot.addWidget(page)
+    page.show_visit(two_walks()[0])
+    page.show()
+    for width, has_name in ((1240, True), (1064, False), (1240, True)):
+        page.set_room(width, 672)
+        page.resize(look.theme.px(width), look.theme.px(672))
+        settle()
+        assert page.thin.isVisible()
+        assert page._thin_name.isVisible() is has_name
+        assert page.minimumSizeHint().width() <= look.theme.px(width)
 
 
 def test_a_session_without_walks_shows_its_recording_whole(qtbot: QtBot, look: ThemeNotifier) -> None:

@@ -6,7 +6,8 @@ from time import process_time
 from uuid import UUID, uuid4
 
 import pytest
-from PySide6.QtCore import Qt
+from PySide6.QtCore import QRectF, Qt
+from PySide6.QtGui import QImage, QPainter
 from PySide6.QtTest import QTest
 from PySide6.QtWidgets import QApplication
 from pytestqt.qtbot import QtBot
@@ -14,7 +15,7 @@ from pytestqt.qtbot import QtBot
 from app.home.patients.home_page import HomePage
 from app.summary.progress_words import Arrow
 from app.theme.notifier import ThemeNotifier
-from app.widgets.line_list import TEXT_ROW, LineCell, PatientLine, SessionLine, VisitCell, VisitColumns
+from app.widgets.line_list import TEXT_ROW, LineCell, PatientLine, SessionLine, VisitCell, VisitColumns, VisitHead
 
 MANY = 5000
 MOST_S = 0.1  # what the screen's thread may take for anything
@@ -189,6 +190,19 @@ def test_values_and_states_of_visits_stand_under_one_another(look: ThemeNotifier
         assert ends[-1] <= 660
         rights.append((ends[1], ends[2], placed[3].left))
     assert rights[0] == rights[1], "columns are those of the list"
+
+
+@pytest.mark.parametrize("speed", ["", "1.13 m/s"])
+def test_a_head_stands_only_over_a_column_that_has_values(look: ThemeNotifier, speed: str) -> None:
+    line = replace(session(1, "Shoes"), speed=speed)
+    painted = []
+    for heads in (("Walking speed", "Left knee"), ("", "")):
+        image = QImage(660, 38, QImage.Format.Format_RGB32)
+        image.fill(look.theme.colours.surface)
+        with QPainter(image) as painter:
+            VisitHead("Visits", VisitColumns([line], heads)).paint(painter, QRectF(image.rect()), look.theme)
+        painted.append(image)
+    assert (painted[0] != painted[1]) == bool(speed)
 
 
 def test_the_last_change_is_in_a_patients_line_once_it_is_known(page: HomePage) -> None:

@@ -492,9 +492,7 @@ def test_where_nothing_is_found_both_legs_are_stated_with_their_values_and_what_
     first, second, *_ = nothing(request_of_demonstration, request_of_demonstration.visit.analysis)
     one = r"\d\d(\.\d)?°"
     assert re.fullmatch(rf"Left and right are similar: knee {one} and {one} from stance to swing\.", first)
-    assert re.fullmatch(
-        r"L - R -?\d\.\d°, which may be measurement error: anything from -10° to \+7° fits\.", second
-    )
+    assert re.fullmatch(r"L - R -?\d\.\d°, which may be measurement error: anything from -10° to \+7° fits\.", second)
 
 
 def test_between_error_and_healthy_people_a_difference_is_stated_and_they_are_named(

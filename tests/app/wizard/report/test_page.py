@@ -1,5 +1,8 @@
 """The report's page: pictures of the pages are as fine as there is room for them."""
 
+from collections.abc import Iterator
+from uuid import UUID
+
 import pytest
 from PySide6.QtCore import QBuffer, QByteArray, Qt
 from PySide6.QtGui import QImage
@@ -10,6 +13,8 @@ from app.theme.notifier import ThemeNotifier
 from app.widgets.sheets import PAPER_INCH
 from app.wizard.report.comment_editor import REBUILT_AFTER_MS
 from app.wizard.report.page import ReportPage
+from app.wording.translation import use_language
+from tests.app.room import settle, words_cut
 
 
 @pytest.fixture
@@ -63,3 +68,36 @@ def test_a_small_page_that_is_pressed_brings_that_page_into_sight(qtbot: QtBot, 
     top, bottom = page.sheets.top_of(number), page.sheets.top_of(number + 1)
     assert seen.top() <= top + 1
     assert min(seen.bottom(), bottom) - max(seen.top(), top) >= 0.5 * min(seen.height(), bottom - top)
+
+
+@pytest.fixture(params=["en", "de"])
+def language(request: pytest.FixtureRequest) -> Iterator[str]:
+    use_language(request.param)
+    yield request.param
+    use_language("en")
+
+
+@pytest.mark.usefixtures("language")
+def test_the_card_beside_the_pages_is_as_wide_as_its_words_in_each_language(qtbot: QtBot, look: ThemeNotifier) -> None:
+    page = ReportPage(look)
+    qtbot.addWidget(page)
+    page.resize(1064, 640)
+    page.set_room(1064, 640)
+    page.show()
+    assert words_cut(page) == []
+
+
+def test_a_long_condition_of_an_earlier_visit_does_not_widen_the_card(qtbot: QtBot, look: ThemeNotifier) -> None:
+    page = ReportPage(look)
+    qtbot.addWidget(page)
+    page.resize(1064, 640)
+    page.set_room(1064, 640)
+    page.show()
+    settle()
+    before = page.editor.width()
+    page.show_visits([(UUID(int=1), "14 Nov 2026, " + "shoes and orthosis with wedge, " * 3)])
+    page.earlier.setCurrentIndex(1)
+    settle()
+    assert page.earlier.isVisible()
+    assert page.editor.width() == page.earlier.width() == before
+    assert page.earlier.is_cut
