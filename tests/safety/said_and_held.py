@@ -26,7 +26,7 @@ READ_BACK = "('closed', 'recovered')"
 KEPT = re.compile(r"(\d+) included")
 STOOD = re.compile("([\\d.]+) s, reference set")
 WORN = re.compile(r"(\d) of 6 assigned")
-SAVED_AS = re.compile(r"Saved as (.+)\. Saving again asks for the folder\.")
+SAVED_AS = re.compile(r"Saved as (.+)\.$")
 RECOVERED_ONE = re.compile(r"\d+:\d\d of (.+) was recovered\.")
 RECOVERED_MANY = re.compile(r"(\d+) recordings, .+ in total, were recovered\.")
 LENGTH = re.compile(r"^(?:.* · )?(\d+):(\d\d)$")
@@ -256,8 +256,10 @@ def _of_results(wizard: "Wizard", visit: "Visit", held: HeldLibrary) -> Iterator
 def _of_report(wizard: "Wizard", visit: "Visit", held: HeldLibrary) -> Iterator[str]:
     note = wizard.shell.bar.state.note
     step: Any = wizard.current
-    if (stated := SAVED_AS.search(note)) is not None and not any(step.saved.glob("*.pdf")):
-        yield f"the bar says {stated[0]!r}, there is no report in it"
+    if (stated := SAVED_AS.search(note)) is not None:
+        written = step.saved or step.exported
+        if written.name != stated[1] or not (written.is_file() or any(written.glob("*.pdf"))):
+            yield f"the bar says {stated[0]!r}, there is no report"
     if visit.session is not None:
         rows = held.ask("SELECT comment FROM sessions WHERE id = ?", visit.session.id.hex)
         if rows and rows[0][0] != step.comment:
