@@ -251,7 +251,7 @@ def test_gaps_and_slips_are_stated(request_of_demonstration: ReportRequest) -> N
     remarks = pages[3].split("Data quality findings")[1]
     assert "Signal gaps over 50 ms take up 4.2 % of the strides used (1.0 % at most)." in remarks
     assert "Right leg: Strap moved; strides from 2.0 s on are excluded." in remarks
-    assert re.search(r"And \d+ more\.", pages[0])
+    assert re.search(r"\d+ more on page 4\.", pages[0])
 
 
 def test_clocks_that_cannot_be_compared_are_stated(request_of_demonstration: ReportRequest) -> None:
