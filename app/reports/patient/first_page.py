@@ -12,6 +12,7 @@ from app.summary.comparison import Comparison, Contrast
 from app.summary.facts import KINDS, Facts
 from app.summary.headline import Headline, headline_of
 from app.summary.joint_panels import joint_chart
+from app.summary.marks_on_curves import bracket_of, labels_of
 from app.summary.numbers_in_words import fixed
 from app.summary.plain_text import CONDITION_LENGTH, plain_lines, typed
 from app.summary.quality_line import quality_sentence, strides_in_words
@@ -46,7 +47,7 @@ def first_page(request: ReportRequest, facts: Facts, comparison: Comparison | No
         "charts": charts(request, facts, headline, comparison),
         "table": difference_table(facts),
         "quality": _quality(facts),
-        "source": source(facts),
+        "source": source(facts, headline),
     }
 
 
@@ -125,10 +126,12 @@ def charts(
     ]
 
 
-def source(facts: Facts) -> list[str]:
-    """Whose the grey curve is, or why there is none; and where the data quality is judged in detail."""
-    labels = tr("Values at dots are peak angles; a bracket is the value of the first sentence.")
-    return [panels.band_in_words(facts), labels, tr("Data quality in detail: page {page}.")]
+def source(facts: Facts, headline: Headline) -> list[str]:
+    """Whose the grey curve is, or why there is none; what values on the curves are; where data quality is in detail."""
+    values = [tr("Values at dots are peak angles.")] if any(labels_of(facts, kind) for kind in KINDS) else []
+    if bracket_of(facts, headline) is not None:
+        values.append(tr("The bracket is the value of the first sentence."))
+    return [panels.band_in_words(facts), *values, tr("Data quality in detail: page {page}.")]
 
 
 def _quality(facts: Facts) -> list[str]:
