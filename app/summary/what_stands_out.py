@@ -156,7 +156,7 @@ def _without_family(candidates: list[Candidate]) -> list[Candidate]:
 def unsure_sentence(column: str, found: Difference) -> str:
     """What tables mark and no finding reports: named, so that legs are not called similar above its mark."""
     unit, decimals = unit_and_decimals(column)
-    stated = tr("{measure} differs by {size}, {likely}; it is the least certain measure.")
+    stated = tr("{measure} differs by {size}, {likely}; it depends most on how sensors are attached.")
     size, likely = fixed(abs(found.difference), decimals) + unit, interval_words(column, found)
     return stated.format(measure=capitalised(name_in_sentence(column)), size=size, likely=likely)
 
