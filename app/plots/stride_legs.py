@@ -2,7 +2,6 @@
 
 import math
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass
 from itertools import pairwise
 
 import numpy as np
@@ -11,7 +10,7 @@ from PySide6.QtGui import QAccessible, QColor, QFontMetrics, QHideEvent, QKeyEve
 from PySide6.QtWidgets import QHBoxLayout, QSizePolicy
 
 from app.summary.drawn_legs import HALF_WIDTHS_M
-from app.summary.mean_legs import MeanLegs, bent_by
+from app.summary.mean_legs import MeanLegs, ThinBend, bent_by
 from app.theme.leg_chip import paint_chip
 from app.theme.notifier import ThemeNotifier
 from app.widgets.card import Card
@@ -36,14 +35,6 @@ DRAWN = later(
     "is not measured."
 )
 GHOST = later("Thin: shank and foot at the angles of the thin line.")
-
-
-@dataclass(frozen=True, slots=True)
-class ThinBend:
-    """How much further a leg was bent at the visit of the thin line, over the cycle (101,), degrees."""
-
-    knee_deg: FloatArray
-    ankle_deg: FloatArray
 
 
 class StrideLegs(Card):
@@ -218,8 +209,8 @@ class _Picture(Themed):
 
     def _paint_legs(self, painter: QPainter, legs: MeanLegs, room: QRectF) -> None:
         theme, px = self._look.theme, self._look.theme.px
-        poses = {side: legs.pose_m(side, self.percent) for side in legs.legs}
-        points = np.concatenate([leg.points_m.reshape(-1, 2) for leg in legs.legs.values()])
+        poses = {side: legs.pose_m(side, self.percent) for side in legs.points_m}
+        points = np.concatenate([points_m.reshape(-1, 2) for points_m in legs.points_m.values()])
         above = 0.0 if legs.tilt_rad is None else PELVIS_M + PELVIS_HALF_M
         low, high = float(np.nanmin(points[:, 1])), max(float(np.nanmax(points[:, 1])), above)
         behind, ahead = float(np.nanmin(points[:, 0])), float(np.nanmax(points[:, 0]))

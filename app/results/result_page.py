@@ -3,12 +3,10 @@
 from collections.abc import Mapping, Sequence
 from enum import Enum, auto
 
-import numpy as np
 from PySide6.QtCore import Qt, Signal
 from PySide6.QtGui import QKeySequence, QShortcut, QShowEvent
 from PySide6.QtWidgets import QBoxLayout, QGridLayout, QHBoxLayout, QVBoxLayout, QWidget
 
-from app.plots.stride_legs import ThinBend
 from app.results.differs_card import DiffersCard
 from app.results.headline_text import HeadlineText
 from app.results.result_parts import PageRoom, ResultParts
@@ -16,14 +14,13 @@ from app.results.summary_text import door_words, strides_in_short
 from app.results.thin_line import ThinLine, ThinLineChoice
 from app.results.value_tile import TileRow
 from app.summary.agreed import agreed_with
-from app.summary.comparison import Comparison
 from app.summary.conditions import Part, conditions_of
 from app.summary.course_lanes import CourseVisit
 from app.summary.data_quality import data_quality, quality_without_walk
 from app.summary.facts import Facts
 from app.summary.headline import Headline, headline_of
 from app.summary.marks_on_curves import bracket_of, gaps_of, labels_of
-from app.summary.mean_legs import MeanLegs, mean_legs
+from app.summary.mean_legs import MeanLegs, ThinBend, mean_legs, thin_bends
 from app.summary.quality_line import quality_sentence
 from app.summary.reference_bands import age_and_height
 from app.summary.request import AnalysedVisit, default_walks
@@ -41,8 +38,7 @@ from app.widgets.themed import Themed
 from app.widgets.toggle import Toggle
 from app.wording.recordings import with_shown_names
 from app.wording.translation import later, tr
-from core.body import Joint, JointKind, Side, Site, ankle_of, knee_of
-from core.gait.cycles import POINTS
+from core.body import Joint, JointKind, Side, Site, knee_of
 from core.results import RecordingAnalysis
 from core.samples import FloatArray
 from core.session import RecordingKind
@@ -514,7 +510,7 @@ class ResultPage(Themed):
         called = self._called(recording.name) if recording is not None else ""
         self.whole.show_recording(recording, called, is_simulated=visit is not None and visit.analysis.is_simulated)
         if recording is None or visit is None:
-            self._facts = self._found = None
+            self._facts = self._headline = None
             self._offer()
             return
         self.strides.show_walk(recording, self._can_choose)
@@ -543,12 +539,11 @@ class ResultPage(Themed):
         self.tiles.show_tiles(tiles_of(facts))
         self.cycles.show_walk(facts.part, recording, facts.is_simulated, age_and_height(visit.session))
         self.differs.show_facts(facts)
-        self._show_thin()
+        self._show_thin(is_walk_new=True)
         self._fit_table()
-        self._show_moving_legs()
 
-    def _show_thin(self) -> None:
-        """Draw the thin line again, with what is marked on the curves."""
+    def _show_thin(self, *, is_walk_new: bool = False) -> None:
+        """Draw the thin line again, with what is marked on the curves; of a new walk the cursor is where it counts."""
         facts, headline = self._facts, self._headline
         if facts is None or headline is None:
             return
@@ -560,11 +555,13 @@ class ResultPage(Themed):
         sides = frozenset((facts.affected,)) if facts.affected is not None else frozenset(Side)
         charts.show_beside(found, words, sides)
         charts.show_marks([bracket] if bracket is not None else [], gaps_of(facts))
-        charts.show_labels([label for kind in facts.kinds for label in labels_of(facts, kind)])
-        points = bracket.points if bracket is not None else [label.point for label in labels_of(facts, JointKind.KNEE)]
-        if points:  # of the headline, else where the knee is bent most
+        labels = [label for kind in facts.kinds for label in labels_of(facts, kind)]
+        charts.show_labels(labels)
+        knees = [label.point for label in labels if label.kind is JointKind.KNEE]
+        points = bracket.points if bracket is not None else knees
+        if is_walk_new and points:  # of the headline, else where the knee is bent most
             self.legs.percent = max(points, key=lambda one: one.angle_deg).percent
-        self._thin = _bent(found) if found is not None else {}
+        self._thin = thin_bends(found) if found is not None else {}
         self._show_moving_legs()
 
     def _show_quality(self) -> None:
@@ -572,16 +569,16 @@ class ResultPage(Themed):
         recording, visit = self.recording, self._visit
         if visit is None:
             return
+        line = None
         if recording is not None and recording.kind is RecordingKind.WALKING:
             facts = Facts(visit, recording)
             found, strides, calibrated = data_quality(facts), strides_in_short(facts), facts.calibrated
+            line = quality_sentence(facts, found)
             joints = {joint: facts.verdicts.joint(joint).shape.verdict for joint in Joint if facts.is_measured(joint)}
         else:
             found, strides, joints = quality_without_walk(visit, recording.name if recording else ""), "", {}
             calibrated = visit.analysis.calibrated_for(recording) if recording is not None else {}
         sites = [site for site in Site if any(site in one.imu for one in visit.session.recordings)]
-        of_walk = recording if recording is not None and recording.kind is RecordingKind.WALKING else None
-        line = quality_sentence(Facts(visit, of_walk), found) if of_walk is not None else None
         self.door.show_message(door_words(found, line))
         self._mended_by_motion = line.line.side if line is not None and line.line is not None else None
         self.quality.show_quality(found, joints, sites, strides, can_repeat=self._is_live)
@@ -664,17 +661,3 @@ class ResultPage(Themed):
 
 def _least_width(widget: QWidget) -> int:
     return widget.minimumSizeHint().width()
-
-
-def _bent(found: Comparison) -> dict[Side, ThinBend]:
-    """How much further each leg was bent where the thin line is drawn, of joints whose heights can be compared."""
-    then, now = found.against, found.others[-1]
-
-    def change(joint: Joint) -> FloatArray:
-        is_known = all(joint in part.joints and part.verdicts.joint(joint).height.is_reported for part in (then, now))
-        if not is_known or not found.has_one_zero(joint):
-            return np.full(POINTS, np.nan)
-        return then.cycle(joint).mean - now.cycle(joint).mean
-
-    bends = {side: ThinBend(change(knee_of(side)), change(ankle_of(side))) for side in found.sides}
-    return {side: bend for side, bend in bends.items() if np.isfinite(bend.knee_deg).all()}

@@ -9,30 +9,17 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from app.summary.comparison import Comparison
 from app.summary.drawn_legs import DrawnLeg, draw_legs
-from core.body import Side, ankle_of, knee_of
+from core.body import Joint, Side, ankle_of, knee_of
 from core.gait.cycles import POINTS, cycles_of, mean_cycle
 from core.results import Analysis, RecordingAnalysis
 from core.samples import FloatArray
 from core.session import Session
 from core.verdicts.model import together
-from core.verdicts.quantities import side_mean
 
 HIP, KNEE, ANKLE, TOES = range(4)
 FORWARD, UP = 0, 2
-
-
-@dataclass(frozen=True, slots=True)
-class MeanLeg:
-    """`points_m` (101, 4, 2): hip, knee, ankle and toes over the leg's own stride, NaN where not to be drawn."""
-
-    points_m: FloatArray
-    stride_s: float
-    toe_off_percent: float
-
-    @property
-    def has_foot(self) -> bool:
-        return bool(np.isfinite(self.points_m[:, TOES]).any())
 
 
 @dataclass(frozen=True, slots=True)
@@ -41,35 +28,18 @@ class MeanLegs:
 
     Attributes
     ----------
-    reference
-        The leg whose stride is gone through.
-    other_contact_percent
-        When in that stride the other foot comes down; half of it where the clocks cannot say, see `is_together`.
-    is_together
-        Whether both legs are known at one instant.
+    points_m
+        Hip, knee, ankle and toes of each leg over its own stride (101, 4, 2), NaN where not to be drawn.
     tilt_rad
-        Of the pelvis over the reference leg's stride (101,), forward positive; None where it is not to be drawn.
+        Of the pelvis over the affected leg's stride, else the left one's (101,), forward positive; None where it is
+        not to be drawn.
     """
 
-    legs: Mapping[Side, MeanLeg]
-    reference: Side
-    other_contact_percent: float = 50.0
-    is_together: bool = False
+    points_m: Mapping[Side, FloatArray]
     tilt_rad: FloatArray | None = None
 
-    def percent_of(self, side: Side, percent: float) -> float:
-        """Where on its own stride a leg is when the reference leg is at `percent`, 0 to 100."""
-        if side is self.reference or side not in self.legs:
-            return percent % 100.0
-        ratio = self.legs[self.reference].stride_s / self.legs[side].stride_s
-        return (percent - self.other_contact_percent) * ratio % 100.0
-
-    def is_standing(self, side: Side, percent: float) -> bool:
-        """Whether a foot is on the floor when the reference leg is at `percent`; False where that is not known."""
-        return self.percent_of(side, percent) < self.legs[side].toe_off_percent
-
     def pelvis_tilt_rad(self, percent: float) -> float | None:
-        """How far the pelvis is tilted when the reference leg is at `percent`; None where it is not to be drawn."""
+        """How far the pelvis is tilted at `percent` of the stride; None where it is not to be drawn."""
         return None if self.tilt_rad is None else float(np.interp(percent % 100.0, np.arange(POINTS), self.tilt_rad))
 
     def pose_m(self, side: Side, percent: float) -> FloatArray:
@@ -77,8 +47,30 @@ class MeanLegs:
         at = percent % 100.0
         low = math.floor(at)
         share = at - low
-        points = self.legs[side].points_m
+        points = self.points_m[side]
         return np.asarray((1 - share) * points[low] + share * points[low + 1])
+
+
+@dataclass(frozen=True, slots=True)
+class ThinBend:
+    """How much further a leg was bent where the thin line is drawn, over the cycle (101,), degrees."""
+
+    knee_deg: FloatArray
+    ankle_deg: FloatArray
+
+
+def thin_bends(found: Comparison) -> dict[Side, ThinBend]:
+    """Of legs whose knee's height can be compared; an ankle whose cannot is NaN."""
+    then, now = found.against, found.others[-1]
+
+    def change(joint: Joint) -> FloatArray:
+        is_known = all(joint in part.joints and part.verdicts.joint(joint).height.is_reported for part in (then, now))
+        if not is_known or not found.has_one_zero(joint):
+            return np.full(POINTS, np.nan)
+        return then.cycle(joint).mean - now.cycle(joint).mean
+
+    bends = {side: ThinBend(change(knee_of(side)), change(ankle_of(side))) for side in found.sides}
+    return {side: bend for side, bend in bends.items() if np.isfinite(bend.knee_deg).all()}
 
 
 def bent_by(pose_m: FloatArray, knee_deg: float, ankle_deg: float) -> FloatArray:
@@ -98,19 +90,11 @@ def _turned(vector: FloatArray, angle_rad: float) -> FloatArray:
 def mean_legs(session: Session, analysis: Analysis, walk: RecordingAnalysis) -> MeanLegs | None:
     """The mean over the strides used; None where no thigh sensor sent or no knee's height may be read."""
     drawn = draw_legs(session, analysis, walk)
-    legs = {side: leg for side, one in drawn.items() if (leg := _mean_leg(walk, side, one)) is not None}
-    if not legs:
+    points = {side: leg for side in Side if side in drawn and (leg := _points_m(walk, side, drawn[side])) is not None}
+    if not points:
         return None
     affected = analysis.affected_side
-    reference = affected if affected in legs else next(side for side in Side if side in legs)
-    tilt = _mean_tilt(walk, reference)
-    other = Side.RIGHT if reference is Side.LEFT else Side.LEFT
-    if other not in legs:
-        return MeanLegs(legs, reference, tilt_rad=tilt)
-    step = side_mean(walk, other, "step_time_s")
-    is_together = step.assessment.is_reported and math.isfinite(step.found.mean)
-    contact = 100.0 * step.found.mean / legs[reference].stride_s if is_together else 50.0
-    return MeanLegs(legs, reference, contact, is_together, tilt)
+    return MeanLegs(points, _mean_tilt(walk, affected if affected in points else next(iter(points))))
 
 
 def _mean_tilt(walk: RecordingAnalysis, side: Side) -> FloatArray | None:
@@ -122,7 +106,7 @@ def _mean_tilt(walk: RecordingAnalysis, side: Side) -> FloatArray | None:
     return found.mean if found.n else None
 
 
-def _mean_leg(walk: RecordingAnalysis, side: Side, drawn: DrawnLeg) -> MeanLeg | None:
+def _points_m(walk: RecordingAnalysis, side: Side, drawn: DrawnLeg) -> FloatArray | None:
     gait = walk.gait.get(side)
     if gait is None:
         return None
@@ -130,15 +114,10 @@ def _mean_leg(walk: RecordingAnalysis, side: Side, drawn: DrawnLeg) -> MeanLeg |
     if not together((knee.height, knee.sign, knee.shape)).is_reported:
         return None
     used = gait.strides.is_used
-    starts, ends = gait.strides.start_s[used], gait.strides.end_s[used]
-    points = _over_strides(drawn, starts, ends)
-    if points is None:
-        return None
-    if not together((ankle.height, ankle.sign, ankle.shape)).is_reported:
+    points = _over_strides(drawn, gait.strides.start_s[used], gait.strides.end_s[used])
+    if points is not None and not together((ankle.height, ankle.sign, ankle.shape)).is_reported:
         points[:, TOES] = np.nan
-    stance = side_mean(walk, side, "stance_percent")
-    toe_off = stance.found.mean if stance.assessment.is_reported else math.nan
-    return MeanLeg(points, float(np.mean(ends - starts)), toe_off)
+    return points
 
 
 def _over_strides(drawn: DrawnLeg, starts_s: FloatArray, ends_s: FloatArray) -> FloatArray | None:

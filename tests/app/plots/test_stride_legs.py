@@ -8,8 +8,8 @@ from PySide6.QtCore import Qt
 from PySide6.QtTest import QTest
 from pytestqt.qtbot import QtBot
 
-from app.plots.stride_legs import StrideLegs, ThinBend
-from app.summary.mean_legs import ANKLE, HIP, KNEE, TOES, MeanLeg, MeanLegs, bent_by
+from app.plots.stride_legs import StrideLegs
+from app.summary.mean_legs import ANKLE, HIP, KNEE, TOES, MeanLegs, ThinBend, bent_by
 from app.theme.notifier import ThemeNotifier
 from app.wording.translation import use_language
 from core.body import Side
@@ -29,8 +29,8 @@ def leg(ahead_m: float) -> FloatArray:
 
 def both(**change: object) -> MeanLegs:
     """The left leg's stride is longer than the right's."""
-    legs = {Side.LEFT: MeanLeg(leg(0.4), 1.2, 60.0), Side.RIGHT: MeanLeg(leg(0.2), 1.0, 60.0)}
-    return MeanLegs(**{"legs": legs, "reference": Side.LEFT, **change})  # type: ignore[arg-type] # of any field
+    points_m = {Side.LEFT: leg(0.4), Side.RIGHT: leg(0.2)}
+    return MeanLegs(**{"points_m": points_m, **change})  # type: ignore[arg-type] # of any field
 
 
 KNEES: Mapping[Side, FloatArray | None] = {Side.LEFT: np.arange(POINTS) * 0.5, Side.RIGHT: np.full(POINTS, -4.0)}
@@ -116,7 +116,7 @@ def test_without_legs_it_is_stated_why_and_nothing_plays(legs: StrideLegs) -> No
 
 
 def test_one_leg_has_its_reading_alone_and_what_is_not_reported_is_named(legs: StrideLegs) -> None:
-    legs.show_legs(both(legs={Side.RIGHT: MeanLeg(leg(0.2), 1.0, 60.0)}), {Side.RIGHT: KNEES[Side.RIGHT]})
+    legs.show_legs(both(points_m={Side.RIGHT: leg(0.2)}), {Side.RIGHT: KNEES[Side.RIGHT]})
     assert [text.text for text in legs.picture.painted_texts()] == ["knee −4°"]
     legs.show_legs(both(), {**KNEES, Side.LEFT: None})
     assert [text.text for text in legs.picture.painted_texts()] == ["not reported", "knee −4°"]

@@ -144,6 +144,18 @@ def test_the_last_visit_is_drawn_unless_the_headline_is_of_another(
     assert set(thin_curves(page)) == set(Side)  # nobody is affected
 
 
+def test_the_cursor_stays_where_somebody_put_it_when_the_thin_line_changes(
+    page: ResultPage, analysis: Analysis, session: Session
+) -> None:
+    return_to(page, session, analysis, analysis, analysis)
+    page.legs.show_percent(20.0)
+    choose(page, ThinLine.FIRST_VISIT)
+    choose(page, ThinLine.NOTHING)
+    assert page.legs.percent == 20.0
+    show(page, "walk 2")  # its cursor is where its curves count
+    assert page.legs.percent != 20.0
+
+
 def test_what_somebody_chose_stays_when_another_walk_is_shown(
     page: ResultPage, analysis: Analysis, session: Session
 ) -> None:

@@ -1,4 +1,4 @@
-"""The legs of a mean stride: where they stand, what is left out, and when one leg is where beside the other."""
+"""The legs of a mean stride: where they stand, and what is left out."""
 
 from dataclasses import replace
 
@@ -33,7 +33,7 @@ def legs_of(session: Session, analysis: Analysis) -> MeanLegs:
 def test_the_knee_between_the_drawn_segments_is_the_knee_angle(session: Session, analysis: Analysis) -> None:
     found = legs_of(session, analysis)
     for side in Side:
-        points = found.legs[side].points_m
+        points = found.points_m[side]
         thigh, shank = points[:, HIP] - points[:, KNEE], points[:, KNEE] - points[:, ANKLE]
         bent = np.arctan2(thigh[:, 1], thigh[:, 0]) - np.arctan2(shank[:, 1], shank[:, 0])
         cycles = walk_of(analysis).gait[side].cycles[Joint(f"{side}_knee")]
@@ -44,30 +44,22 @@ def test_the_knee_between_the_drawn_segments_is_the_knee_angle(session: Session,
 
 def test_in_contact_the_foot_is_ahead_and_half_a_stride_later_behind(session: Session, analysis: Analysis) -> None:
     found = legs_of(session, analysis)
-    assert found.is_together
-    assert found.other_contact_percent == pytest.approx(50.0, abs=2.0)
     assert found.pose_m(Side.LEFT, 0.0)[ANKLE, 0] > 0.2
     assert found.pose_m(Side.LEFT, 50.0)[ANKLE, 0] < -0.1
-    assert found.percent_of(Side.RIGHT, found.other_contact_percent) == pytest.approx(0.0, abs=1e-6)
-    assert found.is_standing(Side.LEFT, 30.0)
-    assert not found.is_standing(Side.RIGHT, 30.0)
 
 
 def test_what_may_not_be_read_is_not_drawn(session: Session, analysis: Analysis) -> None:
     without_foot = recalibrated(analysis, [Joint.LEFT_ANKLE], axis_sd_rad=np.deg2rad(11.0))
     found = legs_of(session, without_foot)
-    assert not found.legs[Side.LEFT].has_foot
-    assert np.isnan(found.legs[Side.LEFT].points_m[:, TOES]).all()
-    assert np.isfinite(found.legs[Side.LEFT].points_m[:, ANKLE]).any()
-    assert found.legs[Side.RIGHT].has_foot
+    assert np.isnan(found.points_m[Side.LEFT][:, TOES]).all()
+    assert np.isfinite(found.points_m[Side.LEFT][:, ANKLE]).any()
+    assert np.isfinite(found.points_m[Side.RIGHT][:, TOES]).any()
     without_zero = recalibrated(analysis, zero=ZeroKind.NONE)
     assert mean_legs(session, without_zero, walk_of(without_zero)) is None
 
 
-def test_one_leg_alone_is_its_own_reference(session: Session, analysis: Analysis) -> None:
+def test_one_leg_is_drawn_alone(session: Session, analysis: Analysis) -> None:
     gait = walk_of(analysis).gait
     alone = rewalked(analysis, gait={Side.RIGHT: gait[Side.RIGHT]})
     found = legs_of(session, alone)
-    assert found.reference is Side.RIGHT
-    assert found.percent_of(Side.RIGHT, 130.0) == pytest.approx(30.0)
-    assert not found.is_together
+    assert set(found.points_m) == {Side.RIGHT}
