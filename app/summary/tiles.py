@@ -241,6 +241,8 @@ def _since_last(
 ) -> tuple[float, TileChange]:
     """The value at the last visit before that has one, and what it has changed by since."""
     if len(walked) < 2:
+        if len(facts.course) > 1:
+            return math.nan, TileChange(tr("First in this condition"), brief=tr("First time"))
         return math.nan, TileChange(tr("First visit"), brief=tr("First visit"))
     parts = [visit.course.condition(facts.condition) if visit.course is not None else None for visit in walked]
     days, now = [visit.day for visit in walked], parts[-1]

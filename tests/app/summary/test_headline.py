@@ -150,6 +150,14 @@ def test_the_first_visit_is_called_so_and_the_other_knee_is_beside() -> None:
     assert tile(facts(walked(), affected=None), KNEE).change.words == "First visit"
 
 
+def test_who_was_here_before_in_another_condition_is_not_at_a_first_visit() -> None:
+    found = facts(walked(), affected=None)
+    before = CourseVisit(UUID(int=9), DAYS[0], course((walked(), "barefoot"), affected=None))
+    returned = replace(found, course=(before, *found.course))
+    assert {one.change.words for one in tiles_of(returned)} == {"First in this condition"}
+    assert {one.change.words for one in tiles_of(found)} == {"First visit"}
+
+
 def test_without_an_affected_side_the_knee_has_both_values() -> None:
     values = tile(facts(walked(knee_deg=52.0), affected=None), KNEE).values
     assert [(one.side, one.text) for one in values] == [(Side.LEFT, "52°"), (Side.RIGHT, "60°")]
