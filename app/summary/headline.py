@@ -15,8 +15,9 @@ from app.charts.cycles import is_mean_enough
 from app.summary.comparison import compare_legs
 from app.summary.course_lanes import CourseVisit
 from app.summary.facts import Facts
-from app.summary.interval_words import edge_decimals, evidence, interval_words
-from app.summary.measure_sentences import CLAUSES, unit_and_decimals, unit_in_sentence, who_in_sentence
+from app.summary.interval_words import edge_decimals, further_evidence, interval_words
+from app.summary.legs_in_words import both_knees, clause_of, legs_differ, legs_similar, rounded
+from app.summary.measure_sentences import unit_and_decimals, unit_in_sentence
 from app.summary.numbers_in_words import DAGGER, fixed, signed
 from app.summary.trend_lines import TrendLine, trend_columns, trend_lines, walked_visits
 from app.summary.what_stands_out import LEAST_CERTAIN, STATED_BETWEEN_LEGS, unsure_sentence
@@ -95,10 +96,11 @@ def order_of(facts: Facts, column: str, side: Side | None, found: Difference) ->
     """
     sides = tuple(Side) if side is None else (side,)
     is_of_other = side is not None and facts.affected not in (None, side)
-    return not facts.part.agreed.is_chosen(column, sides), _kind(column), is_of_other, -round(found.ratio, 1)
+    return not facts.part.agreed.is_chosen(column, sides), kind_of(column), is_of_other, -round(found.ratio, 1)
 
 
-def _kind(column: str) -> int:
+def kind_of(column: str) -> int:
+    """Joints come before timing and speed, and these before the foot."""
     if joint_of(column, Side.LEFT) is not None:
         return 0
     if column in PROTOCOLS or column == SPEED or BY_COLUMN[column].rests_on is QuantityClass.TIMING:
@@ -119,10 +121,10 @@ def _change(facts: Facts, walked: Sequence[CourseVisit], lines: Sequence[TrendLi
         if changed:
             line, found, at = min(changed, key=lambda one: order_of(facts, one[0].column, one[0].side, one[1]))
             values = {one.visit: one.value for one in line.values}
-            first = change_sentence_since(
+            first = _change_sentence_since(
                 line.column, line.side, found.difference, (values[at], line.values[-1].value), (walked[at].day, days)
             )
-            parts = evidence_in_sentences(line.column, found)
+            parts = _evidence_in_sentences(line.column, found)
             return Headline(rule, first, parts, line.column, line.side, walked[at])
     return None
 
@@ -135,7 +137,7 @@ def _since(rule: Rule, lines: Sequence[TrendLine]) -> Iterator[tuple[TrendLine, 
             yield line, found, at
 
 
-def change_sentence_since(
+def _change_sentence_since(
     column: str,
     side: Side | None,
     difference: float,
@@ -169,41 +171,11 @@ def change_sentence_since(
     return sentence.removesuffix("..") + "." if sentence.endswith("..") else sentence  # a shortened month has its own
 
 
-def clause_of(column: str, side: Side | None, value: str) -> str:
-    """What a measure is, as a main clause: "Left knee flexes 53° from stance to swing"."""
-    if side is None:
-        return capitalised(tr("{measure} is {value}").format(measure=name_in_sentence(column), value=value))
-    pattern = CLAUSES.get(column) if column != STANCE else None
-    if pattern is not None:
-        return tr(pattern).format(who=who_in_sentence(column, side), value=value)
-    stated = tr("{side} {measure} is {value}")
-    return stated.format(side=capitalised(side_name(side)), measure=name_in_sentence(column), value=value)
-
-
-def evidence_in_sentences(column: str, found: Difference, *, is_of_legs: bool = False) -> tuple[str, ...]:
-    """What is known of a difference beside its size, sentence by sentence, so that the last can be left out."""
-    stated = evidence(column, found)
-    likely = interval_words(column, found)
-    if not likely or not stated:
-        return (stated,) if stated else ()
-    dagger = f" {DAGGER}" if found.is_unverified else ""
-    rest = stated.removeprefix(f"{capitalised(likely)}.{dagger}").strip()
+def _evidence_in_sentences(column: str, found: Difference, *, is_of_legs: bool = False) -> tuple[str, ...]:
+    """What is known of a difference beyond its error, sentence by sentence, so that the last can be left out."""
     whose = tr("Difference {likely}.") if is_of_legs else tr("Change {likely}.")
-    return tuple(filter(None, [whose.format(likely=likely) + dagger, rest]))
-
-
-def rounded(column: str, values: Sequence[float], *, is_other_shown: bool = True) -> tuple[str, ...]:
-    """Two values and their difference, rounded once: degrees whole, all with a decimal more where they disagree.
-
-    The chart shows degrees of both legs beside the sentence; of other measures the first is shown if the sentence does.
-    """
-    is_angle = unit_of(column) is Unit.DEGREES
-    decimals = 0 if is_angle else unit_and_decimals(column)[1]
-    before, now, size = values
-    shown = abs(round(now, decimals) - round(before, decimals))
-    if (is_angle or is_other_shown) and not math.isclose(shown, round(size, decimals), abs_tol=0.1 * 10.0**-decimals):
-        decimals += 1
-    return tuple(fixed(value, decimals) for value in values)
+    likely = whose.format(likely=interval_words(column, found)) + (f" {DAGGER}" if found.is_unverified else "")
+    return tuple(filter(None, [likely, further_evidence(column, found)]))
 
 
 def _between_legs(facts: Facts) -> Headline | None:
@@ -217,28 +189,12 @@ def _between_legs(facts: Facts) -> Headline | None:
         if marked:
             column = min(marked, key=lambda one: order_of(facts, one, None, marked[one]))
             found = marked[column]
-            other, value = (facts.value(side, column).mean for side in (second, first))
-            _, now, size = rounded(column, (other, value, abs(found.difference)), is_other_shown=False)
-            unit = unit_and_decimals(column)[0]
-            clause = clause_of(column, first, now + unit)
-            points = tr("{size} points").format(size=size) if unit_of(column) is Unit.PERCENT else size + unit
+            values = facts.value(first, column).mean, facts.value(second, column).mean
             is_usual = mark is Mark.ERROR and math.isfinite(found.healthy)
-            stated = _legs_pattern(is_less=found.difference < 0, is_usual=is_usual)
-            sentence = stated.format(clause=clause, size=points, other=side_name(second))
-            beside = evidence_in_sentences(column, found, is_of_legs=True)[: None if mark is Mark.HEALTHY else 1]
+            sentence = legs_differ(column, first, values, found.difference, is_usual=is_usual)
+            beside = _evidence_in_sentences(column, found, is_of_legs=True)[: None if mark is Mark.HEALTHY else 1]
             return Headline(rule, sentence, (*beside, *_unsure(facts)), column, first)
     return None
-
-
-def _legs_pattern(*, is_less: bool, is_usual: bool) -> str:
-    """`is_usual`: many healthy people differ as much; of some measures nobody knows."""
-    if not is_usual:
-        return (
-            tr("{clause}, {size} less than the {other}.") if is_less else tr("{clause}, {size} more than the {other}.")
-        )
-    if is_less:
-        return tr("{clause}, {size} less than the {other}; many healthy people differ as much.")
-    return tr("{clause}, {size} more than the {other}; many healthy people differ as much.")
 
 
 def _similar(facts: Facts) -> Headline | None:
@@ -250,14 +206,8 @@ def _similar(facts: Facts) -> Headline | None:
     column = next((one for one, found in legs.items() if found.is_judged), None)
     if column is None:
         return None
-    unit = unit_and_decimals(column)[0]
-    left, right = (facts.value(side, column).mean for side in Side)
-    shown = rounded(column, (left, right, abs(legs[column].difference)), is_other_shown=False)
-    if column == KNEE:
-        stated = tr("Left and right are similar: knee {left} and {right} from stance to swing.")
-    else:
-        stated = tr("Left and right are similar: {measure} {left} and {right}.")
-    first = stated.format(measure=name_in_sentence(column), left=shown[0] + unit, right=shown[1] + unit)
+    values = facts.value(Side.LEFT, column).mean, facts.value(Side.RIGHT, column).mean
+    first = legs_similar(column, values, legs[column].difference)
     may_be = _may_be_error(column, legs[column], sides) + (f" {DAGGER}" if legs[column].is_unverified else "")
     return Headline(Rule.SIMILAR, first, (may_be, *_unsure(facts)), column)
 
@@ -282,9 +232,7 @@ def _one_leg(facts: Facts) -> Headline | None:
     """What both legs have of the knee, where nothing is judged; one leg of knee or stance; else the walking speed."""
     known = {side: facts.value(side, KNEE) for side in facts.gait}
     if len(known) > 1 and all(is_mean_enough(found.n) and math.isfinite(found.mean) for found in known.values()):
-        left, right = (f"{fixed(known[side].mean, 0)}°" for side in Side)
-        stated = tr("Knee from stance to swing: left {left}, right {right}.")
-        return Headline(Rule.ONE_LEG, stated.format(left=left, right=right), (), KNEE)
+        return Headline(Rule.ONE_LEG, both_knees(known[Side.LEFT].mean, known[Side.RIGHT].mean), (), KNEE)
     alone = next(iter(facts.gait)) if len(facts.gait) == 1 else None
     if alone is not None and (found := _leg_of(facts)) is not None:
         note = tr("Only the {side} leg was measured.").format(side=side_name(alone))
@@ -315,11 +263,11 @@ def _since_last(facts: Facts, walked: Sequence[CourseVisit], lines: Sequence[Tre
     for column in (found.column, KNEE, STANCE, SPEED):
         for line in judged:
             if line.column == column and line.side in (None, side) and (change := line.since_last) is not None:
-                return last_visit_sentence(line, change, walked, is_named=column != found.column)
+                return _last_visit_sentence(line, change, walked, is_named=column != found.column)
     return ""
 
 
-def last_visit_sentence(line: TrendLine, change: Difference, walked: Sequence[CourseVisit], *, is_named: bool) -> str:
+def _last_visit_sentence(line: TrendLine, change: Difference, walked: Sequence[CourseVisit], *, is_named: bool) -> str:
     """A change since the last visit that makes no headline: "Since 3 November: +1°, within measurement error."."""
     is_whole = unit_of(line.column) is Unit.DEGREES and round(change.difference)
     decimals = 0 if is_whole else unit_and_decimals(line.column)[1]

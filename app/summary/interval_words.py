@@ -35,7 +35,12 @@ def evidence(column: str, found: Difference) -> str:
     if not found.exceeds:
         return may_be_error_sentence(column, found) + dagger
     likely = f"{capitalised(interval_words(column, found))}.{dagger}"
-    return " ".join(filter(None, [likely, healthy_sentence(found), speed_sentence(column, found)]))
+    return " ".join(filter(None, [likely, further_evidence(column, found)]))
+
+
+def further_evidence(column: str, found: Difference) -> str:
+    """What is known of a difference beside its interval: healthy people's legs, and walking speed."""
+    return " ".join(filter(None, [healthy_sentence(found), speed_sentence(column, found)]))
 
 
 def may_be_error_sentence(column: str, found: Difference) -> str:

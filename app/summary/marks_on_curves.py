@@ -5,7 +5,8 @@ import numpy as np
 from app.charts.cycles import Band, is_mean_enough
 from app.charts.marks import BAND_SDS, CurveLabel, Deviation, Gap, extreme_of, gaps_outside, laid_at_height_of
 from app.summary.facts import KINDS, Facts, joint_of
-from app.summary.headline import Headline, Rule, rounded
+from app.summary.headline import Headline, Rule
+from app.summary.legs_in_words import rounded
 from app.summary.measure_sentences import unit_and_decimals
 from app.summary.numbers_in_words import fixed
 from app.wording.dates import short_date

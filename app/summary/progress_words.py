@@ -12,8 +12,10 @@ from app.summary.course import CourseCondition
 from app.summary.course_lanes import CourseLane, CourseVisit, LaneChange, LaneKind, lane_kinds, lanes
 from app.summary.course_words import change_in_figures, day_of, reported_goals
 from app.summary.goals import GoalFigure
+from app.summary.headline import kind_of
 from app.summary.interval_words import healthy_sentence, interval_words
-from app.summary.measure_sentences import CLAUSES, unit_in_sentence, who_in_sentence
+from app.summary.legs_in_words import both_knees, clause_of, legs_differ, legs_similar
+from app.summary.measure_sentences import unit_in_sentence
 from app.summary.numbers_in_words import DAGGER, fixed, signed
 from app.wording.body import side_name
 from app.wording.dates import day_and_month, long_date
@@ -26,7 +28,6 @@ from core.verdicts.goals import GoalStanding, beyond
 from core.verdicts.measurement_error import Difference
 
 MOST_NAMED = 2  # changes in the sentence
-TIMING = ("stance_percent", "stride_time_s", "cadence_per_min")
 
 
 @dataclass(frozen=True, slots=True)
@@ -176,12 +177,9 @@ def _with_brief(words: ProgressWords, change: _Change, visits: Sequence[CourseVi
 
 
 def _rank(lane: CourseLane) -> tuple[bool, int, float]:
-    """Measures with a goal, then joints, timing, the foot, and the walk; of equal ones the one of most errors."""
-    column = lane.kind.column
-    group = 0 if column.startswith(("hip", "knee", "ankle")) else 1 if column in TIMING else 2
-    group = 3 if lane.kind.is_of_walk else group
+    """As in the headline: measures with a goal, then by their kind; of equal ones the one of most errors."""
     ratios = [one.since_before.ratio for one in lane.changes if one.since_before is not None]
-    return not lane.goals, group, -max(ratios, default=0.0)
+    return not lane.goals, kind_of(lane.kind.column), -max(ratios, default=0.0)
 
 
 def _walked(visits: Sequence[CourseVisit], condition: str) -> CourseCondition | None:
@@ -197,30 +195,18 @@ def _legs_sentence(walked: CourseCondition, affected: Side | None) -> str:
     reported = [one for one in (own, other) if one is not None and one.is_reported and one.side is not None]
     if not reported:
         return ""
-    leading = reported[0]
-    assert leading.side is not None
     between = walked.between_legs(KNEE)
     if len(reported) == 1 or between is None or not between.is_reported:
-        return _clause(leading.side, fixed(leading.found.mean, 0)) + "."
-    sign = 1.0 if side is Side.LEFT else -1.0
-    difference, values = sign * between.difference, [one.found.mean for one in reported]
-    places = int(round(values[0]) - round(values[1]) != round(difference))
-    value, second = (fixed(one, places) + "°" for one in values)
-    if not between.is_judged or not between.exceeds:
-        left, right = (value, second) if side is Side.LEFT else (second, value)
-        pattern = (
-            tr("Left and right are similar: knee {left} and {right} from stance to swing.")
-            if between.is_judged
-            else tr("Knee from stance to swing: left {left}, right {right}.")
-        )
-        return pattern.format(left=left, right=right)
-    stated = (
-        tr("{clause}, {size} less than the {other}.")
-        if difference < 0
-        else tr("{clause}, {size} more than the {other}.")
-    )
-    clause = _clause(side, value.removesuffix("°"))
-    return stated.format(clause=clause, size=fixed(abs(difference), places) + "°", other=side_name(side.other))
+        alone = reported[0]
+        assert alone.side is not None
+        return clause_of(KNEE, alone.side, f"{fixed(alone.found.mean, 0)}°") + "."
+    value, second = (one.found.mean for one in reported)
+    left_right = (value, second) if side is Side.LEFT else (second, value)
+    if not between.is_judged:
+        return both_knees(*left_right)
+    if not between.exceeds:
+        return legs_similar(KNEE, left_right, between.difference)
+    return legs_differ(KNEE, side, (value, second), between.difference if side is Side.LEFT else -between.difference)
 
 
 def _healthy_beside(walked: CourseCondition) -> str:
@@ -232,10 +218,6 @@ def _beside_sentence(walked: CourseCondition, affected: Side | None) -> str:
     """Both knees, and how healthy people's differ."""
     legs = _legs_sentence(walked, affected)
     return " ".join(filter(None, [legs, _healthy_beside(walked)])) if legs else ""
-
-
-def _clause(side: Side, value: str) -> str:
-    return tr(CLAUSES[KNEE]).format(who=who_in_sentence(KNEE, side), value=f"{value}°")
 
 
 def _goals_sentence(shown: Sequence[CourseLane], visits: Sequence[CourseVisit], affected: Side | None) -> str:
