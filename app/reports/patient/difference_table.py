@@ -8,7 +8,7 @@ from app.charts.drawing import MM, Picture, box, line, picture
 from app.charts.joint_on_paper import CHIP, chip_picture
 from app.summary.facts import Facts
 from app.summary.goals import goal_mark
-from app.summary.headline import Headline, headline_of
+from app.summary.headline import Headline
 from app.summary.interval_words import interval_in_figures
 from app.summary.numbers_in_words import CARE, DAGGER, NOTHING, dagger_note, fixed, marked, signed
 from app.summary.trend_lines import walked_visits
@@ -31,7 +31,7 @@ ZONES, HALVES = 2.3, 1.6  # half a drawing: so many times healthy people's diffe
 MARGIN = 2.4  # so that what reaches an edge is seen whole
 
 
-def difference_table(facts: Facts) -> dict[str, object] | None:
+def difference_table(facts: Facts, headline: Headline) -> dict[str, object] | None:
     """Up to five rows, a hip's among them where one was measured; None where nothing was. One leg: its values alone."""
     rows = _rows(facts)
     if not any(row.values for row in rows):
@@ -48,7 +48,7 @@ def difference_table(facts: Facts) -> dict[str, object] | None:
         "heads": [less, tr("likely between"), tr("95 of 100")] if len(sides) > 1 else [],
         "since": since,
         "rows": [_row(facts, row, sides, has_last=has_last) for row in rows],
-        "marks": _marks(rows, sides, headline_of(facts)),
+        "marks": _marks(rows, sides, headline),
     }
 
 

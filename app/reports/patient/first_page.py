@@ -45,7 +45,7 @@ def first_page(request: ReportRequest, facts: Facts, comparison: Comparison | No
             if tile.column != STANCE or len(facts.gait) != 1
         ],
         "charts": charts(request, facts, headline, comparison),
-        "table": difference_table(facts),
+        "table": difference_table(facts, headline),
         "quality": _quality(facts),
         "source": source(facts, headline),
     }
@@ -99,7 +99,7 @@ def caution(facts: Facts) -> dict[str, str] | None:
     if found.is_good:
         return None
     more = tr_n("{count} more on page {page}.", "{count} more on page {page}.", found.others)
-    others = more.replace("{count}", str(found.others)) if found.others else ""
+    others = more.format(count=found.others, page="{page}") if found.others else ""  # whoever sets pages knows it
     return {"first": found.first, "then": " ".join(filter(None, [found.then, others]))}
 
 
@@ -173,7 +173,7 @@ def _chip(side: Side | None) -> dict[str, object] | None:
 
 def _side_in_words(side: str, *, is_prosthetic: bool) -> str:
     if side not in (*Side, "both"):
-        return tr("affected side not recorded") if side not in NOT_STATED[1:] else ""
+        return "" if side == "none" else tr("affected side not recorded")
     name = tr("both") if side == "both" else side_name(Side(side))
     pattern = tr("prosthetic side: {side}") if is_prosthetic else tr("affected side: {side}")
     return pattern.format(side=name)
