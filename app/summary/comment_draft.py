@@ -4,7 +4,6 @@ from app.summary.comparison import Comparison
 from app.summary.facts import Facts
 from app.summary.headline import headline_of
 from app.summary.what_stands_out import BANDS_ON_SCREEN, ranked_findings
-from app.wording.translation import tr
 
 MOST_SENTENCES = 3
 
@@ -12,6 +11,5 @@ MOST_SENTENCES = 3
 def comment_draft(facts: Facts, comparison: Comparison | None) -> str:
     """The headline, then findings of other measures."""
     headline = headline_of(facts)
-    bands = tr(BANDS_ON_SCREEN[0]), tr(BANDS_ON_SCREEN[1])
-    others = [one for one in ranked_findings(facts, comparison, bands) if one.column != headline.column]
+    others = [one for one in ranked_findings(facts, comparison, BANDS_ON_SCREEN) if one.column != headline.column]
     return " ".join([headline.first, *(one.stated for one in others)][:MOST_SENTENCES])

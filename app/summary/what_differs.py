@@ -11,7 +11,6 @@ from app.summary.course import change
 from app.summary.facts import Facts
 from app.summary.headline import order_of
 from app.summary.measure_sentences import unit_and_decimals
-from app.summary.numbers_in_words import Band
 from app.summary.trend_lines import walked_visits
 from app.summary.walk_figures import NO_HEIGHT, NO_ZERO, doubt_in
 from app.summary.what_stands_out import FAMILIES
@@ -32,8 +31,8 @@ class LegsRow:
     """One measure of both legs.
 
     A leg whose figure may not be reported, or is not known, is missing in `values`, and `unknown` states why.
-    `difference` is the first side's less the second's, as `Facts.first_and_second` orders them. `band` is the cited
-    group's mean less and plus 2 SD. `goals` had been agreed by the walk's day.
+    `difference` is the first side's less the second's, as `Facts.first_and_second` orders them. `goals` had been
+    agreed by the walk's day.
     """
 
     column: str
@@ -44,7 +43,6 @@ class LegsRow:
     verdicts: Mapping[Side, Verdict]
     unknown: Mapping[Side, str]
     difference: Difference
-    band: Band | None
     goals: tuple[Goal, ...] = ()
 
 
@@ -98,7 +96,6 @@ def _row(facts: Facts, column: str) -> LegsRow:
         verdicts=verdicts,
         unknown=unknown,
         difference=compare_legs(facts.part, column, facts.first_and_second),
-        band=_band(facts, column),
         goals=facts.part.agreed.of(column),
     )
 
@@ -118,19 +115,3 @@ def _unknown(facts: Facts, side: Side, column: str, verdict: Verdict) -> str:
     if facts.is_no_peak(side, column):
         return tr("no peak")
     return "" if facts.value(side, column).n else tr("no value")
-
-
-def _band(facts: Facts, column: str) -> Band | None:
-    """2 SD about the mean of a group that may stand beside the walk; None for what its source does not have."""
-    if not facts.sides_with_band:
-        return None
-    one_sd = facts.band(column) if column.endswith("_deg") else _band_of_time(facts, column)
-    if one_sd is None:
-        return None
-    half = one_sd[1] - one_sd[0]
-    middle = (one_sd[0] + one_sd[1]) / 2
-    return middle - half, middle + half
-
-
-def _band_of_time(facts: Facts, column: str) -> Band | None:
-    return facts.time_distance[column].band if column in ("stance_percent", "stride_length_m") else None

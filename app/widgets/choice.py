@@ -15,7 +15,6 @@ class Choice(QComboBox):
         self._look = look
         self._least: float | None = None
         self._most = 0.0
-        self._whole: tuple[str, ...] = ()
         self._height: float | None = None
         self.setAccessibleName(name)
         if sys.platform.startswith("linux"):  # there Qt gives the choice in force as the name, and ours is not read out
@@ -34,11 +33,6 @@ class Choice(QComboBox):
         """
         self._least, self._most = least, most
         self.setSizePolicy(QSizePolicy.Policy.Maximum, QSizePolicy.Policy.Fixed)
-        self.updateGeometry()
-
-    def keep_whole(self, *words: str) -> None:
-        """Let none of these be cut: they are ours, and nobody typed them."""
-        self._whole = words
         self.updateGeometry()
 
     def set_height(self, height: float) -> None:
@@ -62,8 +56,6 @@ class Choice(QComboBox):
         if self._least is None:
             return hint
         least = self._look.theme.px(self._least)
-        if self.currentText() in self._whole:
-            least = max(least, self._width_for(self.currentText()))
         height = min(hint.height(), self.maximumHeight())  # where it was made lower
         return QSize(min(self._width_for(self.currentText()), least), height)
 

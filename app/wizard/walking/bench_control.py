@@ -5,7 +5,6 @@ from typing import TYPE_CHECKING
 from PySide6.QtCore import QObject, Signal, Slot
 
 from app.summary.agreed import agreed_with
-from app.summary.answer import Answer, Outcome
 from app.summary.comparison import Comparison, Contrast
 from app.summary.conditions import Part, parts_of
 from app.summary.numbers_in_words import fixed
@@ -13,7 +12,7 @@ from app.wizard.evaluation import failure_in_words
 from app.wizard.walking.alignment_card import AlignmentRow, RowRole
 from app.wizard.walking.bench import AlignmentChain, ChangeEntry, chain_of, next_walk
 from app.wizard.walking.bench_view import BenchState
-from app.wizard.walking.bench_words import SPEED, bench_answer
+from app.wizard.walking.bench_words import SPEED, Answer, Outcome, bench_answer
 from app.wizard.walking.walk_labels import is_alignment, new_alignment
 from app.wording.alignment import change_lines, to_do_in_words
 from app.wording.recordings import name_in_words

@@ -9,7 +9,6 @@ from PySide6.QtWidgets import QBoxLayout, QHBoxLayout, QVBoxLayout, QWidget
 
 from app.plots.compared_chart import ComparedChart, ComparedFrame
 from app.results.compared_words import not_reported_in_words
-from app.summary.answer import Answer, Outcome
 from app.summary.beside import changes_on_curves
 from app.summary.comparison import Comparison
 from app.summary.conditions import Part
@@ -23,6 +22,7 @@ from app.widgets.themed import Themed
 from app.wizard.walking.alignment_card import AlignmentCard, AlignmentRow
 from app.wizard.walking.bench import ChangeEntry
 from app.wizard.walking.bench_differences import BenchDifferences
+from app.wizard.walking.bench_words import Answer, Outcome
 from app.wording.translation import tr
 from core.body import JointKind, Side
 from core.verdicts.model import worst

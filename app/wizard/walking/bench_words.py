@@ -1,9 +1,10 @@
 """What the bench shows of two alignments: one sentence of the prosthetic side, and what must be known to read it."""
 
 import math
+from dataclasses import dataclass
+from enum import StrEnum
 
 from app.results.compared_words import evidence_of, is_judged
-from app.summary.answer import Answer, Outcome
 from app.summary.comparison import Compared, Comparison
 from app.summary.conditions import Part
 from app.summary.measure_sentences import Reported, change_sentence, similar_sentence
@@ -14,6 +15,27 @@ from core.body import Side
 from core.verdicts.norms import MIN_STRIDES_FOR_SD
 
 SPEED = "speed_m_s"
+
+
+class Outcome(StrEnum):
+    """What kind of answer there is.
+
+    DIFFERS: something exceeds its error. NOTHING: differences were judged, and none exceeds its error. OPEN: nothing
+    could be judged.
+    """
+
+    DIFFERS = "differs"
+    NOTHING = "nothing"
+    OPEN = "open"
+
+
+@dataclass(frozen=True, slots=True)
+class Answer:
+    """`first` is the sentence that is read from afar, `then` what belongs to it; `then` may be empty."""
+
+    outcome: Outcome
+    first: str
+    then: str = ""
 
 
 def bench_answer(found: Comparison, prosthetic: Side) -> Answer:

@@ -11,7 +11,6 @@ from PySide6.QtCore import Qt
 from PySide6.QtTest import QTest
 from pytestqt.qtbot import QtBot
 
-from app.summary.answer import Outcome
 from app.summary.comparison import Comparison, Contrast
 from app.summary.conditions import Part, parts_of
 from app.theme.notifier import ThemeNotifier
@@ -20,7 +19,7 @@ from app.wizard.visit import Visit
 from app.wizard.walking.bench import ChangeEntry, chain_of, next_walk
 from app.wizard.walking.bench_control import Bench
 from app.wizard.walking.bench_differences import BenchDifferences
-from app.wizard.walking.bench_words import bench_answer
+from app.wizard.walking.bench_words import Outcome, bench_answer
 from app.wizard.walking.page import WalkingPage
 from app.wizard.walking.readout import WalkingReadout
 from app.wizard.walking.walk_labels import new_alignment
