@@ -22,7 +22,7 @@ def legs_differ(
     values
         Of `side`, and of the other leg; `difference` is the first less the second, subtracted before rounding.
     is_usual
-        Whether many healthy people differ as much, which is then said.
+        Whether many healthy people differ as much, which is then stated.
     """
     value, other = values
     _, now, size = rounded(column, (other, value, abs(difference)), is_other_shown=False)
