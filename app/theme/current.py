@@ -1,11 +1,12 @@
 """The theme in force, which the style holds, and how it reaches the application: style, palette and fonts."""
 
+from collections.abc import Callable
 from dataclasses import replace
 from importlib.resources import files
 
 from PySide6.QtCore import QByteArray, QEvent, Qt
 from PySide6.QtGui import QColor, QFont, QFontDatabase, QGuiApplication, QPalette
-from PySide6.QtWidgets import QApplication, QStyle, QToolTip, QWidget
+from PySide6.QtWidgets import QApplication, QLayout, QStyle, QToolTip, QWidget
 
 from app.theme.colours import DARK, LIGHT, Colours
 from app.theme.style import ControlStyle
@@ -14,6 +15,7 @@ from app.theme.theme import Theme
 FONT_FILES = ("Inter-Regular.otf", "Inter-Medium.otf", "Inter-SemiBold.otf", "InterDisplay-SemiBold.otf")
 
 POINTS_PER_INCH = 72.0
+SCALED = "scaled"  # property of widgets and layouts: their setters with lengths of the design
 SCALES = (0.8, 0.9, 1.0, 1.1, 1.25, 1.5, 1.75, 2.0)
 
 
@@ -26,6 +28,16 @@ def current_theme() -> Theme:
 def px(length: float) -> int:
     """Give a length of the design in pixels at the size in force, at least one."""
     return current_theme().px(length)
+
+
+def scaled(setter: Callable[..., object], *lengths: float) -> None:
+    """Call a setter of a widget or layout with lengths of the design in pixels, now and whenever the theme changes.
+
+    `setter` is a bound method, as `row.setSpacing`; a further call of the same one takes the place of the one before.
+    """
+    owner = setter.__self__  # type: ignore[attr-defined]  # of a bound method
+    owner.setProperty(SCALED, {**(owner.property(SCALED) or {}), setter.__name__: lengths})
+    setter(*(px(one) if one else 0 for one in lengths))
 
 
 def set_dark(is_dark: bool) -> None:
@@ -83,8 +95,17 @@ def _in_points(font: QFont) -> QFont:
 def _show_style_changed(widget: QWidget, style: QStyle) -> None:
     for child in widget.findChildren(QWidget, options=Qt.FindChildOption.FindDirectChildrenOnly):
         _show_style_changed(child, style)
+    _scale_again(widget)
     style.polish(widget)
     QApplication.sendEvent(widget, QEvent(QEvent.Type.StyleChange))
+
+
+def _scale_again(one: QWidget | QLayout) -> None:
+    """Repeat what `scaled` was asked of a widget and of the layouts within it."""
+    for name, lengths in (one.property(SCALED) or {}).items():
+        getattr(one, name)(*(px(length) if length else 0 for length in lengths))
+    for layout in one.findChildren(QLayout, options=Qt.FindChildOption.FindDirectChildrenOnly):
+        _scale_again(layout)
 
 
 def load_fonts() -> None:
