@@ -17,7 +17,7 @@ from devices.files.session_folder import read_session
 ROOT = Path(__file__).parents[3]
 READERS = {"read_session", "write_session", "read_site", "parse", "parse_toml", "read_csv", "read_parquet"}
 OWN = {  # what they read was written by this program, a moment ago
-    ("app/cli/main.py", "_demo"),
+    ("app/cli/demo.py", ""),
     ("app/importing/untrusted_files.py", "read_foreign_session"),
     ("app/importing/untrusted_files.py", "write_over_session"),
 }
