@@ -15,6 +15,7 @@ from app.results.detail_pages import DetailPages
 from app.summary.agreed import agreed_with
 from app.summary.course_lanes import CourseVisit
 from app.summary.report_dates import date_of
+from app.summary.request import AnalysedVisit
 from app.summary.visits import WalkedVisit, conditions_in_words, parts_of_visits, visits_by_condition
 from app.theme.icons import Icon
 from app.theme.notifier import ThemeNotifier
@@ -38,7 +39,6 @@ if TYPE_CHECKING:
     from app.editing.session_recording import SessionRecording
     from app.results.result_page import ResultPage
     from app.results.result_parts import ResultParts
-    from app.summary.request import AnalysedVisit
     from app.wizard.visit import Visit
     from core.results import Analysis
     from core.session import Session
@@ -186,8 +186,6 @@ class ResultsStep(Step):
         self.changed.emit()
 
     def _hold(self, results: "ResultPage", analysis: "Analysis") -> None:
-        from app.summary.request import AnalysedVisit  # as the results' page, which imported it
-
         session = self._visit.evaluation.session
         if session is None or (self._held is not None and self._held[0] is session and self._held[1] is analysis):
             return
@@ -342,7 +340,7 @@ class ResultsStep(Step):
 
     # earlier visits
 
-    def _course(self, visit: "AnalysedVisit") -> tuple[CourseVisit, ...]:
+    def _course(self, visit: AnalysedVisit) -> tuple[CourseVisit, ...]:
         stored, (session_id, before) = self._visit.session, self._before
         if stored is None or stored.id != session_id:
             return ()
