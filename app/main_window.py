@@ -25,11 +25,12 @@ from PySide6.QtGui import (
 )
 from PySide6.QtWidgets import QApplication, QStackedWidget, QVBoxLayout, QWidget
 
+from app.help.help_topics import Topic
 from app.home.login.controller import Entry
 from app.home.session_screen import SessionScreen
 from app.storage.idle_lock import IdleLock
 from app.storage.layout import default_folder
-from app.system.logs import log_qt_messages
+from app.system.qt_messages import log_qt_messages
 from app.system.settings import Scheme, Settings
 from app.theme.notifier import ThemeNotifier, load_fonts
 from app.widgets.accessible_role import show_roles
@@ -264,7 +265,6 @@ class MainWindow(QWidget):
     def _show_help(self, topic: str) -> None:
         """Open the manual at a topic; Back leads to where it was opened, and what is recorded there goes on."""
         from app.help.help_page import HelpPage
-        from app.help.help_topics import Topic
 
         if self._help is None:
             self._help = HelpPage(self._look)

@@ -2,12 +2,14 @@
 
 import argparse
 from collections.abc import Iterator
+from contextlib import AbstractContextManager
 from pathlib import Path
 from typing import TYPE_CHECKING
 from urllib.parse import urlsplit
 
 from app.cli.arguments import LIBRARY
-from app.cohort.batch.executors import of_a_cluster, of_this_computer, processors
+from app.cohort.batch.executors import of_this_computer, processors
+from app.cohort.batch.spread import Workers
 from app.system.progress import Report
 from devices.files.refusal import FileRefusedError, one_line
 
@@ -29,7 +31,7 @@ def run(args: argparse.Namespace, report: Report) -> Iterator[str]:
     """
     if args.folder == LIBRARY:
         _check_apart(args)
-    with of_a_cluster(args.dask) if args.dask else of_this_computer(args.workers or processors()) as workers:
+    with _cluster(args.dask) if args.dask else of_this_computer(args.workers or processors()) as workers:
         from app.cli.batch_work import done  # now: what takes seconds, while the workers do the same
 
         result, notes = done(args, workers, report)
@@ -57,6 +59,15 @@ def _check_apart(args: argparse.Namespace) -> None:
         raise FileRefusedError(
             one_line(args.dask), what, "Use a cluster on this computer, or one whose address starts with tls://"
         )
+
+
+def _cluster(address: str) -> AbstractContextManager[Workers]:
+    try:
+        from app.cohort.batch.cluster import of_a_cluster  # Dask, which may be missing
+    except ImportError as problem:
+        what = "this needs Dask, which is not installed"
+        raise FileRefusedError("--dask", what, "Install it with pip install .[cluster]") from problem
+    return of_a_cluster(address)
 
 
 def _reported(out: Path, result: "BatchResult") -> Iterator[str]:

@@ -11,12 +11,13 @@ from typing import TYPE_CHECKING
 from PySide6.QtCore import QObject, Signal
 from PySide6.QtWidgets import QStackedWidget
 
+from app.results.agreement_page import AgreementPage
 from app.theme.notifier import ThemeNotifier
+from app.wording.translation import tr
 from app.workers.background import Background
 
 if TYPE_CHECKING:  # their imports take a second
     from app.results.agreement_controller import AgreementController
-    from app.results.agreement_page import AgreementPage
     from app.results.diagnostics_controller import DiagnosticsController
     from app.results.found_page import FoundPage
     from core.results import Analysis, RecordingAnalysis
@@ -87,7 +88,6 @@ class DetailPages(QObject):
         """Put a session beside an optical system."""
         if self.agreement is None or self._compared is None:
             from app.results.agreement_controller import AgreementController
-            from app.results.agreement_page import AgreementPage
 
             self.agreement = AgreementPage(self._look)
             self._stack.addWidget(self.agreement)
@@ -123,3 +123,10 @@ class DetailPages(QObject):
     def _on_writing(self, what: str, folder: Path, write: Callable[[], None]) -> None:
         self._saved_for = self.found if what == HOW_FOUND else self.agreement
         self.writing.emit(what, folder, write)
+
+
+def cannot_write(folder: Path) -> tuple[str, str]:
+    """The message about a folder that takes no files."""
+    return tr("{folder} is not writable").format(folder=folder.name), tr(
+        "Choose another folder; the recordings are unchanged"
+    )

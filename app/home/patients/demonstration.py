@@ -17,7 +17,8 @@ from PySide6.QtCore import QObject, Signal
 
 from app.cohort.batch.again import AgainTask, again_task
 from app.cohort.batch.executors import ProcessExecutor, processors
-from app.demonstration.patients import SimulatedVisit, simulated_patients
+from app.demonstration import patients
+from app.demonstration.patients import SimulatedVisit
 from app.demonstration.recording import record_beside, take_in
 from app.storage.kept_analyses import bare
 from app.storage.opened import OpenedLibrary
@@ -84,8 +85,8 @@ class FillingDemonstration(QObject):
         self.stop()
         if not state.is_demonstration:
             return
-        patients = simulated_patients(datetime.datetime.now().astimezone())
-        self._waiting.extend(visit for patient in patients for visit in patient.visits)
+        simulated = patients.simulated_patients(datetime.datetime.now().astimezone())
+        self._waiting.extend(visit for patient in simulated for visit in patient.visits)
         self._codes = frozenset(visit.code for visit in self._waiting)
         self._total, self._ready, self._failed = len(self._waiting), 0, 0
         count = min(processors(), self._total)

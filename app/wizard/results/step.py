@@ -25,6 +25,7 @@ from app.widgets.rail_row import StepState
 from app.widgets.sentence_page import SentencePage
 from app.widgets.start_pages import WorkingPage
 from app.wizard.keys import Intent, KeyAction
+from app.wizard.results.figures import saved_from_library
 from app.wizard.results.stride_choice import StrideChoice
 from app.wizard.resuming import course_to, courses_before
 from app.wizard.step import Step, StepId
@@ -220,8 +221,6 @@ class ResultsStep(Step):
         self._show()
 
     def _on_figures_requested(self, what: str, folder: Path, write: Callable[[], None]) -> None:
-        from app.results.diagnostics_controller import saved_from_library
-
         if (session := self._visit.session) is not None:
             session_id = session.id
             self._visit.controller.run(
