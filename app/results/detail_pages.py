@@ -12,7 +12,6 @@ from PySide6.QtCore import QObject, Signal
 from PySide6.QtWidgets import QStackedWidget
 
 from app.results.agreement_page import AgreementPage
-from app.theme.notifier import ThemeNotifier
 from app.wording.translation import tr
 from app.workers.background import Background
 
@@ -46,14 +45,13 @@ class DetailPages(QObject):
 
     def __init__(
         self,
-        look: ThemeNotifier,
         stack: QStackedWidget,
         looking: Background,
         comparing: Background,
         parent: QObject,
     ) -> None:
         super().__init__(parent)
-        self._look, self._stack = look, stack
+        self._stack = stack
         self._looking, self._comparing = looking, comparing
         self.found: FoundPage | None = None
         self.agreement: AgreementPage | None = None
@@ -71,13 +69,12 @@ class DetailPages(QObject):
     def show_found(self, session: "Session", analysis: "Analysis", recording: "RecordingAnalysis") -> None:
         """Show how the joints of a recording were found."""
         if self.found is None or self._how_found is None:
-            from app.results.diagnostics_controller import DiagnosticsController
-            from app.results.found_page import FoundPage
+            from app.results import diagnostics_controller, found_page  # curves, and what computes them
 
-            self.found = FoundPage(self._look)
+            self.found = found_page.FoundPage()
             self.found.set_room(*self._room)
             self._stack.addWidget(self.found)
-            self._how_found = DiagnosticsController(self.found, self._looking, self)
+            self._how_found = diagnostics_controller.DiagnosticsController(self.found, self._looking, self)
             self._how_found.refused.connect(self.refused)
             self._how_found.writing.connect(partial(self._on_writing, HOW_FOUND))
             self.found.closed.connect(self.closed)
@@ -89,7 +86,7 @@ class DetailPages(QObject):
         if self.agreement is None or self._compared is None:
             from app.results.agreement_controller import AgreementController
 
-            self.agreement = AgreementPage(self._look)
+            self.agreement = AgreementPage()
             self._stack.addWidget(self.agreement)
             self._compared = AgreementController(self.agreement, self._comparing, self)
             self._compared.writing.connect(partial(self._on_writing, AGREEMENT))

@@ -22,7 +22,6 @@ from app.demonstration.patients import SimulatedVisit
 from app.demonstration.recording import record_beside, take_in
 from app.storage.kept_analyses import bare
 from app.storage.opened import OpenedLibrary
-from app.theme.notifier import ThemeNotifier
 from app.widgets.progress_strip import ProgressStrip
 from app.wizard.resuming import session_to_analyse
 from app.wording.translation import tr, tr_n
@@ -61,10 +60,10 @@ class FillingDemonstration(QObject):
     reported = Signal(str, str)
     _answered = Signal(object)  # from the threads that wait for the processes
 
-    def __init__(self, look: ThemeNotifier, controller: LibraryController, parent: QObject) -> None:
+    def __init__(self, controller: LibraryController, parent: QObject) -> None:
         super().__init__(parent)
         self._controller = controller
-        self.strip = ProgressStrip(look)
+        self.strip = ProgressStrip()
         self._executor: ProcessExecutor | None = None
         self._number = 0  # of the libraries so far
         self._waiting: deque[SimulatedVisit] = deque()
