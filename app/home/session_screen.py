@@ -224,7 +224,7 @@ class SessionScreen(Themed):
 
     def _on_done(self, opened: "AnalysedVisit") -> None:
         if self._results is None:
-            from app.results.result_page import ResultPage
+            from app.results.result_page import ResultPage  # numpy, pyqtgraph
 
             self._results = ResultPage()
             self.pages.addWidget(self._results)

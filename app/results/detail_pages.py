@@ -84,7 +84,7 @@ class DetailPages(QObject):
     def show_agreement(self, session: "Session", analysis: "Analysis") -> None:
         """Put a session beside an optical system."""
         if self.agreement is None or self._compared is None:
-            from app.results.agreement_controller import AgreementController
+            from app.results.agreement_controller import AgreementController  # SciPy, Typst
 
             self.agreement = AgreementPage()
             self._stack.addWidget(self.agreement)

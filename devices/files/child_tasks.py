@@ -143,7 +143,7 @@ def _read(asked: Details, arrays: list[Array]) -> object:
         return details_of_reference(read_reference(path), arrays)
     files = list(map(Path, asked["files"]))
     if task == GATHER:
-        from devices.files.gathering import gather
+        from devices.files.gathering import gather  # as below
 
         return details_of_gathered(gather(files))
     from devices.files.formats import read_trial  # here: SciPy takes longer to import than most files

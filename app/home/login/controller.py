@@ -108,7 +108,7 @@ class Entry(QObject):
             self._key = ""
             self.first_start.ask_for_recovery_key()
         if self._delay is None:  # of a library that was just made
-            from app.storage.login_delay import LoginDelay
+            from app.storage.login_delay import LoginDelay  # cryptography
 
             self._delay = LoginDelay(self._folder, time.monotonic)
         self.log_in.show_cover(code, is_recording, is_asked_for=is_asked_for)
@@ -407,6 +407,6 @@ def _too_many() -> str:
 
 
 def _is_end_of_key(typed: str, shown: str) -> bool:
-    from app.storage.keys import is_end_of_recovery_key
+    from app.storage.keys import is_end_of_recovery_key  # cryptography
 
     return is_end_of_recovery_key(typed, shown)

@@ -443,7 +443,7 @@ class _ResultsFrame(PageStack):
         """Make the next part of the results; whether there was one."""
         if self._results is not None:
             return False
-        from app.results.result_parts import ResultParts
+        from app.results.result_parts import ResultParts  # as below
 
         self._parts = self._parts or ResultParts()
         if not self._parts.make_next():
