@@ -323,6 +323,11 @@ class _Search(QLineEdit):
         self.textChanged.connect(self._apply_theme)
         self._apply_theme()
 
+    def changeEvent(self, event: QEvent) -> None:
+        super().changeEvent(event)
+        if event.type() is QEvent.Type.StyleChange:
+            self._apply_theme()
+
     def sizeHint(self) -> QSize:
         return QSize(px(200), px(SEARCH_HEIGHT))
 
