@@ -11,27 +11,27 @@ import re
 import struct
 from collections.abc import Iterator, Mapping, Sequence
 from contextlib import contextmanager
+from functools import cache
+from itertools import repeat
 from string import Formatter
-from typing import IO, Any
+from types import NoneType
+from typing import IO, Any, TypeVar, cast, get_args, get_origin, get_type_hints
 
 import numpy as np
 from numpy.typing import NDArray
 
-from core.findings import Finding, Severity
-from core.samples import ImuBlock, RateKind, SensorInfo
+from core.samples import FloatArray, ImuBlock
 from devices.files.refusal import FileRefusedError
-from devices.files.trial import FilesOfTrial, Gathered, ImportedSensor, ImportedTrial, UnreadFile
 
 Array = NDArray[np.generic]
 Details = dict[str, Any]
+T = TypeVar("T")
 
 LENGTH = struct.Struct("<Q")  # of the JSON; the arrays' lengths stand in it
 PLAIN_NUMBERS = re.compile(r"[<>|][fiu][1248]")
 MOST_ANSWER_BYTES = 2_000_000_000  # of JSON, and of arrays: more than any file that is let through can hold
 MOST_REFUSAL = 20_000  # letters of each part
 TIMES: Mapping[str, Any] = {"datetime": datetime.datetime, "date": datetime.date, "time": datetime.time}
-OF_BLOCK = ("time_s", "gyr_rad_s", "acc_m_s2", "q_earth_from_sensor", "mag")
-TEXTS_OF_SENSOR = ("serial", "model", "firmware", "clock")
 
 
 class BrokenAnswerError(Exception):
@@ -74,141 +74,72 @@ def receive(stream: IO[bytes]) -> tuple[Details, list[Array]]:
     return details, arrays
 
 
-def details_of_block(block: ImuBlock, arrays: list[Array]) -> Details:
-    """The block, its samples put into `arrays`."""
+def packed(value: object, arrays: list[Array]) -> Any:
+    """A value of any dataclass of ours in JSON's own kinds, its arrays put into `arrays`."""
+    match value:
+        case FileRefusedError():
+            return details_of_refusal(value)
+        case np.ndarray() if PLAIN_NUMBERS.fullmatch(value.dtype.str):
+            arrays.append(value)
+            return len(arrays) - 1
+        case np.ndarray():
+            return [str(text) for text in value]
+        case Mapping():
+            return {key: packed(inner, arrays) for key, inner in value.items()}
+        case tuple() | list():
+            return [packed(inner, arrays) for inner in value]
+        case str() | int() | float() | None:
+            return value
+    kind: Any = type(value)
+    return {name: packed(getattr(value, name), arrays) for name in _fields_of(kind)}
 
-    def put(array: Array) -> int:
-        arrays.append(array)
-        return len(arrays) - 1
 
-    values = {name: getattr(block, name) for name in OF_BLOCK}
-    columns = {
-        name: put(column) if PLAIN_NUMBERS.fullmatch(column.dtype.str) else [str(text) for text in column]
-        for name, column in block.unknown.items()
-    }
-    return {
-        **{name: None if value is None else put(value) for name, value in values.items()},
-        "sensor": block.sensor,
-        "is_rate_derived": block.is_rate_derived,
-        "unknown": columns,
-    }
-
-
-def block_from(details: Details, arrays: Sequence[Array]) -> ImuBlock:
-    """The block that `details_of_block` wrote.
+def unpacked(kind: type[T], details: Any, arrays: Sequence[Array]) -> T:
+    """What `packed` wrote, checked against the kinds that its dataclass states.
 
     Raises
     ------
     BrokenAnswerError
-        It is something else.
+        Something else.
     """
     with _whatever_is_wrong():
-        samples = {name: _samples(arrays[details[name]]) for name in OF_BLOCK if details[name] is not None}
-        columns = {
-            str(name): arrays[value] if isinstance(value, int) else np.array(value, dtype=np.dtypes.StringDType())
-            for name, value in details["unknown"].items()
-        }
-        n = len(arrays[details["time_s"]])
-        if any(column.shape != (n,) for column in columns.values()):
+        return cast(T, _of_kind(kind, details, arrays))
+
+
+def _of_kind(kind: Any, details: Any, arrays: Sequence[Array]) -> object:
+    origin, of = get_origin(kind), get_args(kind)
+    if kind == FloatArray:
+        return _samples(arrays[details])
+    if origin is np.ndarray:  # of any numbers, else of texts
+        return arrays[details] if isinstance(details, int) else np.array(details, dtype=np.dtypes.StringDType())
+    if origin is tuple:
+        kinds = repeat(of[0], len(details)) if of[-1] is Ellipsis else of
+        return tuple(_of_kind(inner, one, arrays) for inner, one in zip(kinds, details, strict=True))
+    if origin is Mapping:
+        return {_of_kind(of[0], key, arrays): _of_kind(of[1], value, arrays) for key, value in details.items()}
+    if NoneType in of:
+        return None if details is None else _of_kind(of[0], details, arrays)
+    if hasattr(kind, "__dataclass_fields__"):
+        fields = _fields_of(kind)
+        made = kind(**{name: _of_kind(inner, details[name], arrays) for name, inner in fields.items()})
+        if isinstance(made, ImuBlock) and any(column.shape != made.time_s.shape for column in made.unknown.values()):
             raise BrokenAnswerError("columns of different lengths")
-        return ImuBlock(
-            sensor=_text(details["sensor"]),
-            is_rate_derived=details["is_rate_derived"] is True,
-            unknown=columns,
-            **samples,
-        )
+        return made
+    if kind is FileRefusedError:
+        return refusal_from(details)
+    if kind is bool:
+        return details is True
+    if not isinstance(details, of or (str, int, float)):
+        raise BrokenAnswerError(f"{type(details)}, expected {kind}")
+    if kind is str and not isinstance(details, str):
+        raise BrokenAnswerError(f"{type(details)}, expected a text")
+    return details if of or kind is str else kind(details)
 
 
-def details_of_findings(findings: Sequence[Finding]) -> list[Details]:
-    """Findings as what JSON can hold."""
-    return [{"key": f.key, "severity": f.severity, "where": f.where, "numbers": dict(f.numbers)} for f in findings]
-
-
-def findings_from(details: list[Details]) -> tuple[Finding, ...]:
-    """What `details_of_findings` wrote, checked.
-
-    Raises
-    ------
-    BrokenAnswerError
-        It is something else.
-    """
-    with _whatever_is_wrong():
-        return tuple(_finding(one) for one in details)
-
-
-def details_of_trial(trial: ImportedTrial, arrays: list[Array]) -> Details:
-    """What a reader found in the files of a trial; what it gives about sensors is in the keys of `SensorInfo`."""
-    return {
-        "format": trial.format,
-        "started": trial.started,
-        "is_simulated": trial.is_simulated,
-        "sensors": [
-            {
-                "name": sensor.name,
-                "ids": list(sensor.ids),
-                "file": sensor.file,
-                "block": details_of_block(sensor.block, arrays),
-                "info": {name: getattr(sensor.info, name) for name in (*TEXTS_OF_SENSOR, "rate_hz", "rate_kind")},
-                "findings": details_of_findings(sensor.findings),
-            }
-            for sensor in trial.sensors
-        ],
-        "unread": [
-            {"file": one.file, "ids": list(one.ids), "refusal": details_of_refusal(one.refusal)} for one in trial.unread
-        ],
-    }
-
-
-def trial_from(details: Details, arrays: Sequence[Array]) -> ImportedTrial:
-    """What `details_of_trial` wrote, checked.
-
-    Raises
-    ------
-    BrokenAnswerError
-        It is something else.
-    """
-    with _whatever_is_wrong():
-        sensors = tuple(
-            ImportedSensor(
-                _text(one["name"]),
-                tuple(map(_text, one["ids"])),
-                _text(one["file"]),
-                block_from(one["block"], arrays),
-                _sensor(one["info"]),
-                findings_from(one["findings"]),
-            )
-            for one in details["sensors"]
-        )
-        unread = tuple(
-            UnreadFile(_text(one["file"]), tuple(map(_text, one["ids"])), refusal_from(one["refusal"]))
-            for one in details["unread"]
-        )
-        is_simulated = details["is_simulated"] is True
-        return ImportedTrial(_text(details["format"]), sensors, unread, _text(details["started"]), is_simulated)
-
-
-def details_of_gathered(gathered: Gathered) -> Details:
-    """Which files belong together."""
-    return {
-        "trials": [{"format": one.format, "name": one.name, "files": list(one.files)} for one in gathered.trials],
-        "refused": list(map(details_of_refusal, gathered.refused)),
-    }
-
-
-def gathered_from(details: Details) -> Gathered:
-    """What `details_of_gathered` wrote, checked.
-
-    Raises
-    ------
-    BrokenAnswerError
-        It is something else.
-    """
-    with _whatever_is_wrong():
-        trials = tuple(
-            FilesOfTrial(_text(one["format"]), _text(one["name"]), tuple(map(_text, one["files"])))
-            for one in details["trials"]
-        )
-        return Gathered(trials, tuple(map(refusal_from, details["refused"])))
+@cache
+def _fields_of(kind: Any) -> dict[str, Any]:
+    """The kinds of a dataclass's fields by their names, without what may be of any kind."""
+    return {name: inner for name, inner in get_type_hints(kind).items() if inner != Mapping[str, object]}
 
 
 def details_of_document(value: object) -> object:
@@ -258,10 +189,11 @@ def refusal_from(details: Details) -> FileRefusedError:
         It is something else.
     """
     with _whatever_is_wrong():
-        where, what, remedy = (_text(details[name]) for name in ("where", "what", "remedy"))
-        values = {str(name): _text(value) for name, value in details["values"].items()}
-        if any(len(text) > MOST_REFUSAL for text in (where, what, remedy, *values.values())):
-            raise BrokenAnswerError("a refusal without end")
+        where, what, remedy = (details[name] for name in ("where", "what", "remedy"))
+        values = {str(name): value for name, value in details["values"].items()}
+        texts = (where, what, remedy, *values.values())
+        if not all(isinstance(text, str) and len(text) <= MOST_REFUSAL for text in texts):
+            raise BrokenAnswerError("a refusal of something else, or without end")
         if values:
             for _, name, form, conversion in Formatter().parse(f"{what}{remedy}"):
                 if name is not None and (name not in values or form or conversion):
@@ -302,28 +234,3 @@ def _samples(array: Array) -> NDArray[np.float64]:
     if array.dtype != np.float64:
         raise BrokenAnswerError(f"samples of {array.dtype}")
     return array.astype(np.float64, copy=False)
-
-
-def _text(value: object) -> str:
-    if not isinstance(value, str):
-        raise BrokenAnswerError(f"{type(value)}, expected a text")
-    return value
-
-
-def _finding(details: Details) -> Finding:
-    numbers: Mapping[str, object] = details["numbers"]
-    kept = {str(name): value for name, value in numbers.items() if isinstance(value, str | int | float)}
-    return Finding(_text(details["key"]), Severity(details["severity"]), _text(details["where"]), kept)
-
-
-def _sensor(details: Details) -> SensorInfo:
-    rate_hz, kind = details["rate_hz"], details["rate_kind"]
-    serial, model, firmware, clock = (_text(details[name]) for name in TEXTS_OF_SENSOR)
-    return SensorInfo(
-        serial=serial,
-        model=model,
-        firmware=firmware,
-        rate_hz=None if rate_hz is None else float(rate_hz),
-        rate_kind=None if kind is None else RateKind(kind),
-        clock=clock,
-    )

@@ -13,23 +13,21 @@ import sys
 import threading
 import weakref
 from collections.abc import Callable, Mapping, Sequence
+from functools import partial
 from pathlib import Path
 from time import monotonic
-from typing import Any, TypeVar
+from typing import Any, TypeVar, cast
 
 from devices.files import child
 from devices.files.answers import (
     Array,
     BrokenAnswerError,
     Details,
-    block_from,
     document_from,
-    findings_from,
-    gathered_from,
     receive,
     refusal_from,
     send,
-    trial_from,
+    unpacked,
 )
 from devices.files.references.answers import reference_from
 from devices.files.references.trial import ReferenceFile
@@ -292,7 +290,8 @@ class LimitedReading:
             "sensor": file.sensor,
             "is_rate_derived": file.is_rate_derived,
         }
-        return self._reader.ask(task, [file.path], file.where, _site, self.waiting)
+        made_of = partial(unpacked, cast(type[ReadSite], ReadSite))
+        return self._reader.ask(task, [file.path], file.where, made_of, self.waiting)
 
     def read_trial(self, format_name: str, files: Sequence[Path], rate_hz: float | None) -> ImportedTrial:
         """As `formats.read_trial` does."""
@@ -303,7 +302,7 @@ class LimitedReading:
             "rate_hz": rate_hz,
         }
         where = ", ".join(path.name for path in files)
-        return self._reader.ask(task, files, where, trial_from, self.waiting)
+        return self._reader.ask(task, files, where, partial(unpacked, ImportedTrial), self.waiting)
 
     def read_reference(self, path: Path) -> ReferenceFile:
         """As `references.reading.read_reference` does."""
@@ -327,7 +326,7 @@ class LimitedReading:
     def gather(self, paths: Sequence[Path]) -> Gathered:
         """As `gathering.gather` does."""
         task = {"task": child.GATHER, "files": [str(path) for path in paths]}
-        return self._reader.ask(task, (), paths[0].name, _gathered, self.waiting)
+        return self._reader.ask(task, (), paths[0].name, partial(unpacked, Gathered), self.waiting)
 
 
 def _found_rows(details: Any, arrays: Sequence[Array]) -> tuple[tuple[str, ...], list[Columns]]:
@@ -345,18 +344,8 @@ def _found_rows(details: Any, arrays: Sequence[Array]) -> tuple[tuple[str, ...],
     return columns, batches
 
 
-def _gathered(details: Any, _arrays: Sequence[Array]) -> Gathered:
-    return gathered_from(details)
-
-
 def _document(details: Any, _arrays: Sequence[Array]) -> dict[str, object]:
     document = document_from(details)
     if not isinstance(document, dict):
         raise BrokenAnswerError("no table")
     return document
-
-
-def _site(details: Any, arrays: Sequence[Array]) -> ReadSite:
-    if not isinstance(details, dict) or not {"block", "findings"} <= details.keys():
-        raise BrokenAnswerError("no site")
-    return block_from(details["block"], arrays), findings_from(details["findings"])

@@ -26,13 +26,11 @@ from devices.files import limited_reader
 from devices.files.answers import (
     Array,
     BrokenAnswerError,
-    block_from,
-    details_of_block,
-    details_of_findings,
-    findings_from,
+    packed,
     receive,
     refusal_from,
     send,
+    unpacked,
 )
 from devices.files.imports import place_trial
 from devices.files.limited_reader import LimitedReader, LimitedReading, ReadingEndedError
@@ -491,16 +489,16 @@ def test_a_refusal_has_only_plain_names_in_its_braces(what: str) -> None:
 )
 def test_a_block_of_another_shape_is_no_block(change: dict[str, object]) -> None:
     arrays: list[Array] = []
-    reported = details_of_block(ImuBlock("a", np.arange(3.0), np.zeros((3, 3)), np.zeros((3, 3))), arrays)
-    assert block_from(reported, arrays).sensor == "a"
+    reported = packed(ImuBlock("a", np.arange(3.0), np.zeros((3, 3)), np.zeros((3, 3))), arrays)
+    assert unpacked(ImuBlock, reported, arrays).sensor == "a"
     with pytest.raises(BrokenAnswerError):
-        block_from(reported | change, arrays)
+        unpacked(ImuBlock, reported | change, arrays)
 
 
 def test_a_finding_of_another_shape_is_no_finding() -> None:
     findings = (Finding("key", Severity.INFO, "here", {"count": 1, "name": "x"}),)
-    assert findings_from(details_of_findings(findings)) == findings
+    assert unpacked(tuple[Finding, ...], packed(findings, []), []) == findings
     with pytest.raises(BrokenAnswerError):
-        findings_from([{"key": "a", "severity": "loud", "where": "", "numbers": {}}])
+        unpacked(Finding, {"key": "a", "severity": "loud", "where": "", "numbers": {}}, [])
     with pytest.raises(BrokenAnswerError):
-        findings_from([{"key": "a", "severity": "info", "where": "", "numbers": 3}])
+        unpacked(Finding, {"key": "a", "severity": "info", "where": "", "numbers": 3}, [])
