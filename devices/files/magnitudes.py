@@ -17,6 +17,7 @@ FELT_M_S2 = (7.0, 40.0)
 LIKE_G = (0.7, 1.4)
 MOST_RAD_S = 70.0  # twice the widest range of these sensors, 2000 deg/s
 FEW = 0.999  # of the rates that have to be possible: one damaged sample is no other unit
+RECORD_AGAIN = "Check the sensor's range and calibration with the manufacturer's program, and record again"
 TURNING_RAD_S = 0.2  # below, the noise of rates and orientation is what is compared
 
 
@@ -51,31 +52,14 @@ def check_magnitudes(
     """
     middle = middle_size(acc_m_s2)
     least, most = FELT_M_S2
-    if is_export and LIKE_G[0] < middle < LIKE_G[1]:
-        raise FileRefusedError(
-            where,
-            "the median acceleration of {sensor} is {middle}, which does not match gravity in m/s2; the "
-            "unit seems to be g",
-            "Export the file again in m/s2, or correct the unit",
-            sensor=quoted(sensor),
-            middle=f"{middle:.2f}",
-        )
-    if not (np.isnan(middle) or least < middle < most):
-        if is_export:
-            raise FileRefusedError(
-                where,
-                "the median acceleration of {sensor} is {middle}, which does not match gravity in m/s2",
-                "Export the file again in m/s2, with gravity included",
-                sensor=quoted(sensor),
-                middle=f"{middle:.2f}",
-            )
-        raise FileRefusedError(
-            where,
-            "the median acceleration of {sensor} is {middle}, which does not match gravity in m/s2",
-            "Check the sensor's range and calibration with the manufacturer's program, and record again",
-            sensor=quoted(sensor),
-            middle=f"{middle:.2f}",
-        )
+    is_like_g = is_export and LIKE_G[0] < middle < LIKE_G[1]
+    if is_like_g or not (np.isnan(middle) or least < middle < most):
+        what = "the median acceleration of {sensor} is {middle}, which does not match gravity in m/s2"
+        remedy = "Export the file again in m/s2, with gravity included" if is_export else RECORD_AGAIN
+        if is_like_g:
+            what += "; the unit seems to be g"
+            remedy = "Export the file again in m/s2, or correct the unit"
+        raise FileRefusedError(where, what, remedy, sensor=quoted(sensor), middle=f"{middle:.2f}")
     if gyr_rad_s is not None:
         _check_rates(gyr_rad_s, sensor, where, gyr_unit, is_export)
 
@@ -92,18 +76,10 @@ def _check_rates(gyr_rad_s: FloatArray, sensor: str, where: str, gyr_unit: str, 
             "Export the file again in rad/s, or correct the unit",
             sensor=quoted(sensor),
         )
-    if is_export:
-        raise FileRefusedError(
-            where,
-            "the angular rates of {sensor} reach {largest} deg/s, beyond the range of any sensor",
-            "Export the file again in deg/s, or correct the unit",
-            sensor=quoted(sensor),
-            largest=f"{np.degrees(largest):.0f}",
-        )
     raise FileRefusedError(
         where,
         "the angular rates of {sensor} reach {largest} deg/s, beyond the range of any sensor",
-        "Check the sensor's range and calibration with the manufacturer's program, and record again",
+        "Export the file again in deg/s, or correct the unit" if is_export else RECORD_AGAIN,
         sensor=quoted(sensor),
         largest=f"{np.degrees(largest):.0f}",
     )
