@@ -122,12 +122,8 @@ class WitBleSource:
         self._clock = LiveClock()
         settings = {"rate_hz": rate_hz}
         is_simulated = announced.name == EMULATED
-        self._info = SourceInfo(DRIVER, VERSION, announced.address, (self.name,), settings, is_simulated=is_simulated)
+        self.info = SourceInfo(DRIVER, VERSION, announced.address, (self.name,), settings, is_simulated=is_simulated)
         self._details = SensorDetails(MODEL, announced.address, "", rate_hz, is_loss_seen=False)
-
-    @property
-    def info(self) -> SourceInfo:
-        return self._info
 
     @property
     def sent(self) -> Sequence[bytes]:
@@ -149,7 +145,7 @@ class WitBleSource:
                 "{sensor} sends no measurements", "Switch it off and on, then search again", sensor=self.name
             )
         self._notified.clear()
-        self._framer = WitBleFramer(self._info)
+        self._framer = WitBleFramer(self.info)
         self._clock.begin()
 
     async def _opened(self) -> None:
