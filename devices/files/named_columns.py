@@ -70,9 +70,17 @@ def sensors_of_table(table: NamedTable, rate_hz: float | None) -> list[ImportedS
 
 
 def trial_of_tables(
-    format_name: str, files: Sequence[Path], read: Callable[[Path], Sequence[NamedTable]], rate_hz: float | None
+    format_name: str,
+    read: Callable[[Path], Sequence[NamedTable]],
+    files: Sequence[Path],
+    rate_hz: float | None = None,
 ) -> ImportedTrial:
-    """The sensors of several files of one trial; `read` gives the tables of each.
+    """The sensors of one trial, in one file or in several; `read` gives the tables of each.
+
+    Parameters
+    ----------
+    rate_hz
+        Samples per second where the files hold no times.
 
     Raises
     ------

@@ -68,7 +68,7 @@ def xdf_trial(files: Sequence[Path], rate_hz: float | None = None) -> ImportedTr
         What `xdf_streams` and `named_columns` refuse of the only file, and one without a stream of a sensor.
     """
     started: list[str] = []
-    trial = trial_of_tables("xdf", files, lambda path: _tables(path, started), rate_hz)
+    trial = trial_of_tables("xdf", lambda path: _tables(path, started), files, rate_hz)
     sensors = tuple(_on_own_clocks(trial.sensors))
     return replace(trial, sensors=sensors, started=min(filter(None, started), default=""))
 
