@@ -16,6 +16,7 @@ from hypothesis import settings
 from PySide6.QtCore import QEvent, QThread, QTimer
 from PySide6.QtWidgets import QApplication, QWidget
 
+from tests.simulated import STORE
 from tests.wrappers import Wrappers
 
 # a deadline fails tests on a busy machine; a new seed in every run of CI fails changes that are innocent of it
@@ -29,6 +30,11 @@ COLLECTIONS = 60  # of young objects, until the old ones are looked through: tha
 _BEGUN: set[str] = set()
 _WRAPPERS = Wrappers()
 _WRAPPERS.watch()
+
+
+def pytest_configure(config: pytest.Config) -> None:
+    if cache := getattr(config, "cache", None):
+        STORE.open(cache.mkdir("simulated"))
 
 
 @pytest.hookimpl(tryfirst=True)  # before tests are chosen by their marks

@@ -28,8 +28,9 @@ from app.workers.library_controller import LibraryController
 from core.body import Site
 from core.goals import GOAL_COLUMNS, Goal, GoalOf
 from core.session import Patient
-from devices.simulation.walker import DEMONSTRATION, Standing, Walk, simulate
+from devices.simulation.walker import DEMONSTRATION, Standing, Walk
 from tests.app.home.course_library import PASSPHRASE, add_visit, course_of_visit, make_course_library
+from tests.simulated import session_of
 
 WAIT_MS = 20_000
 
@@ -150,7 +151,7 @@ def reading(opened: OpenedLibrary) -> PatientReading:
 def test_a_visit_is_computed_and_a_change_takes_it_out_of_the_course(opened: OpenedLibrary) -> None:
     sites = (Site.LEFT_THIGH, Site.LEFT_SHANK, Site.LEFT_FOOT)
     played = (Standing(duration_s=2.0), Walk(strides=8))
-    known = simulate(replace(DEMONSTRATION, sites=sites, recordings=played)).session
+    known = session_of(replace(DEMONSTRATION, sites=sites, recordings=played))
     known = replace(known, patient=Patient(code="DEMO-1"), started="2026-06-20T09:00:00")
     session_id = import_session(opened, known, silent).session_id
     now = day_and_time("2026-06-25T09:00:00")

@@ -24,8 +24,9 @@ from app.theme.notifier import ThemeNotifier, load_fonts
 from app.wizard.resuming import read_analysed, session_to_analyse
 from app.workers.library_controller import LibraryController
 from core.session import Session
-from devices.simulation.walker import FreeMotion, Standing, Walk, WalkerSettings, simulate
+from devices.simulation.walker import FreeMotion, Standing, Walk, WalkerSettings
 from tests.app.home.course_library import PASSPHRASE, make_course_library
+from tests.simulated import session_of
 
 WAIT_MS = 60_000  # on a busy machine
 ANY_ROOM = Room(start_bytes=0, kept_bytes=0)
@@ -38,7 +39,7 @@ def silent(_share: float, _what: str) -> None:
 @pytest.fixture(scope="module")
 def walked() -> Session:
     recordings = (Standing(), FreeMotion(duration_s=3.0), Walk(strides=4))
-    return simulate(WalkerSettings(seed=5, recordings=recordings)).session
+    return session_of(WalkerSettings(seed=5, recordings=recordings))
 
 
 @pytest.fixture

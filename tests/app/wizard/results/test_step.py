@@ -31,10 +31,11 @@ from core.results import RecordingAnalysis
 from core.samples import FloatArray
 from core.session import RecordingKind, Session
 from core.verdicts.measurement_error import ErrorSource
-from devices.simulation.walker import DEMONSTRATION, simulate
+from devices.simulation.walker import DEMONSTRATION
 from tests.app.library_answers import asked
 from tests.app.room import words_cut
 from tests.app.wizard.pressing import press
+from tests.simulated import session_of
 
 pytestmark = pytest.mark.endurance  # minutes in all: the default run has three
 
@@ -43,7 +44,7 @@ QUICK_S = 1.0  # of the processor, whatever else the machine does
 
 @pytest.fixture(scope="module")
 def one_walk() -> Session:
-    return simulate(DEMONSTRATION).session
+    return session_of(DEMONSTRATION)
 
 
 @pytest.fixture
