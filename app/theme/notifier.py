@@ -1,6 +1,7 @@
 """The theme in force, and how it reaches the application: style, palette and fonts."""
 
 from dataclasses import replace
+from functools import cache
 from importlib.resources import files
 
 from PySide6.QtCore import QByteArray, QEvent, QObject, Qt, Signal
@@ -90,6 +91,7 @@ def _show_style_changed(widget: QWidget, style: QStyle) -> None:
     QApplication.sendEvent(widget, QEvent(QEvent.Type.StyleChange))
 
 
+@cache  # each time more, Qt keeps them once more
 def load_fonts() -> None:
     """Make the bundled fonts known to Qt.
 
