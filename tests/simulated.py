@@ -1,7 +1,7 @@
 """Simulated visits and their analyses for tests that are about something else: computed once and kept on the disk.
 
 Both test workers and the next run find them there, until a line of `core` or `devices` or a library that computes
-changes. Tests of the walker and of the analysis call these themselves.
+changes. Tests of the walker, of the analysis, or with a part of either patched call these themselves.
 """
 
 import hashlib

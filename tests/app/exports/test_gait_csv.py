@@ -11,6 +11,7 @@ from app.exports.gait_csv import STRIDE_STATUS, write_gait
 from app.exports.summary import summarise
 from app.summary.events import events_of
 from app.summary.reference_bands import reference_curves
+from core.analysis import analyse
 from core.body import Joint, Side, Site
 from core.calibration import clinical_sign
 from core.results import Analysis
@@ -184,7 +185,7 @@ def test_a_knee_whose_sign_is_uncertain_has_a_range_and_a_spread_and_no_angle(
 ) -> None:
     monkeypatch.setattr(clinical_sign, "MIN_RANGE_RAD", np.deg2rad(20.0))  # the stiff knee moves by some 15
     stiff = simulation_of(WalkerSettings(seed=4, recordings=(Standing(), Walk()), stiff_knee_side=Side.LEFT))
-    found = analysis_of(stiff.session)
+    found = analyse(stiff.session)
     assert ("clinical_sign_uncertain", "left_knee") in {(finding.key, finding.where) for finding in found.findings}
     write_gait(found.recordings[0], tmp_path)
     strides = [row for row in rows(tmp_path / "strides.csv") if row["side"] == "left"]
@@ -198,7 +199,7 @@ def test_a_knee_whose_sign_is_uncertain_has_a_range_and_a_spread_and_no_angle(
     assert walk["right"]["gait_variable_score_deg"]["knee"] > 0
     assert walk["both"]["symmetry_index_percent"]["knee_range_deg"] < -100
 
-    reported_by_hand = analysis_of(replace(stiff.session, turned_sign={Joint.LEFT_KNEE: 1}))
+    reported_by_hand = analyse(replace(stiff.session, turned_sign={Joint.LEFT_KNEE: 1}))
     write_gait(reported_by_hand.recordings[0], tmp_path)
     assert all(row["left_knee_mean_deg"] for row in rows(tmp_path / "cycles.csv"))
 
