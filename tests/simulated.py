@@ -34,7 +34,7 @@ class Store:
 
     def open(self, place: Path) -> None:
         """Keep in a folder of `place` that is called after all that computes; one called after other code goes."""
-        self._folder = place / code_digest()
+        self._folder = place / code_digest(ROOT)
         self._folder.mkdir(parents=True, exist_ok=True)
         for other in place.iterdir():
             if other != self._folder:
@@ -75,12 +75,11 @@ def _simulate(settings: WalkerSettings) -> SimulatedSession:
     return replace(simulate(settings), moved=())
 
 
-def code_digest() -> str:
+def code_digest(root: Path) -> str:
     """Of the sources and libraries that a result depends on."""
-    found = hashlib.blake2b(digest_size=16)
-    sources = [file for folder in ("core", "devices") for file in (ROOT / folder).rglob("*.py")]
-    for file in (Path(__file__), *sorted(sources)):
-        found.update(str(file.relative_to(ROOT)).encode() + b"\0" + file.read_bytes() + b"\0")
+    found = hashlib.blake2b(Path(__file__).read_bytes(), digest_size=16)
+    for file in sorted(file for folder in ("core", "devices") for file in (root / folder).rglob("*.py")):
+        found.update(file.relative_to(root).as_posix().encode() + b"\0" + file.read_bytes() + b"\0")
     found.update(
         repr([platform.machine(), platform.python_version(), *map(version, ("numpy", "scipy", "vqf"))]).encode()
     )

@@ -66,12 +66,12 @@ def words_of(file: Path) -> Words:
                 words.names.append((name, node.lineno))
             case ast.Constant(value=str(text)) if " " in text:
                 words.texts.append((text, node.lineno))
-        if isinstance(node, ast.Module | ast.ClassDef | ast.FunctionDef | ast.AsyncFunctionDef):
-            text = ast.get_docstring(node)
-            if text:
-                words.docstrings.append((text, node.body[0].lineno))
-    stated = {text for text, _ in words.docstrings}
-    words.texts = [(text, line) for text, line in words.texts if inspect.cleandoc(text) not in stated]
+        match node:
+            case ast.Module() | ast.ClassDef() | ast.FunctionDef() | ast.AsyncFunctionDef():
+                if stated := ast.get_docstring(node):
+                    words.docstrings.append((stated, node.body[0].lineno))
+    docstrings = {text for text, _ in words.docstrings}
+    words.texts = [(text, line) for text, line in words.texts if inspect.cleandoc(text) not in docstrings]
     return words
 
 

@@ -32,7 +32,6 @@ from app.summary.differences import (
 from app.summary.numbers_in_words import MARKS
 from app.summary.request import AnalysedVisit
 from app.summary.visits import ComparedVisits, WalkedVisit, conditions_in_words, parts_of_visits, visits_by_condition
-from app.theme.current import load_fonts, set_dark
 from app.theme.icons import Icon
 from app.widgets.table_cells import TextCell
 from app.widgets.text import SEMIBOLD
@@ -77,8 +76,6 @@ def parts(analysis: Analysis, session: Session) -> tuple[Part, ...]:
 
 @pytest.fixture
 def page(qtbot: QtBot, qapp: QApplication, analysis: Analysis, session: Session) -> ResultPage:
-    load_fonts()
-    set_dark(False)
     page = ResultPage()
     qtbot.addWidget(page)
     page.resize(1064, 672)

@@ -15,7 +15,6 @@ from pytestqt.qtbot import QtBot
 from app.results.cycle_page import NO_SIDE, NO_SPEED
 from app.results.result_page import ANSWER, COMPARE, STRIDES, WHOLE, ResultPage
 from app.summary.reference_bands import NOBODY, OTHER_AGES, WHY_NO_BAND
-from app.theme.current import load_fonts, set_dark
 from app.widgets.table import CellTable
 from app.widgets.table_cells import TextCell
 from core.body import LEG_JOINTS, Joint, Side
@@ -51,8 +50,6 @@ def show(page: ResultPage, analysis: Analysis, who: AgeAndHeight = NOBODY) -> No
 
 @pytest.fixture
 def page(qtbot: QtBot, qapp: QApplication, analysis: Analysis) -> ResultPage:
-    load_fonts()
-    set_dark(False)
     page = ResultPage()
     qtbot.addWidget(page)
     page.resize(1280, 700)

@@ -12,7 +12,6 @@ from pytestqt.qtbot import QtBot
 
 from app.results.result_page import ANSWER, STRIDES, ResultPage
 from app.summary.request import AnalysedVisit
-from app.theme.current import load_fonts, set_dark
 from app.widgets.stride_list import ANKLE_SHAPE, KNEE_SHAPE, STATE, STRIDE, StrideLine
 from core.body import Joint, Side
 from core.gait.chosen_strides import leave_out
@@ -37,8 +36,6 @@ def analysis(session: Session) -> Analysis:
 
 @pytest.fixture
 def page(qtbot: QtBot, qapp: QApplication, session: Session, analysis: Analysis) -> ResultPage:
-    load_fonts()
-    set_dark(False)
     page = ResultPage()
     qtbot.addWidget(page)
     page.resize(1280, 700)

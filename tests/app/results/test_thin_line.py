@@ -18,7 +18,6 @@ from app.summary.course import course_of
 from app.summary.course_lanes import CourseVisit
 from app.summary.request import AnalysedVisit
 from app.summary.visits import WalkedVisit, conditions_in_words, visits_by_condition
-from app.theme.current import load_fonts, set_dark
 from core.body import Joint, Side
 from core.results import Analysis, ZeroKind
 from core.session import Session
@@ -56,8 +55,6 @@ def analysis(session: Session) -> Analysis:
 
 @pytest.fixture
 def page(qtbot: QtBot, qapp: QApplication, analysis: Analysis, session: Session) -> ResultPage:
-    load_fonts()
-    set_dark(False)
     page = ResultPage()
     qtbot.addWidget(page)
     page.set_room(1064, 672)

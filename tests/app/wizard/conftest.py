@@ -17,7 +17,6 @@ from app.storage.library import Library
 from app.storage.slots import Cost
 from app.storage.stored import Operator, Role
 from app.system.settings import Settings
-from app.theme.current import load_fonts
 from app.wizard.sensors.step import SensorsStep
 from app.wizard.visit import Visit
 from app.wizard.wizard import Wizard
@@ -93,7 +92,6 @@ def visit(controller: LibraryController, choice: SourceChoice) -> Iterator[Visit
 
 @pytest.fixture
 def wizard(qtbot: QtBot, qapp: QApplication, controller: LibraryController, tmp_path: Path) -> Iterator[Wizard]:
-    load_fonts()
     settings = Settings(QSettings(str(tmp_path / "settings.ini"), QSettings.Format.IniFormat))
     wizard = Wizard(controller, settings)
     qtbot.addWidget(wizard)

@@ -20,7 +20,6 @@ from app.storage.kept_analyses import algorithm
 from app.storage.library import DEMONSTRATOR, Library
 from app.storage.opened import OpenedLibrary
 from app.system.settings import Settings
-from app.theme.current import load_fonts
 from app.wizard.resuming import read_analysed, session_to_analyse
 from app.workers.library_controller import LibraryController
 from core.session import Session
@@ -141,7 +140,6 @@ def test_home_leads_there_with_the_patients_sessions_ticked_and_shows_what_faile
     qtbot: QtBot, qapp: QApplication, tmp_path: Path
 ) -> None:
     """Of the fixture no samples were recorded: all fail, each for its reason."""
-    load_fonts()
     controller = LibraryController()
     home = Home(controller, Settings(QSettings(str(tmp_path / "s.ini"), QSettings.Format.IniFormat)))
     qtbot.addWidget(home)

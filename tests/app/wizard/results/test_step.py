@@ -18,7 +18,6 @@ from app.results.thin_line import ThinLine
 from app.storage.exchange import import_session
 from app.storage.opened import OpenedLibrary
 from app.summary.comparison import Contrast
-from app.theme.current import load_fonts, set_dark
 from app.wizard import reviewing
 from app.wizard.keys import Intent, KeyAction
 from app.wizard.results.step import ResultsStep
@@ -61,8 +60,6 @@ def session_id(qtbot: QtBot, controller: LibraryController, one_walk: Session) -
 
 @pytest.fixture
 def step(qtbot: QtBot, qapp: QApplication, visit: Visit, session_id: UUID) -> ResultsStep:
-    load_fonts()
-    set_dark(False)
     step = ResultsStep(visit)
     with qtbot.waitSignals([visit.resumed, visit.evaluation.done], timeout=30_000):
         visit.resume(session_id)
