@@ -9,6 +9,7 @@ import pickle
 import platform
 import shutil
 from collections.abc import Callable, Mapping, Set
+from contextlib import suppress
 from dataclasses import fields, is_dataclass, replace
 from importlib.metadata import version
 from pathlib import Path
@@ -24,6 +25,7 @@ from devices.simulation.walker import SimulatedSession, WalkerSettings, simulate
 
 ROOT = Path(__file__).parents[1]
 T = TypeVar("T")
+OTHERS = 2
 
 
 class Store:
@@ -33,12 +35,13 @@ class Store:
         self._folder: Path | None = None
 
     def open(self, place: Path) -> None:
-        """Keep in a folder of `place` that is called after all that computes; one called after other code goes."""
+        """Keep in a folder of `place` that is called after all that computes; of other code's the latest stay."""
         self._folder = place / code_digest(ROOT)
         self._folder.mkdir(parents=True, exist_ok=True)
-        for other in place.iterdir():
-            if other != self._folder:
-                shutil.rmtree(other, ignore_errors=True)
+        with suppress(FileNotFoundError):  # another worker was first
+            others = sorted(set(place.iterdir()) - {self._folder}, key=lambda one: one.stat().st_mtime)
+            for old in others[:-OTHERS]:  # the latest may be in use by a run that was begun before the code was changed
+                shutil.rmtree(old, ignore_errors=True)
 
     def get(self, compute: Callable[..., T], *arguments: object) -> T:
         """What `compute` gives, of nobody else's: whoever changes it changes it for itself."""

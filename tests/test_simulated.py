@@ -1,5 +1,6 @@
 """Tests that a visit kept on the disk is the one that would be made, and that any change of the code makes it again."""
 
+import os
 import shutil
 from dataclasses import replace
 from pathlib import Path
@@ -7,7 +8,7 @@ from pathlib import Path
 from core.analysis import analyse
 from core.body import Site
 from devices.simulation.walker import Standing, Walk, WalkerSettings, simulate
-from tests.simulated import ROOT, Store, analysis_of, code_digest, digest, simulation_of
+from tests.simulated import OTHERS, ROOT, Store, analysis_of, code_digest, digest, simulation_of
 
 SETTINGS = WalkerSettings(sites=(Site.LEFT_THIGH, Site.LEFT_SHANK), recordings=(Standing(), Walk(strides=5)))
 
@@ -20,17 +21,18 @@ def test_what_is_kept_is_what_is_computed() -> None:
         assert digest(analysis_of(kept.session)) == digest(analyse(made.session))
 
 
-def test_any_change_of_a_source_empties_the_store(tmp_path: Path) -> None:
+def test_any_change_of_a_source_makes_all_again_and_old_code_s_is_removed(tmp_path: Path) -> None:
     for folder in ("core", "devices"):
         shutil.copytree(ROOT / folder, tmp_path / folder)
     assert code_digest(tmp_path) == code_digest(ROOT)
     source = tmp_path / "core" / "gait" / "events.py"
     source.write_text(source.read_text(encoding="utf-8") + "#", encoding="utf-8")
     assert code_digest(tmp_path) != code_digest(ROOT)
-    other = tmp_path / "kept" / "of other code"
-    other.mkdir(parents=True)
+    for number in range(OTHERS + 2):
+        (tmp_path / "kept" / str(number)).mkdir(parents=True)
+        os.utime(tmp_path / "kept" / str(number), (number, number))
     Store().open(tmp_path / "kept")
-    assert [one.name for one in (tmp_path / "kept").iterdir()] == [code_digest(ROOT)]
+    assert {one.name for one in (tmp_path / "kept").iterdir()} == {"2", "3", code_digest(ROOT)}
 
 
 def test_what_somebody_changes_is_not_changed_for_the_next(tmp_path: Path) -> None:
