@@ -18,7 +18,8 @@ from core.samples import FloatArray, ImuBlock, RateKind
 from core.signal.orientation import oriented
 from core.signal.pair import OrientedTrack
 from core.signal.tracks import even_tracks
-from devices.simulation.walker import FreeMotion, Standing, Tissue, Walk, WalkerSettings, simulate
+from devices.simulation.walker import FreeMotion, Standing, Tissue, Walk, WalkerSettings
+from tests.simulated import session_of
 
 pytestmark = pytest.mark.endurance  # minutes in all: the default run has three
 
@@ -35,7 +36,7 @@ def oriented_foot(block: ImuBlock, bias_rad_s: FloatArray) -> OrientedTrack:
 def walker_feet(settings: WalkerSettings) -> list[OrientedTrack]:
     """The feet in the second recording; the first one is standing."""
     feet = []
-    recordings = simulate(settings).session.recordings
+    recordings = session_of(settings).recordings
     for site in settings.sites:
         standing, walk = (recording.imu[site] for recording in recordings)
         rest = rest_of(standing)
