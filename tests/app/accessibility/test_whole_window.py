@@ -51,7 +51,7 @@ def home(
         home.show()
         home.activateWindow()
     with qtbot.waitSignal(controller.opened, timeout=WAIT_MS) as reported:
-        controller.open(Path(shutil.copytree(untouched, tmp_path / "library")), PASSPHRASE)
+        controller.open(lambda holder: holder.open(Path(shutil.copytree(untouched, tmp_path / "library")), PASSPHRASE))
     home.show_library((reported.args or [])[0])
     qtbot.waitUntil(lambda: bool(home.page.sessions.lines), timeout=WAIT_MS)
     yield home
