@@ -215,11 +215,8 @@ class JournalStore:
             Path(beside).unlink(missing_ok=True)
 
     def _sha256_there(self, at: str) -> str:
-        digest = hashlib.sha256()
         with self._files.open(at, "rb") as there:
-            while piece := there.read(PIECE_BYTES):
-                digest.update(piece)
-        return digest.hexdigest()
+            return hashlib.file_digest(there, "sha256").hexdigest()
 
 
 def name_in_place(path: Path) -> str:
