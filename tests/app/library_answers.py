@@ -15,6 +15,7 @@ from app.workers.library_state import NotOpened, OpenedState
 
 WAIT_MS = 20_000  # on a busy machine
 Done = Callable[[object], object]
+Opening = Callable[[LibraryHolder], OpenedState | NotOpened]
 
 
 class Asker(QObject):
@@ -49,15 +50,28 @@ class Asker(QObject):
         self.shares.append(share)
 
 
-def opening(folder: Path, passphrase: str, code: str = "") -> Callable[[LibraryHolder], OpenedState | NotOpened]:
+def opening(folder: Path, passphrase: str, code: str = "") -> Opening:
     return lambda holder: holder.open(folder, passphrase, code)
 
 
 def opened(qtbot: QtBot, controller: LibraryController, folder: Path, passphrase: str, code: str = "") -> OpenedState:
+    return opened_by(qtbot, controller, opening(folder, passphrase, code))
+
+
+def opened_by(qtbot: QtBot, controller: LibraryController, ask: Opening) -> OpenedState:
+    """What comes of asking to open a library that does open."""
     with qtbot.waitSignal(controller.opened, timeout=WAIT_MS):
-        controller.open(opening(folder, passphrase, code))
+        controller.open(ask)
     assert controller.state is not None
     return controller.state
+
+
+def not_opened_by(qtbot: QtBot, controller: LibraryController, ask: Opening) -> tuple[str, str, bool]:
+    """The two sentences, and whether it was the key, of one that does not open."""
+    with qtbot.waitSignal(controller.not_opened, timeout=WAIT_MS) as reported:
+        controller.open(ask)
+    what, remedy, is_key = reported.args or []
+    return str(what), str(remedy), bool(is_key)
 
 
 def asked(qtbot: QtBot, controller: LibraryController, call: Callable[[OpenedLibrary], object]) -> object:

@@ -32,7 +32,7 @@ from app.workers.library_state import Joined, LibraryPlace, OpenedState, Unlocke
 from app.workers.library_watch import LibraryWatch
 from app.workers.refusals import refusal_of
 from core.session import Patient
-from tests.app.library_answers import WAIT_MS, Asker, opened, opening
+from tests.app.library_answers import WAIT_MS, Asker, asked, not_opened_by, opened, opened_by, opening
 
 PASSPHRASE = "four short words here"
 
@@ -246,33 +246,28 @@ def test_a_wrong_passphrase_is_reported_apart_from_other_trouble(
     qtbot: QtBot, controller: LibraryController, folder: Path, tmp_path: Path
 ) -> None:
     for place, is_key in ((folder, True), (tmp_path / "nothing", False)):
-        with qtbot.waitSignal(controller.not_opened, timeout=WAIT_MS) as reported:
-            controller.open(opening(place, "not this one", "hk"))
-        assert reported.args is not None
-        assert reported.args[2] is is_key
-        assert all(sentence.endswith(".") for sentence in reported.args[:2])
+        what, remedy, is_of_key = not_opened_by(qtbot, controller, opening(place, "not this one", "hk"))
+        assert is_of_key is is_key
+        assert what.endswith(".")
+        assert remedy.endswith(".")
 
 
 @pytest.mark.endurance
 def test_a_new_library_comes_with_its_recovery_key_which_lets_in_again(
     qtbot: QtBot, controller: LibraryController, tmp_path: Path
 ) -> None:
-    with qtbot.waitSignal(controller.opened, timeout=WAIT_MS) as reported:
-        controller.open(lambda holder: holder.create(tmp_path / "new", "hk", "H. Keller", PASSPHRASE))
-    (state,) = reported.args or []
+    state = opened_by(qtbot, controller, lambda holder: holder.create(tmp_path / "new", "hk", "H. Keller", PASSPHRASE))
     assert state.operator.role is Role.ADMINISTRATOR
-    assert state.recovery_key
-    assert state.recovery_key not in repr(state)
+    key = state.recovery_key
+    assert key
+    assert key not in repr(state)
     controller.close()
-    with qtbot.waitSignal(controller.opened, timeout=WAIT_MS) as reported:
-        controller.open(
-            lambda holder: holder.open_recovered(tmp_path / "new", state.recovery_key, "hk", "another four words")
-        )
-    (state,) = reported.args or []
+    state = opened_by(
+        qtbot, controller, lambda holder: holder.open_recovered(tmp_path / "new", key, "hk", "another four words")
+    )
     assert state.recovery_key == ""
     controller.close()
-    with qtbot.waitSignal(controller.opened, timeout=WAIT_MS):
-        controller.open(lambda holder: holder.open(tmp_path / "new", "another four words"))
+    opened_by(qtbot, controller, lambda holder: holder.open(tmp_path / "new", "another four words"))
 
 
 def test_the_folder_states_who_may_open_it(
@@ -292,19 +287,16 @@ def test_the_folder_states_who_may_open_it(
 def test_a_keyring_without_the_key_sends_back_to_the_passphrase(
     qtbot: QtBot, controller: LibraryController, folder: Path
 ) -> None:
-    with qtbot.waitSignal(controller.not_opened, timeout=WAIT_MS) as reported:
-        controller.open(lambda holder: holder.open_remembered(folder, "hk"))
-    assert reported.args is not None
-    assert reported.args[1] == "Enter the passphrase."
+    _, remedy, _ = not_opened_by(qtbot, controller, lambda holder: holder.open_remembered(folder, "hk"))
+    assert remedy == "Enter the passphrase."
 
 
 def test_a_library_that_another_program_holds_is_not_opened(
     qtbot: QtBot, controller: LibraryController, folder: Path
 ) -> None:
-    with held_alone(folder), qtbot.waitSignal(controller.not_opened, timeout=WAIT_MS) as reported:
-        controller.open(lambda holder: holder.open(folder, PASSPHRASE, "hk"))
-    assert reported.args is not None
-    assert "This library is already open in Gaitwright" in reported.args[0]
+    with held_alone(folder):
+        what, _, _ = not_opened_by(qtbot, controller, opening(folder, PASSPHRASE, "hk"))
+    assert "This library is already open in Gaitwright" in what
     opened(qtbot, controller, folder, PASSPHRASE, "hk")
 
 
@@ -375,9 +367,7 @@ def test_after_the_demonstration_the_library_opens_without_its_passphrase_for_th
     begun_demonstration(qtbot, controller, monkeypatch)
     kept = controller.kept
     assert kept is not None
-    with qtbot.waitSignal(controller.opened, timeout=WAIT_MS) as reported:
-        controller.open(lambda holder: holder.open_kept())
-    (state,) = reported.args or []
+    state = opened_by(qtbot, controller, lambda holder: holder.open_kept())
     assert (state.operator.code, state.library.folder, state.is_continued) == ("vi", folder, True)
     assert controller.kept is None
     asker = Asker()
@@ -416,10 +406,7 @@ def test_who_logs_out_or_left_the_desk_is_not_kept_behind_the_demonstration(
             controller.close()
         else:
             controller.call(lambda holder: holder.forget(), None, None, controller)
-        with qtbot.waitSignal(controller.not_opened, timeout=WAIT_MS) as reported:
-            controller.open(lambda holder: holder.open_kept())
-        assert reported.args is not None
-        assert reported.args[0] == "The library is locked."
+        assert not_opened_by(qtbot, controller, lambda holder: holder.open_kept())[0] == "The library is locked."
         assert not kept.data_key  # wiped
     opened(qtbot, controller, folder, PASSPHRASE, "hk")
     controller.lock()
@@ -435,9 +422,7 @@ def test_the_next_window_opens_the_library_of_whoever_is_logged_in_and_no_locked
     assert kept is not None
     following = LibraryController()
     try:
-        with qtbot.waitSignal(following.opened, timeout=WAIT_MS) as reported:
-            following.open(lambda holder: holder.open_kept(kept))
-        (state,) = reported.args or []
+        state = opened_by(qtbot, following, lambda holder: holder.open_kept(kept))
         assert (state.operator.code, state.is_continued) == ("vi", True)
         following.lock()
         assert following.finish(must_keep=True) is None
@@ -543,11 +528,9 @@ def test_a_passphrase_that_is_remembered_opens_next_time(
             return kept.get(name)
 
     monkeypatch.setattr("app.storage.keyring_slot._keyring", Keyring)
-    with qtbot.waitSignal(controller.opened, timeout=WAIT_MS):
-        controller.open(lambda holder: holder.open(folder, PASSPHRASE, "hk", must_remember=True))
+    opened_by(qtbot, controller, lambda holder: holder.open(folder, PASSPHRASE, "hk", must_remember=True))
     controller.close()
-    with qtbot.waitSignal(controller.opened, timeout=WAIT_MS):
-        controller.open(lambda holder: holder.open_remembered(folder, "hk"))
+    opened_by(qtbot, controller, lambda holder: holder.open_remembered(folder, "hk"))
 
 
 def test_a_refusing_keyring_is_no_reason_not_to_open(
@@ -557,8 +540,7 @@ def test_a_refusing_keyring_is_no_reason_not_to_open(
         raise KeyRefusedError("The keyring does not accept the key", "Unlock it")
 
     monkeypatch.setattr("app.workers.library_opening.remember", refuse)
-    with qtbot.waitSignal(controller.opened, timeout=WAIT_MS):
-        controller.open(lambda holder: holder.open(folder, PASSPHRASE, "hk", must_remember=True))
+    opened_by(qtbot, controller, lambda holder: holder.open(folder, PASSPHRASE, "hk", must_remember=True))
 
 
 def test_under_the_lock_there_is_no_key_and_what_is_asked_comes_after_it(
@@ -698,9 +680,7 @@ def test_a_move_that_is_refused_leaves_the_library_open(
     assert "This is not the address of a PostgreSQL server" in asker.refusals[0][0]
     assert controller.state is not None
     assert controller.state.library is state.library
-    controller.run(lambda library: library.library.patients.search(), *asker.ears)
-    qtbot.waitUntil(lambda: bool(asker.results), timeout=WAIT_MS)
-    assert asker.results == [()]
+    assert asked(qtbot, controller, lambda library: library.library.patients.search()) == ()
 
 
 def test_a_library_in_a_folder_is_not_brought_back(qtbot: QtBot, controller: LibraryController, folder: Path) -> None:
