@@ -156,7 +156,7 @@ def main() -> None:
         with Library.create(Path(folder), data_key, Operator("hk", "H. Keller", Role.ADMINISTRATOR)):
             pass
         controller = LibraryController()
-        controller.open(Path(folder), PASSPHRASE)
+        controller.open(lambda holder: holder.open(Path(folder), PASSPHRASE))
         wait(lambda: controller.state is not None)
         visit = dressed(controller, patient(required.walks, required.speed))
         calibrate(visit, required.speed)

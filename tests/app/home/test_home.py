@@ -581,7 +581,7 @@ def test_an_operator_is_added_and_may_log_in(
     qtbot.waitUntil(lambda: page.operators.rows.count() == 2, timeout=WAIT_MS)
     controller.close()
     with qtbot.waitSignal(controller.opened, timeout=WAIT_MS) as reported:
-        controller.open(folder, "first words for now", "vi")
+        controller.open(lambda holder: holder.open(folder, "first words for now", "vi"))
     (state,) = reported.args or []
     assert state.operator.role is Role.VIEWER
     home.show_library(state)

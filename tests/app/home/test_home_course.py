@@ -48,7 +48,7 @@ def home(qtbot: QtBot, qapp: QApplication, controller: LibraryController, untouc
     home.show()
     folder = shutil.copytree(untouched, tmp_path / "library")
     with qtbot.waitSignal(controller.opened, timeout=WAIT_MS) as known:
-        controller.open(folder, PASSPHRASE)
+        controller.open(lambda holder: holder.open(folder, PASSPHRASE))
     home.show_library((known.args or [])[0])
     qtbot.waitUntil(lambda: bool(home.page.sessions.lines), timeout=WAIT_MS)
     return home

@@ -146,7 +146,7 @@ def test_home_leads_there_with_the_patients_sessions_ticked_and_shows_what_faile
     home.show()
     with qtbot.waitSignal(controller.opened, timeout=WAIT_MS) as reported:
         (tmp_path / "library").mkdir()
-        controller.open(make_course_library(tmp_path / "library", visits=2), PASSPHRASE)
+        controller.open(lambda holder: holder.open(make_course_library(tmp_path / "library", visits=2), PASSPHRASE))
     home.show_library((reported.args or [])[0])
     qtbot.waitUntil(lambda: bool(home.page.sessions.lines), timeout=WAIT_MS)
     home.page.panel.analyse_again.trigger()
