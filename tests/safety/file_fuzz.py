@@ -9,16 +9,15 @@ doubled, nested deeply or replaced by a link that leads outside. All are read by
 reads them, each followed now and then by a good one, which has to be read.
 """
 
-import argparse
 import io
 import os
 import random
 import struct
-import sys
 import tempfile
 import time
 from collections import Counter
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from contextlib import closing
 from dataclasses import dataclass, field
 from pathlib import Path
 
@@ -35,6 +34,7 @@ from devices.files.limited_reader import LimitedReader, LimitedReading, ReadingE
 from devices.files.refusal import FileRefusedError
 from devices.files.session_folder import read_session
 from devices.files.site_files import MAG, QUAT, REQUIRED
+from tests.driver import Found, drive
 
 ROWS = 30
 GOOD_EVERY = 50
@@ -80,24 +80,6 @@ class Spoilable:
     may_be_a_link: bool
     beside: Mapping[str, bytes] = field(default_factory=dict)
     is_stream: bool = False  # whose damage is passed over, so that most of it is still read
-
-
-@dataclass(slots=True)
-class Read:
-    """What came of the files of one importer."""
-
-    files: int = 0
-    outcomes: Counter[str] = field(default_factory=Counter)
-    slowest_s: float = 0.0
-    seconds: float = 0.0
-    faults: list[str] = field(default_factory=list)
-
-    def __str__(self) -> str:
-        came = ", ".join(f"{count} {outcome}" for outcome, count in sorted(self.outcomes.items()))
-        return (
-            f"{self.files} files: {came}; {len(self.faults)} faults, "
-            f"slowest {self.slowest_s:.2f} s, {self.seconds:.0f} s in all"
-        )
 
 
 def columns() -> dict[str, np.ndarray[tuple[int], np.dtype[np.float64]]]:
@@ -479,10 +461,9 @@ def _no_lines(content: bytes, chance: random.Random) -> bytes:
 WAYS = (_flip, _burst, _cut, _double, _swap_lines, _huge, _nul, _deep, _path, _encode, _no_lines)
 
 
-def fuzz(importer: Spoilable, files: int, seed: int, reader: LimitedReader) -> Read:
+def fuzz(importer: Spoilable, files: int, seed: int, reader: LimitedReader) -> Found:
     """Spoil and read that many files."""
-    chance, found = random.Random(seed), Read(files)
-    began_s = time.monotonic()
+    chance, found = random.Random(seed), Found(Counter(files=files))
     with tempfile.TemporaryDirectory(prefix="gaitwright-fuzz-") as place:
         root = Path(place)
         (root / "outside").mkdir()
@@ -505,7 +486,7 @@ def fuzz(importer: Spoilable, files: int, seed: int, reader: LimitedReader) -> R
             else:
                 target.write_bytes(content)
             outcome = _outcome(importer, reader, root / "session", number, found)
-            found.outcomes[outcome] += 1
+            found.count[outcome] += 1
             if number % GOOD_EVERY == 0 and outcome != "read":
                 found.faults.append(f"file {number}: a good one came out as {outcome}")
             if is_link and outcome != "refused":
@@ -514,11 +495,10 @@ def fuzz(importer: Spoilable, files: int, seed: int, reader: LimitedReader) -> R
                 found.faults.append(f"up to file {number}: something was written")
         if _everything(root, target) != before:
             found.faults.append("something was written")
-    found.seconds = time.monotonic() - began_s
     return found
 
 
-def _outcome(importer: Spoilable, reader: LimitedReader, folder: Path, number: int, found: Read) -> str:
+def _outcome(importer: Spoilable, reader: LimitedReader, folder: Path, number: int, found: Found) -> str:
     began_s = time.monotonic()
     try:
         importer.read(reader, folder)
@@ -535,7 +515,7 @@ def _outcome(importer: Spoilable, reader: LimitedReader, folder: Path, number: i
         outcome = "raised"
         found.faults.append(f"file {number}: {error!r}")
     took_s = time.monotonic() - began_s
-    found.slowest_s = max(found.slowest_s, took_s)
+    found.figures["time, s"].append(took_s)
     if took_s > LONGEST_S:
         found.faults.append(f"file {number}: took {took_s:.0f} s")
     return outcome
@@ -553,21 +533,20 @@ def _everything(root: Path, target: Path) -> dict[str, tuple[int, bytes]]:
     }
 
 
-def main() -> int:
-    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("--files", type=int, default=10_000)
-    parser.add_argument("--seed", type=int, default=1)
-    parser.add_argument("--importer", choices=tuple(importers()), action="append")
-    required = parser.parse_args()
-    reader = LimitedReader()
-    faults = 0
-    for name in required.importer or importers():
-        found = fuzz(importers()[name], required.files, required.seed, reader)
-        print(f"{name}: {found}", *found.faults[:10], sep="\n  ", flush=True)
-        faults += len(found.faults)
-    reader.close()
-    return 1 if faults else 0
+def fuzz_each(
+    known: Mapping[str, Spoilable], files: int, seed: int, only: Sequence[str] | None = None
+) -> Iterator[tuple[str, Found]]:
+    """All of them, or `only` some, by one process."""
+    with closing(LimitedReader()) as reader:
+        for name in only or known:
+            yield name, fuzz(known[name], files, seed, reader)
 
 
 if __name__ == "__main__":
-    sys.exit(main())
+    drive(
+        __doc__,
+        lambda asked, _: fuzz_each(importers(), asked.files, asked.seed, asked.importer),
+        files=10_000,
+        seed=1,
+        importer={"choices": tuple(importers()), "action": "append"},
+    )
