@@ -8,7 +8,6 @@ been read back, until it is analysed, until the bench with its curves is painted
 time of this process. Time before Stop runs `--speed` times as fast.
 """
 
-import argparse
 import os
 import tempfile
 from collections.abc import Callable
@@ -38,6 +37,7 @@ from core.body import LEG_SITES, Side
 from core.session import Patient, RecordingKind
 from devices.simulation.replay import ReplaySource
 from devices.simulation.walker import FreeMotion, ProsthesisSetting, Standing, Tissue, Walk, WalkerSettings, simulate
+from tests.driver import options
 
 PASSPHRASE = "four short words here"
 PATIENCE_S = 60.0
@@ -142,10 +142,7 @@ def walked(step: WalkingStep, visit: Visit, painted: Painted, speed: float) -> t
 
 
 def main() -> None:
-    parser = argparse.ArgumentParser(description=__doc__)
-    parser.add_argument("--walks", type=int, default=6)
-    parser.add_argument("--speed", type=float, default=4.0)
-    required = parser.parse_args()
+    required = options(__doc__, walks=6, speed=4.0)
     application = QApplication([])
     load_fonts()
     with tempfile.TemporaryDirectory() as folder:

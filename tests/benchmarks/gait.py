@@ -6,7 +6,6 @@ The optical recordings are used where GAITWRIGHT_TEST_DATA names the shared fold
 foot_scoring.py. CPU seconds of one core, for a minute of the walker, by turns.
 """
 
-import argparse
 import csv
 import os
 import sys
@@ -42,6 +41,7 @@ from tests.benchmarks.foot_scoring import (
 )
 from tests.benchmarks.peers.gaitmap_feet import GaitmapFeet
 from tests.benchmarks.speed import ONE_CORE, machine
+from tests.driver import options
 
 FEET = {Side.LEFT: Site.LEFT_FOOT, Side.RIGHT: Site.RIGHT_FOOT}
 NO_BIAS = np.zeros(3)
@@ -283,9 +283,7 @@ def peers_gaitmap(stack: ExitStack) -> GaitmapFeet | None:
 
 
 def main() -> None:
-    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
-    parser.add_argument("--repeats", type=int, default=7, help="turns of the speed comparison")
-    repeats = parser.parse_args().repeats
+    repeats = options(__doc__, repeats=(7, "turns of the speed comparison")).repeats
     reported = os.environ.get("GAITWRIGHT_TEST_DATA")
     with ExitStack() as stack:
         gaitmap = peers_gaitmap(stack)

@@ -9,7 +9,6 @@ work": the processor time of the screen's thread meanwhile. To compare two versi
 PYTHONPATH.
 """
 
-import argparse
 import os
 import statistics
 import tempfile
@@ -34,6 +33,7 @@ from app.theme.notifier import ThemeNotifier, load_fonts
 from app.workers.library_controller import LibraryController
 from core.session import Patient, Session
 from tests.app.home.course_library import PASSPHRASE, add_visit, course_of_visit
+from tests.driver import options
 
 SEARCHED = "P-012"
 WITH_COURSES = 40
@@ -64,19 +64,17 @@ def wait_until(application: QApplication, is_so: Callable[[], bool]) -> None:
 
 
 def main() -> None:
-    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("--patients", type=int, default=2000)
-    parser.add_argument("--times", type=int, default=5)
-    parser.add_argument("--library", type=Path, help="made there if it is empty, and kept")
-    options = parser.parse_args()
+    asked = options(
+        __doc__, patients=2000, times=5, library={"type": Path, "help": "made there if it is empty, and kept"}
+    )
     application = QApplication([])
     application.setStyle("Fusion")
     load_fonts()
     with tempfile.TemporaryDirectory() as temporary:
-        folder = options.library or Path(temporary) / "library"
+        folder = asked.library or Path(temporary) / "library"
         folder.mkdir(exist_ok=True)
         if not (folder / KEYS).exists():
-            make_library(folder, options.patients)
+            make_library(folder, asked.patients)
         controller = LibraryController()
         controller.open(folder, PASSPHRASE)
         wait_until(application, lambda: controller.state is not None)
@@ -90,7 +88,7 @@ def main() -> None:
         home.resize(1280, 800)
         home.show()
         page, rows = home.page, []
-        for _ in range(options.times + 1):  # the first one fills caches
+        for _ in range(asked.times + 1):  # the first one fills caches
             began_s, worked_s = perf_counter(), thread_time()
             home.show_library(state)
             wait_until(application, lambda: bool(page.patients.lines))

@@ -9,7 +9,6 @@ and straps, and the free motion with excitation and lags. VQF (doi 10.1016/j.inf
 one filter per sensor, which the estimator needs anyway. The two take turns, minute by minute.
 """
 
-import argparse
 import resource
 import time
 from collections.abc import Callable, Iterator, Mapping
@@ -30,6 +29,7 @@ from core.samples import ImuBlock
 from core.session import Session
 from devices.simulation.walker import FreeMotion as FreeMotionRecording
 from devices.simulation.walker import Standing, Tissue, Walk, WalkerSettings, simulate
+from tests.driver import options
 
 RATE_HZ = 200.0
 BLOCK_S = 0.033
@@ -166,11 +166,12 @@ def long_stream(hours: float) -> Iterator[tuple[float, int]]:
 
 
 def main() -> None:
-    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("--minutes", type=int, default=3, help="of each stage")
-    parser.add_argument("--hours", type=float, help="of one stream, instead")
-    parser.add_argument("--seven", action="store_true", help="with a sensor on the pelvis, instead")
-    asked = parser.parse_args()
+    asked = options(
+        __doc__,
+        minutes=(3, "of each stage"),
+        hours={"type": float, "help": "of one stream, instead"},
+        seven=(False, "with a sensor on the pelvis, instead"),
+    )
     if asked.seven:
         compare_seven(asked.minutes)
         return

@@ -8,7 +8,6 @@ program's life, and the median and the longest of those after; once with nothing
 and once from the analysis that is kept. Each with the processor time that it took.
 """
 
-import argparse
 import os
 import statistics
 import sys
@@ -39,6 +38,7 @@ from app.wizard.wizard import Wizard
 from app.workers.library_controller import LibraryController
 from core.session import Session
 from devices.simulation.walker import DEMONSTRATION, simulate
+from tests.driver import options
 
 PASSPHRASE = "four short words here"
 WALKS = 3
@@ -131,9 +131,7 @@ def _results(wizard: Wizard) -> QWidget | None:
 
 
 def main() -> None:
-    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("--times", type=int, default=10)
-    times = parser.parse_args().times
+    times = options(__doc__, times=10).times
     application = QApplication(sys.argv[:1])
     load_fonts()
     look, controller = ThemeNotifier(application), LibraryController()

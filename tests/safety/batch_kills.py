@@ -7,7 +7,6 @@ cluster of this computer. Of the pool and of the cluster a worker is killed ever
 three has to be equal by hash: of the numbers each result, once; of the sessions every file and the table.
 """
 
-import argparse
 import hashlib
 import os
 import random
@@ -25,6 +24,7 @@ from typing import Any
 from app.cohort.batch.executors import MOST_TRIES, PRELOADED, ProcessExecutor, of_a_cluster, of_this_computer
 from app.cohort.batch.spread import Workers, finished
 from tests.app.batch_stand_ins import StandIn, digest_of
+from tests.driver import options
 
 WORKERS = 2
 PRELOADED_OF_BOTH = (*PRELOADED, "distributed.nanny")  # a killed worker of the cluster is back in no time, too
@@ -196,13 +196,17 @@ def _nobody_looks(_share: float, _what: str) -> None:
 
 
 def main() -> None:
-    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("--stand-ins", type=int, default=100_000)
-    parser.add_argument("--rounds", type=int, default=500, help="of a stand-in: how much work each is")
-    parser.add_argument("--sessions", type=int, default=1000)
-    parser.add_argument("--ways", default="serial,pool,dask")
-    parser.add_argument("--every", type=float, default=5.0, metavar="S", help="between two kills")
-    required, found = parser.parse_args(), BatchKills()
+    required, found = (
+        options(
+            __doc__,
+            stand_ins=100_000,
+            rounds=(500, "of a stand-in: how much work each is"),
+            sessions=1000,
+            ways="serial,pool,dask",
+            every=(5.0, "between two kills"),
+        ),
+        BatchKills(),
+    )
     if required.stand_ins:
         stand_ins(required.stand_ins, required.every, required.rounds, required.ways, found)
     if required.sessions:

@@ -6,7 +6,6 @@ A child opens a library as the window does, records, makes a backup, and locks; 
 recording has to go on under the lock.
 """
 
-import argparse
 import re
 import subprocess
 import sys
@@ -19,6 +18,7 @@ from app.storage.layout import KEYS
 from app.storage.library import Library
 from app.storage.slots import Cost
 from app.storage.stored import Operator, Role
+from tests.driver import options
 
 PASSPHRASE = "four short words here"
 CHILD = """
@@ -151,9 +151,7 @@ def measured(place: Path, locks: int) -> list[tuple[str, Copies]]:
 
 
 def main() -> int:
-    parser = argparse.ArgumentParser(description=__doc__)
-    parser.add_argument("--locks", type=int, default=3)
-    required = parser.parse_args()
+    required = options(__doc__, locks=3)
     with tempfile.TemporaryDirectory() as place:
         found = measured(Path(place), required.locks)
     for state, copies in found:

@@ -8,7 +8,6 @@ port: by itself, with streams asked for on this computer, and with streams asked
 there. Waiting at a port of one's own (bind) is no call.
 """
 
-import argparse
 import os
 import re
 import shutil
@@ -21,6 +20,8 @@ from collections.abc import Iterator
 from contextlib import ExitStack, contextmanager
 from dataclasses import dataclass
 from pathlib import Path
+
+from tests.driver import HIDDEN, options
 
 ROOT = Path(__file__).parents[2]
 NEEDED = ("unshare", "ip", "strace", "Xvfb", "openbox", "xdotool")
@@ -148,10 +149,7 @@ def _stream() -> None:
 
 
 def main() -> None:
-    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("--inside", nargs=2, help=argparse.SUPPRESS)
-    parser.add_argument("--stream", action="store_true", help=argparse.SUPPRESS)
-    required = parser.parse_args()
+    required = options(__doc__, inside={"nargs": 2, "help": HIDDEN}, stream=(False, HIDDEN))
     if required.inside:
         _search(*required.inside)
         return

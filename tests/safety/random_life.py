@@ -6,7 +6,6 @@ PLACE holds the library, the user's settings and folders; `random_keys` makes it
 `did` counts what was reached, `fault` is what must not be, with the step and what was done before it.
 """
 
-import argparse
 import faulthandler
 import gc
 import json
@@ -46,6 +45,7 @@ from app.workers.garbage import GarbageCollector
 from devices.simulation.replay import ReplaySource
 from devices.simulation.walker import DEMONSTRATION, FreeMotion, Standing, Walk, simulate
 from tests.app.watchdog import Watchdog
+from tests.driver import options
 from tests.safety.random_user import RandomUser
 from tests.safety.random_visits import OPERATOR, PASSPHRASE
 from tests.safety.said_and_held import HeldLibrary, contradictions, left_open
@@ -316,15 +316,14 @@ def simulated_source() -> SourceChoice:
 
 
 def main() -> int:
-    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("place", type=Path)
-    parser.add_argument("--seed", default="1/1")
-    parser.add_argument("--seconds", type=float, default=60.0)
-    parser.add_argument("--end", choices=ENDS, default="close")
-    parser.add_argument(
-        "--tell", dest="show_message", action="store_true", help="write every step to the standard error"
+    required = options(
+        __doc__,
+        place=Path,
+        seed="1/1",
+        seconds=60.0,
+        end={"choices": ENDS, "default": "close"},
+        tell={"dest": "show_message", "action": "store_true", "help": "write every step to the standard error"},
     )
-    required = parser.parse_args()
     faulthandler.enable()
     source = simulated_source()
     sources.choices = lambda: (source,)  # before the wizard takes it from there

@@ -9,7 +9,6 @@ structure of PDF/UA and PDF/A; every number of page one, and of every sentence o
 it, as rounding makes it; and no two figures for one measure on page one.
 """
 
-import argparse
 import csv
 import io
 import json
@@ -43,6 +42,7 @@ from core.session import RecordingKind, Session
 from devices.simulation.walker import DEMONSTRATION, FreeMotion, Standing, Walk, simulate
 from tests.app.changed_analysis import recalibrated, with_few_strides
 from tests.benchmarks.null_differences import real_walks
+from tests.driver import options
 
 BANDS = Path(__file__).parents[2] / "resources" / "reference_bands"
 MADE_AT = datetime(2026, 11, 23, 10, 30, tzinfo=UTC)
@@ -341,9 +341,7 @@ def _of_earlier_visits(request: ReportRequest) -> set[float]:
 
 
 def main() -> None:
-    parser = argparse.ArgumentParser(description=__doc__)
-    parser.add_argument("--pictures", type=Path, help="put every page there as PNG")
-    pictures: Path | None = parser.parse_args().pictures
+    pictures: Path | None = options(__doc__, pictures={"type": Path, "help": "put every page there as PNG"}).pictures
     if pictures is not None:
         pictures.mkdir(parents=True, exist_ok=True)
     trials = []

@@ -17,7 +17,6 @@ the walk is
 After each the database is looked into. Pictures of every stop go into OUT, a folder for each station.
 """
 
-import argparse
 import importlib
 import sys
 import tempfile
@@ -40,6 +39,7 @@ from app.storage.opened import open_library
 from core.session import RecordingKind
 from devices.decoders import DECODERS
 from tests.benchmarks.own_display import own_display, own_environment
+from tests.driver import options
 from tests.tours.tour import INSIDE, WINDOW, Application, TourError, lead
 from tests.tours.tour_stops import (
     DIGITS,
@@ -393,10 +393,8 @@ def _started(environment: Mapping[str, str]) -> Popen[str]:
 
 
 def main() -> int:
-    parser = argparse.ArgumentParser(description=(__doc__ or "").split("\n\n")[0])
-    parser.add_argument("out", metavar="OUT", type=Path, help="the folder for the pictures")
     try:
-        for line in prove(parser.parse_args().out.resolve()):
+        for line in prove(options(__doc__, out=(Path, "the folder for the pictures")).out.resolve()):
             print(f"- {line}", flush=True)
     except WrongError as wrong:
         print(wrong)

@@ -10,7 +10,6 @@ sensors and recording runs faster; frames, disk and processor do not, and the es
 preview.
 """
 
-import argparse
 import resource
 import sys
 import time
@@ -29,6 +28,7 @@ from core.samples import ImuBlock
 from core.session import RecordingKind
 from devices.simulation.replay import DEMONSTRATION_SESSION, ReplaySource
 from devices.simulation.walker import simulate
+from tests.driver import options
 from tests.safety.window_material import PATIENCE_S, grown, held, linger, opened_window, wait
 
 if TYPE_CHECKING:
@@ -94,10 +94,7 @@ def faults_of(block: ImuBlock, seconds: float) -> list[str]:
 
 
 def main() -> int:
-    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("--hours", type=float, default=2.0)
-    parser.add_argument("--speed", type=float, default=1.0)
-    required = parser.parse_args()
+    required = options(__doc__, hours=2.0, speed=1.0)
     seconds = 3600.0 * required.hours
     session = simulate(replace(DEMONSTRATION_SESSION, rate_hz=RATE_HZ)).session
     source = ReplaySource(session, finishes=True, speed=required.speed)

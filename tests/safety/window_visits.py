@@ -8,7 +8,6 @@ reported: memory, threads, open files, objects of Qt below the window and of Pyt
 which a fault in a binding would use up. It ends with 1 if anything grew by more than it may.
 """
 
-import argparse
 import sys
 import threading
 from dataclasses import replace
@@ -22,6 +21,7 @@ from app.wizard.step import StepId
 from core.body import LEG_SITES
 from devices.simulation.replay import ReplaySource
 from devices.simulation.walker import DEMONSTRATION, FreeMotion, Standing, Walk, simulate
+from tests.driver import options
 from tests.safety.window_material import grown, held, linger, opened_window, wait
 
 if TYPE_CHECKING:
@@ -56,9 +56,7 @@ def make_visit(application: QApplication, window: MainWindow) -> None:
 
 
 def main() -> int:
-    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("--visits", type=int, default=30)
-    visits = parser.parse_args().visits
+    visits = options(__doc__, visits=30).visits
     played = (Standing(duration_s=5.0), FreeMotion(duration_s=5.0), Walk(strides=6))
     session = simulate(replace(DEMONSTRATION, recordings=played)).session
     with opened_window(lambda: Acquisition([ReplaySource(session)])) as (application, window):

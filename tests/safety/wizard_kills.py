@@ -7,7 +7,6 @@ as fast as ours. When the point is reached it prints one line of JSON, what was 
 waits.
 """
 
-import argparse
 import json
 import os
 import sys
@@ -37,6 +36,7 @@ from core.body import LEG_SITES, Joint, Side, Site
 from core.session import RecordingKind
 from devices.simulation.replay import ReplaySource
 from devices.simulation.walker import DEMONSTRATION, FreeMotion, Standing, Walk, simulate
+from tests.driver import options
 from tests.safety.window_material import linger, wait
 
 SPEED = 20.0
@@ -190,12 +190,7 @@ def lead(guide: Guide, point: Point) -> None:
 
 
 def main() -> int:
-    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("library", type=Path)
-    parser.add_argument("passphrase")
-    parser.add_argument("point", type=Point)
-    parser.add_argument("--pelvis", action="store_true", help="with a seventh sensor")
-    required = parser.parse_args()
+    required = options(__doc__, library=Path, passphrase=str, point=Point, pelvis=(False, "with a seventh sensor"))
     played = (Standing(duration_s=10.0), FreeMotion(duration_s=30.0), Walk(strides=14), Walk("walk 2", strides=14))
     sites = tuple(Site) if required.pelvis else LEG_SITES
     session = simulate(replace(DEMONSTRATION, sites=sites, recordings=played)).session
