@@ -1,9 +1,12 @@
-"""A channel that states what a test has written down, and notes what it is reported."""
+"""A channel that states what a test has written down and notes what it is reported; what a source gives in seconds."""
 
+import time
 from collections import deque
 from collections.abc import Callable, Sequence
 
+from core.samples import ImuBlock
 from devices.live import SourceLostError
+from devices.stream import ByteSource
 
 
 class ScriptedChannel:
@@ -45,3 +48,13 @@ class SilentVoice:
 
     def hear(self, data: bytes) -> bytes:
         return b""
+
+
+def received_for(source: ByteSource, seconds: float) -> tuple[list[ImuBlock], list[bytes]]:
+    """The samples of so many seconds, and the bytes that were kept of them."""
+    blocks: list[ImuBlock] = []
+    kept: list[bytes] = []
+    until_s = time.monotonic() + seconds
+    while time.monotonic() < until_s:
+        blocks += source.read(kept.append)
+    return blocks, kept

@@ -2,7 +2,7 @@
 
 import pytest
 
-from tests.safety.device_fuzz import drivers, fuzz, speed
+from tests.safety.device_fuzz import drivers, fuzz, old_shimmer3, speed
 
 LONG = 30_000
 COUNTS = (2_000, pytest.param(LONG, marks=pytest.mark.endurance))
@@ -15,6 +15,11 @@ def test_damage_stays_where_it_is(name: str, frames: int) -> None:
     outcome = fuzz(drivers()[name], frames, seed=7)
     assert outcome.faults == []
     assert outcome.count["whole"] > 0.7 * frames
+
+
+@pytest.mark.parametrize("frames", COUNTS)
+def test_without_checksums_damage_costs_one_whole_message_in_a_thousand_at_most(frames: int) -> None:
+    assert fuzz(old_shimmer3(), frames, seed=2).faults == []
 
 
 @pytest.mark.endurance
