@@ -94,11 +94,3 @@ def end_of_child(work: Callable[[], object], killed_after_s: float | None = None
         time.sleep(killed_after_s)
         os.kill(child, signal.SIGKILL)
     return os.waitstatus_to_exitcode(os.waitpid(child, 0)[1])
-
-
-def wait_until(is_so: Callable[[], bool], most_s: float = 60.0, every_s: float = 0.01) -> None:
-    """Wait for something; where it does not come, that is a fault of the harness itself."""
-    until_s = time.monotonic() + most_s
-    while not is_so():
-        assert time.monotonic() < until_s, f"not in {most_s:.0f} s"
-        time.sleep(every_s)

@@ -23,10 +23,7 @@ from core.body import Side, Site
 from core.calibration.rest import rest_of
 from core.gait.events import gait_of
 from core.gait.strides import strides_of
-from core.samples import BoolArray, FloatArray, ImuBlock, RateKind
-from core.signal.orientation import oriented
-from core.signal.pair import OrientedTrack
-from core.signal.tracks import even_tracks
+from core.samples import BoolArray, FloatArray, ImuBlock
 from devices.simulation.walker import Standing, Walk, WalkerSettings, simulate
 from tests.benchmarks.foot_scoring import (
     EventScore,
@@ -41,6 +38,7 @@ from tests.benchmarks.foot_scoring import (
 )
 from tests.benchmarks.peers.gaitmap_feet import GaitmapFeet
 from tests.benchmarks.speed import ONE_CORE, machine
+from tests.core.gait.feet import foot_of
 from tests.driver import options
 
 FEET = {Side.LEFT: Site.LEFT_FOOT, Side.RIGHT: Site.RIGHT_FOOT}
@@ -62,11 +60,6 @@ GAITMAP_AFTER = {
     "stride by stride, RtsKalman": "BarthDtw|stride, RtsKalman",
     "in one piece, RtsKalman": "BarthDtw|region, RtsKalman",
 }
-
-
-def foot_of(block: ImuBlock, bias_rad_s: FloatArray) -> OrientedTrack:
-    (track,) = even_tracks(block)
-    return oriented(track, RateKind.INSTANTANEOUS, bias_rad_s)
 
 
 def without_bias(block: ImuBlock, standing: ImuBlock) -> ImuBlock:

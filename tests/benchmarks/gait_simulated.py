@@ -19,11 +19,10 @@ from core.calibration.rest import rest_of
 from core.gait.events import FootEvents, gait_of
 from core.gait.spatiotemporal import both_feet, parameters_of
 from core.gait.strides import Strides, strides_of
-from core.samples import FloatArray, ImuBlock, RateKind
-from core.signal.orientation import oriented
+from core.samples import FloatArray
 from core.signal.pair import OrientedTrack
-from core.signal.tracks import even_tracks
 from devices.simulation.walker import FootTruth, Manner, Standing, Tissue, Walk, WalkerSettings, simulate
+from tests.core.gait.feet import foot_of
 from tests.driver import options
 
 FEET = {Side.LEFT: Site.LEFT_FOOT, Side.RIGHT: Site.RIGHT_FOOT}
@@ -79,11 +78,6 @@ class Score:
             short += [] if abs(mean_s) <= phase_mean_s and sd_s <= phase_sd_s else [name]
         short += [name for name in TIMES if not abs(self.mean_percent(name)) <= TIME_PERCENT]
         return short + ([] if abs(self.mean_percent(LENGTH)) <= LENGTH_PERCENT else [LENGTH])
-
-
-def foot_of(block: ImuBlock, bias_rad_s: FloatArray) -> OrientedTrack:
-    (track,) = even_tracks(block)
-    return oriented(track, RateKind.INSTANTANEOUS, bias_rad_s)
 
 
 def walks_of(settings: WalkerSettings) -> dict[Side, tuple[OrientedTrack, FootTruth]]:

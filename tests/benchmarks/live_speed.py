@@ -29,6 +29,7 @@ from core.samples import ImuBlock
 from core.session import Session
 from devices.simulation.walker import FreeMotion as FreeMotionRecording
 from devices.simulation.walker import Standing, Tissue, Walk, WalkerSettings, simulate
+from tests.core.cut_blocks import part_of
 from tests.driver import options
 
 RATE_HZ = 200.0
@@ -59,11 +60,6 @@ def in_blocks(imu: Mapping[Site, ImuBlock], block_s: float = BLOCK_S) -> Blocks:
     end_s = max(float(block.time_s[-1]) for block in imu.values())
     edges = np.arange(0.0, end_s + block_s, block_s)
     return [{site: part_of(block, a, b) for site, block in imu.items()} for a, b in pairwise(edges)]
-
-
-def part_of(block: ImuBlock, from_s: float, to_s: float) -> ImuBlock:
-    part = slice(*np.searchsorted(block.time_s, [from_s, to_s]))
-    return ImuBlock(block.sensor, block.time_s[part], block.gyr_rad_s[part], block.acc_m_s2[part])
 
 
 def later(blocks: Blocks, by_s: float) -> Iterator[dict[Site, ImuBlock]]:

@@ -1,5 +1,6 @@
 """A channel that states what a test has written down and notes what it is reported; what a source gives in seconds."""
 
+import socket
 import time
 from collections import deque
 from collections.abc import Callable, Sequence
@@ -58,3 +59,10 @@ def received_for(source: ByteSource, seconds: float) -> tuple[list[ImuBlock], li
     while time.monotonic() < until_s:
         blocks += source.read(kept.append)
     return blocks, kept
+
+
+def free_port() -> int:
+    """One of UDP, on this computer."""
+    with socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as probe:
+        probe.bind(("127.0.0.1", 0))
+        return int(probe.getsockname()[1])

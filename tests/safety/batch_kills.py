@@ -25,6 +25,7 @@ from app.cohort.batch.executors import MOST_TRIES, PRELOADED, ProcessExecutor, o
 from app.cohort.batch.spread import Workers, finished
 from tests.app.batch_stand_ins import StandIn, digest_of
 from tests.driver import options
+from tests.waiting import silent
 
 WORKERS = 2
 PRELOADED_OF_BOTH = (*PRELOADED, "distributed.nanny")  # a killed worker of the cluster is back in no time, too
@@ -157,7 +158,7 @@ def sessions(folder: Path, count: int, every_s: float, required: str, found: Bat
         with some as (workers, killer), batch_at(out) as batch:
             began_s = time.perf_counter()
             work = Batch(SessionFolders(folder / "in", out), batch, choices)
-            work.run(workers, _nobody_looks)
+            work.run(workers, silent)
             note(found, f"{count} sessions, {name}", began_s, killer)
         if (work.result.analysed, work.result.rows) != (count, 3 * count):
             found.faults.append(f"{name}: {work.result}")
@@ -189,10 +190,6 @@ def digest_in(files: Mapping[str, bytes]) -> str:
     for name, content in files.items():
         whole.update(f"{name} {len(content)}\0".encode() + content)
     return whole.hexdigest()
-
-
-def _nobody_looks(_share: float, _what: str) -> None:
-    """Report to nobody."""
 
 
 def main() -> None:

@@ -42,8 +42,9 @@ from app.storage.stored import LibraryError, RecordingState, StoredJournal
 from core.session import Recording, RecordingKind
 from devices.files.refusal import FileRefusedError
 from tests.driver import Found, drive
-from tests.safety.clinic_material import PASSPHRASE, OwnServer, make_clinic, name_of, own_server, silent
+from tests.safety.clinic_material import PASSPHRASE, OwnServer, make_clinic, name_of, own_server
 from tests.safety.journal_material import LineDecoder, record_some
+from tests.waiting import silent
 
 SENTENCES = (LibraryError, JournalRefusedError, KeyRefusedError, FileRefusedError)
 WORDS = (

@@ -28,7 +28,8 @@ from app.storage.slots import Cost
 from app.storage.stored import Operator, RecordingState, Role, StoredJournal
 from core.session import Patient, Recording, RecordingKind, Session
 from tests.driver import KILLED, Found, drive, end_of_child
-from tests.safety.clinic_material import copy_of, silent
+from tests.safety.clinic_material import copy_of
+from tests.waiting import silent
 
 PASSPHRASE, LEAVING = "four short words here", "another four short words"
 EVENTS = ("open", "os.rename", "os.remove", "sqlite3.connect")

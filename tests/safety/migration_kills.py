@@ -31,7 +31,8 @@ from app.storage.exchange import session_with_samples
 from app.storage.layout import DATABASE
 from app.storage.opened import logged_in, slots_of
 from tests.driver import KILLED, Found, drive, end_of_child
-from tests.safety.clinic_material import OPERATORS, PASSPHRASE, make_library, silent
+from tests.safety.clinic_material import OPERATORS, PASSPHRASE, make_library
+from tests.waiting import silent
 
 TIMED = ("audit", "alembic_version")  # a login is added to the one, the other reports the version
 Rows = Mapping[str, tuple[tuple[str, ...], list[tuple[object, ...]]]]

@@ -31,8 +31,8 @@ from tests.safety.clinic_material import (
     make_library,
     name_of,
     rows_of,
-    silent,
 )
+from tests.waiting import silent
 
 FIRST_S, LONGER = 1.0, 1.1  # in which a move may be done; it is then measured
 TABLES = [

@@ -32,7 +32,7 @@ from core.samples import ImuBlock, SensorInfo
 from core.session import Patient, Recording, RecordingKind, Session
 from tests.app.storage.library.folder_export import write_folder
 from tests.driver import HIDDEN, Found, drive
-from tests.safety.clinic_material import silent
+from tests.waiting import silent
 
 ROOT = Path(__file__).parents[2]
 STEM = "Kowalczyk"  # of all names, so that one search finds any of them

@@ -30,11 +30,11 @@ from core.session import Patient, Recording, RecordingKind, Session
 from devices.simulation.replay import ReplayFaults, ReplaySource
 from devices.simulation.walker import FreeMotion, SimulatedSession, Standing, Walk, WalkerSettings, simulate
 from tests.safety.live_material import Clock, numbered_session
+from tests.waiting import wait_for
 
 pytestmark = pytest.mark.endurance  # minutes in all: the default run has three
 
 ANY_ROOM = Room(start_s=0.0, start_bytes=0, warn_s=0.0, kept_bytes=0)
-PATIENCE_S = 20.0
 LEFT_THIGH, LEFT_SHANK, LEFT_FOOT = Site.LEFT_THIGH, Site.LEFT_SHANK, Site.LEFT_FOOT
 
 
@@ -87,13 +87,6 @@ def acquisition() -> Iterator[Acquisition]:
 @pytest.fixture
 def session_id(opened: OpenedLibrary) -> UUID:
     return visit_of(opened, numbered_session("a", 2))
-
-
-def wait_for(is_so: Callable[[], bool]) -> None:
-    give_up_s = time.monotonic() + PATIENCE_S
-    while not is_so():
-        assert time.monotonic() < give_up_s, "waited in vain"
-        time.sleep(0.002)
 
 
 def differences(one: object, other: object, where: str = "") -> list[str]:

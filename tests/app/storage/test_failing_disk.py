@@ -2,7 +2,7 @@
 
 import errno
 import time
-from collections.abc import Callable, Iterator
+from collections.abc import Iterator
 from dataclasses import replace
 from pathlib import Path
 from uuid import UUID
@@ -26,6 +26,7 @@ from app.storage.stored import LibraryError, Operator, Role, StoredJournal
 from core.session import Patient, Recording, RecordingKind, Session
 from tests.safety.failing_disk import FailingDisk, failing_disk, missing
 from tests.safety.journal_material import LINES, NO_ROOM_ASKED, LineDecoder, line, record_some
+from tests.waiting import silent, wait_for
 
 pytestmark = [
     pytest.mark.endurance,
@@ -33,7 +34,6 @@ pytestmark = [
 ]
 
 REFUSED = pytest.mark.parametrize("number", [errno.EIO, errno.EROFS], ids=["EIO", "EROFS"])
-PATIENCE_S = 30.0
 MOST_WRITES = 3000  # by far more than a save or a backup needs
 SENTENCES = {
     "The library file cannot be read or written. Check the disk, then try again.",
@@ -78,17 +78,6 @@ def again(opened: OpenedLibrary) -> OpenedLibrary:
     assert found.library.faults() == ()
     assert found.library.audit.verify().faults == ()
     return found
-
-
-def wait_for(is_so: Callable[[], bool]) -> None:
-    give_up_s = time.monotonic() + PATIENCE_S
-    while not is_so():
-        assert time.monotonic() < give_up_s, "waited in vain"
-        time.sleep(0.005)
-
-
-def silent(_share: float, _what: str) -> None:
-    """Report to nobody."""
 
 
 @REFUSED

@@ -15,8 +15,9 @@ from app.storage.database.engine import PG_BUILD_LOCK, Database, postgres_engine
 from app.storage.library import Library, now_utc
 from app.storage.opened import OpenedLibrary
 from app.storage.stored import Action, LibraryError, Operator, Role
-from tests.app.storage.clinic.conftest import Login, OpenAt, change_row, silent
+from tests.app.storage.clinic.conftest import Login, OpenAt, change_row
 from tests.safety.hostile_rows import columns, run
+from tests.waiting import silent
 
 pytestmark = pytest.mark.endurance  # each starts with an empty server
 
