@@ -46,13 +46,7 @@ def repeated(block: ImuBlock, duration_s: float) -> ImuBlock:
 
 
 def analyse_apart(session: Path, out: Path) -> tuple[float, float]:
-    """CPU seconds and the highest memory (GiB) of the command.
-
-    Raises
-    ------
-    RuntimeError
-        It failed.
-    """
+    """CPU seconds and the highest memory (GiB) of the command."""
     command = [sys.executable, "-m", "app", *ANALYSE, str(session), "--out", str(out)]
     with tempfile.TemporaryFile(mode="w+") as stated:
         process = subprocess.Popen(command, cwd=ROOT, stdout=stated, stderr=stated)

@@ -64,13 +64,7 @@ def why_not() -> str:
 
 
 def lead_session(tour: str = "keyboard") -> Calls:
-    """Lead a session from the first start to the saved results, and give whom it called.
-
-    Raises
-    ------
-    RuntimeError
-        The session could not be led to its end.
-    """
+    """Lead a session from the first start to the saved results, and give whom it called."""
     tail = ("-m", "tests.tours.tour", "{folder}", f"--{tour}", "--theme", "light", "--trace", "{trace}")
     return _called(tail, LONGEST_S)
 

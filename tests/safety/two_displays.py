@@ -112,13 +112,7 @@ class StationOnScreen:
 
 
 def prove(out: Path) -> Iterator[str]:
-    """Go through all steps; gives a line for each.
-
-    Raises
-    ------
-    WrongError
-        A step is not as it has to be.
-    """
+    """Go through all steps; gives a line for each."""
     with (
         tempfile.TemporaryDirectory(prefix="gaitwright-clinic-") as folder,
         _server() as server,

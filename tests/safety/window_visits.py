@@ -18,14 +18,13 @@ from PySide6.QtWidgets import QApplication
 from app.acquisition.acquisition import Acquisition
 from app.main_window import MainWindow
 from app.wizard.step import StepId
-from core.body import LEG_SITES
 from devices.simulation.replay import ReplaySource
 from devices.simulation.walker import DEMONSTRATION, FreeMotion, Standing, Walk, simulate
 from tests.driver import options
-from tests.safety.window_material import grown, held, linger, opened_window, wait
+from tests.safety.window_material import begun_visit, grown, held, linger, opened_window, put_on, wait
 
 if TYPE_CHECKING:
-    from app.wizard.visit import Visit
+    pass
 
 SETTLED_AFTER = 5
 LISTENS_S = 0.5
@@ -33,19 +32,8 @@ LISTENS_S = 0.5
 
 def make_visit(application: QApplication, window: MainWindow) -> None:
     """Begin a session, put six sensors on, look at every page that may be entered, and leave."""
-    assert window.home is not None
-    window.home.session_requested.emit(window.home.patients.patient)
-    wizard = window.wizard
-    assert wizard is not None
-    visit: Visit | None = wizard.visit
-    assert visit is not None
-    wait(application, lambda: visit.patient.stored is not None)
-    wizard.go_to(StepId.SENSORS)
-    wait(application, lambda: visit.session is not None)
-    visit.sensors.search(visit.choices[0])
-    wait(application, lambda: visit.sensors.acquisition is not None)
-    assert visit.sensors.acquisition is not None
-    visit.sensors.assign_all(dict(zip(visit.sensors.acquisition.sensors, LEG_SITES, strict=True)))
+    wizard, visit = begun_visit(application, window)
+    put_on(visit)
     linger(application, LISTENS_S)
     for step in (StepId.STAND_STILL, StepId.WALKING, StepId.RESULTS, StepId.REPORT):
         wizard.go_to(step)
