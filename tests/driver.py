@@ -33,8 +33,11 @@ class Found:
     def __str__(self) -> str:
         counted = ", ".join(f"{number} {what}" for what, number in self.count.items())
         measured = (
-            f"{name}: median {np.median(values):.3g}, p99 {np.quantile(values, 0.99):.3g}, most {max(values):.3g}"
+            f"{name}: {values[0]:.3g}"
+            if len(values) == 1
+            else f"{name}: median {np.median(values):.3g}, p99 {np.quantile(values, 0.99):.3g}, most {max(values):.3g}"
             for name, values in self.figures.items()
+            if values
         )
         return "; ".join([*filter(None, [counted]), *measured, f"{len(self.faults)} faults"])
 

@@ -6,10 +6,10 @@ A child opens a library as the window does, records, makes a backup, and locks; 
 recording has to go on under the lock.
 """
 
+import argparse
 import re
 import subprocess
 import sys
-import tempfile
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -18,7 +18,7 @@ from app.storage.layout import KEYS
 from app.storage.library import Library
 from app.storage.slots import Cost
 from app.storage.stored import Operator, Role
-from tests.driver import options
+from tests.driver import Found, drive
 
 PASSPHRASE = "four short words here"
 CHILD = """
@@ -150,14 +150,15 @@ def measured(place: Path, locks: int) -> list[tuple[str, Copies]]:
     return found
 
 
-def main() -> int:
-    required = options(__doc__, locks=3)
-    with tempfile.TemporaryDirectory() as place:
-        found = measured(Path(place), required.locks)
+def run(asked: argparse.Namespace, place: Path) -> Found:
+    found = measured(place, asked.locks)
     for state, copies in found:
         print(f"{state}: {copies}")
-    return 1 if len(found) != 2 * required.locks + 1 or any(c.all for state, c in found if state == "locked") else 0
+    faults = [f"locked: {copies}" for state, copies in found if state == "locked" and copies.all]
+    if len(found) != 2 * asked.locks + 1:
+        faults.append("the child ended by itself")
+    return Found(faults=faults)
 
 
 if __name__ == "__main__":
-    sys.exit(main())
+    drive(__doc__, run, locks=3)
