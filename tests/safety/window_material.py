@@ -21,7 +21,7 @@ from PySide6.QtWidgets import QApplication
 from app.acquisition.acquisition import Acquisition
 from app.main_window import SWITCH_S, MainWindow
 from app.system.settings import Settings
-from app.theme.notifier import ThemeNotifier, load_fonts
+from app.theme.current import load_fonts
 from app.wizard.sensors import sources
 from app.wizard.step import StepId
 from app.wizard.worn_sensors import SourceChoice
@@ -107,7 +107,7 @@ def application() -> QApplication:
 def window_in(made: QApplication, library: Path) -> MainWindow:
     """The window of a user whose library is there, and whose settings lie beside it."""
     settings = Settings(QSettings(str(library.parent / "settings.ini"), QSettings.Format.IniFormat))
-    window = MainWindow(ThemeNotifier(made), settings, library)
+    window = MainWindow(settings, library)
     garbage = GarbageCollector(window, lambda: window.preparing.is_busy)
     window.preparing.done.connect(garbage.pass_over_imported)
     window.show()

@@ -25,7 +25,8 @@ from core.body import Joint, Side
 from devices.files.session_folder import write_session
 from devices.simulation.walker import Tissue
 from tests.benchmarks.foot_scoring import FoundStrides, Stretch, StrideScore, score_strides
-from tests.benchmarks.gait import NO_BIAS, foot_of, optical_foot, recorded_foot
+from tests.benchmarks.gait import NO_BIAS, optical_foot, recorded_foot
+from tests.core.gait.feet import foot_of
 from tests.driver import options
 from tests.validation.paper_experiment import PROSTHESIS, against_bones, experiment
 from tests.validation.recordings_with_references import HINGES, recordings_with_references
