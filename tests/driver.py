@@ -1,6 +1,6 @@
-"""What every harness shares: its options, a child that is killed, what was found, how it is told and how it ends.
+"""What every harness shares: its options, a child that is killed, what was found, how it reports and how it ends.
 
-A harness is a module that tries something often: `python -m tests.safety.journal_kills --help` says what it takes.
+A harness is a module that tries something often: `python -m tests.safety.journal_kills --help` names its options.
 """
 
 import argparse

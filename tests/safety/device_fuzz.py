@@ -108,7 +108,7 @@ def old_shimmer3() -> Fuzzed:
 
 
 def fuzz(driver: Fuzzed, frames: int, seed: int, *, has_bursts: bool = False) -> Found:
-    """A message that was never sent is counted alone: nothing tells it from a measurement."""
+    """A message that was never sent is counted alone: nothing distinguishes it from a measurement."""
     chance, found = random.Random(seed), Found(Counter(messages=frames))
     framer = driver.make()
     received: dict[Row, int] = {}

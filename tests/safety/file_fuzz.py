@@ -191,9 +191,9 @@ def importers() -> dict[str, Spoilable]:
     found = {name: Spoilable(*of, read_folder, may_be_a_link=True) for name, of in session.items()}
     with tempfile.TemporaryDirectory() as folder:
         for name, path in in_tables(Path(folder)):
-            is_told = name in ("xsens-mtmanager", "shimmer", "ximu3")  # the others are known by their content
+            is_named = name in ("xsens-mtmanager", "shimmer", "ximu3")  # the others are known by their content
             place = "export.txt" if name == "xsens-mtmanager" else "export.csv"
-            read = read_of(name if is_told else "", place)
+            read = read_of(name if is_named else "", place)
             key = "ximu3-csv" if name == "ximu3" else name
             found[key] = Spoilable(path.read_bytes(), place, read, may_be_a_link=False)
         for name, content in in_streams(Path(folder) / "stream"):

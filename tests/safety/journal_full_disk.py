@@ -92,14 +92,14 @@ def fill_once(folder: Path, piece_bytes: int, room: Room, fills: Found) -> str:
     summary = journal.stop()
     records, damages, report = read_all(summary.path, KEY)
     kept = [record for record in records if record.kind is RecordKind.BYTES]
-    said_ms = (stated[0][1] - kept[-1].time_ns) / 1e6
-    fills.figures["said after, ms"].append(said_ms)
+    stopped_ms = (stated[0][1] - kept[-1].time_ns) / 1e6
+    fills.figures["reported after, ms"].append(stopped_ms)
     fills.count["footers"] += report.footer is not None
     # a disk may be seen to be full to the last byte before it refuses one
     expected = (Trouble.NO_ROOM,) if room.kept_bytes else (Trouble.DISK_FULL, Trouble.NO_ROOM)
     wrong = {
         f"said {stated}": len(stated) != 1 or stated[0][0] not in expected,
-        f"said after {said_ms:.0f} ms": said_ms > 1000,
+        f"reported after {stopped_ms:.0f} ms": stopped_ms > 1000,
         f"damaged: {damages}": bool(damages),
         "not what was put in": [record.payload[2:] for record in kept]
         != [_piece(k, piece_bytes) for k in range(len(kept))],

@@ -87,4 +87,4 @@ def test_a_full_disk_closes_the_journal_and_is_stated() -> None:
 def test_twenty_full_disks_close_their_journals() -> None:
     fills = fill_often(20, seed=7)
     assert fills.faults == []
-    assert len(fills.figures["said after, ms"]) == 20
+    assert len(fills.figures["reported after, ms"]) == 20
