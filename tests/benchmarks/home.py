@@ -12,9 +12,9 @@ PYTHONPATH.
 import os
 import statistics
 import tempfile
-from collections.abc import Callable
+from functools import partial
 from pathlib import Path
-from time import perf_counter, sleep, thread_time
+from time import perf_counter, thread_time
 
 from app.theme.current import load_fonts
 
@@ -25,26 +25,24 @@ from PySide6.QtTest import QTest
 from PySide6.QtWidgets import QApplication
 
 from app.home.home import Home
-from app.storage.keys import KeySlots
 from app.storage.layout import KEYS
-from app.storage.library import Library
-from app.storage.slots import Cost
-from app.storage.stored import Operator, Role
 from app.system.settings import Settings
 from app.workers.library_controller import LibraryController
 from core.session import Patient, Session
 from tests.app.home.course_library import PASSPHRASE, add_visit, course_of_visit
 from tests.driver import options
+from tests.quick_library import quick_library
+from tests.safety.window_material import wait
 
 SEARCHED = "P-012"
 WITH_COURSES = 40
-LONGEST_S = 300.0
+wait_until = partial(wait, patience_s=300.0, every_s=0.0005)  # what is measured takes milliseconds
 
 
 def make_library(folder: Path, patients: int) -> None:
-    data_key, _ = KeySlots(folder / KEYS, Cost(passes=1, memory_kib=64)).create("hk", PASSPHRASE)
     courses = [course_of_visit(number) for number in (3, 4)]
-    with Library.create(folder, data_key, Operator("hk", "H. Keller", Role.ADMINISTRATOR)) as library:
+    with quick_library(folder, PASSPHRASE) as opened:
+        library = opened.library
         for number in range(patients):
             one = Patient(code=f"P-{number:04d}", birth_year=1940 + number % 60, affected_side="left")
             patient = library.patients.create(one)
@@ -53,15 +51,6 @@ def make_library(folder: Path, patients: int) -> None:
                     add_visit(library, patient.id, at, course)
             else:
                 library.sessions.create(patient.id, Session((), started=f"2026-01-{1 + number % 28:02d}T09:00:00"))
-
-
-def wait_until(application: QApplication, is_so: Callable[[], bool]) -> None:
-    until_s = perf_counter() + LONGEST_S
-    while not is_so():
-        application.processEvents()
-        sleep(0.0005)
-        if perf_counter() > until_s:
-            raise TimeoutError
 
 
 def main() -> None:

@@ -22,30 +22,27 @@ from app.storage.journal_headers import write_headers
 from app.storage.key_change import change_data_key
 from app.storage.keys import KeyRefusedError, KeySlots
 from app.storage.layout import DATABASE, KEYS, NEW_DATABASE, NEW_KEYS
-from app.storage.library import Library
-from app.storage.opened import OpenedLibrary, open_library
-from app.storage.slots import Cost
-from app.storage.stored import Operator, RecordingState, Role, StoredJournal
+from app.storage.opened import open_library
+from app.storage.stored import RecordingState, StoredJournal
 from core.session import Patient, Recording, RecordingKind, Session
 from tests.driver import KILLED, Found, drive, end_of_child
+from tests.quick_library import CHEAP, PASSPHRASE, quick_library
 from tests.safety.clinic_material import copy_of
 from tests.waiting import silent
 
-PASSPHRASE, LEAVING = "four short words here", "another four short words"
+LEAVING = "another four short words"
 EVENTS = ("open", "os.rename", "os.remove", "sqlite3.connect")
 JOURNALS = 5
 
 
 def make(folder: Path) -> None:
     """A library of two operators with a few recordings."""
-    folder.mkdir()
-    slots = KeySlots(folder / KEYS, Cost(passes=1, memory_kib=64))
-    data_key, _ = slots.create("hk", PASSPHRASE)
-    slots.add(data_key, "ab", LEAVING)
-    with Library.create(folder, data_key, Operator("hk", "H. Keller", Role.ADMINISTRATOR)) as library:
+    with quick_library(folder) as opened:
+        library, data_key = opened.library, opened.data_key
+        assert data_key is not None
+        KeySlots(folder / KEYS, CHEAP).add(data_key, "ab", LEAVING)
         patient = library.patients.create(Patient(code="P-001"))
         visit = library.sessions.create(patient.id, Session((), started="2026-11-20T09:00:00"))
-        opened = OpenedLibrary(library, folder, data_key)
         for number in range(JOURNALS):
             reported = Recording(f"walk {number}", RecordingKind.WALKING, f"walk_{number}", {})
             row = library.recordings.start(visit.id, reported, is_simulated=False)

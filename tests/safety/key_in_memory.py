@@ -13,14 +13,9 @@ import sys
 from dataclasses import dataclass
 from pathlib import Path
 
-from app.storage.keys import KeySlots
-from app.storage.layout import KEYS
-from app.storage.library import Library
-from app.storage.slots import Cost
-from app.storage.stored import Operator, Role
 from tests.driver import Found, drive
+from tests.quick_library import PASSPHRASE, quick_library
 
-PASSPHRASE = "four short words here"
 CHILD = """
 import sys, time
 from pathlib import Path
@@ -131,10 +126,9 @@ def copies_of(key: bytes, process_id: int) -> Copies:
 
 def measured(place: Path, locks: int) -> list[tuple[str, Copies]]:
     """What is found at each stop of the child: open, locked, open, ..."""
-    folder = place / "library"
-    folder.mkdir()
-    data_key, _ = KeySlots(folder / KEYS, Cost(passes=1, memory_kib=64)).create("hk", PASSPHRASE)
-    Library.create(folder, data_key, Operator("hk", "H. Keller", Role.ADMINISTRATOR)).close()
+    with quick_library(place / "library") as opened:
+        folder, data_key = opened.folder, opened.data_key
+    assert data_key is not None
     command = [sys.executable, "-c", CHILD, str(folder), PASSPHRASE, str(locks)]
     found: list[tuple[str, Copies]] = []
     with subprocess.Popen(command, stdin=subprocess.PIPE, stdout=subprocess.PIPE, text=True) as child:

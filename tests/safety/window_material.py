@@ -12,7 +12,7 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-os.environ["QT_QPA_PLATFORM"] = "offscreen"
+os.environ.setdefault("QT_QPA_PLATFORM", "offscreen")
 os.environ["OPENBLAS_NUM_THREADS"] = "1"
 
 from PySide6.QtCore import QEvent, QObject, QSettings
@@ -79,14 +79,16 @@ def grown(before: Held, after: Held) -> list[str]:
     return names
 
 
-def wait(application: QApplication, until: Callable[[], bool], patience_s: float = PATIENCE_S) -> None:
+def wait(
+    application: QApplication, until: Callable[[], bool], patience_s: float = PATIENCE_S, every_s: float = 0.005
+) -> None:
     end_s = time.monotonic() + patience_s
     while not until():
         if time.monotonic() > end_s:
             raise TimeoutError("the visit does not go on")
         application.processEvents()
         application.sendPostedEvents(None, QEvent.Type.DeferredDelete.value)  # as `exec` does of itself
-        time.sleep(0.005)
+        time.sleep(every_s)
 
 
 def linger(application: QApplication, seconds: float) -> None:
