@@ -27,6 +27,7 @@ from core.timed.protocols import PlannedTest, TimedProtocol
 from core.verdicts.model import Verdict
 from devices.simulation.replay import DEMONSTRATION_NAMES
 from devices.simulation.walker import Standing, Walk, WalkerSettings
+from tests.waiting import silent
 
 NOW = datetime.datetime(2026, 11, 24, 15, 0, tzinfo=datetime.UTC)
 CHANGE = AlignmentChange("Alignment A", (PartChange(ProsthesisPart.KNEE_UNIT, turns=1.0),))
@@ -50,10 +51,6 @@ def opened(tmp_path: Path) -> Iterator[OpenedLibrary]:
     with OpenedLibrary(Library.create(folder, None, DEMONSTRATOR), folder, None) as opened:
         add_patients(opened, simulated_patients(NOW))
         yield opened
-
-
-def silent(_share: float, _what: str) -> None:
-    """For whom progress is nothing."""
 
 
 def test_patients_are_listed_with_the_first_one_first(opened: OpenedLibrary) -> None:

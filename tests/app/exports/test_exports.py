@@ -23,13 +23,9 @@ from app.exports.exports import (
 from app.storage.audit import about
 from app.storage.exchange import import_session
 from app.storage.journal.disk import Room
-from app.storage.keys import KeySlots
-from app.storage.layout import KEYS
-from app.storage.library import Library
 from app.storage.opened import OpenedLibrary
 from app.storage.pseudonyms import Pseudonyms, Typed, age_in_words
-from app.storage.slots import Cost
-from app.storage.stored import Action, LibraryError, Operator, Role
+from app.storage.stored import Action, LibraryError
 from core.alignment import AlignmentChange, PartChange, ProsthesisPart
 from core.goals import Goal, GoalOf
 from core.results import Analysis
@@ -37,6 +33,7 @@ from core.session import Session
 from core.timed.protocols import PlannedTest, TimedProtocol
 from devices.files.refusal import FileRefusedError
 from devices.files.session_folder import write_session
+from tests.quick_library import quick_library
 
 NAME = "Miller"
 
@@ -65,8 +62,7 @@ def files_in(folder: Path) -> list[str]:
 def opened(tmp_path: Path) -> OpenedLibrary:
     folder = tmp_path / "library"
     folder.mkdir()
-    key, _ = KeySlots(folder / KEYS, Cost(passes=1, memory_kib=64)).create("hk", "four short words here")
-    return OpenedLibrary(Library.create(folder, key, Operator("hk", "H. Keller", Role.ADMINISTRATOR)), folder, key)
+    return quick_library(folder)
 
 
 @pytest.mark.endurance

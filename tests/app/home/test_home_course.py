@@ -30,6 +30,7 @@ from core.session import Patient
 from devices.simulation.walker import DEMONSTRATION, Standing, Walk
 from tests.app.home.course_library import PASSPHRASE, add_visit, course_of_visit, make_course_library
 from tests.simulated import session_of
+from tests.waiting import silent
 
 WAIT_MS = 20_000
 
@@ -60,10 +61,6 @@ def opened(tmp_path: Path) -> Iterator[OpenedLibrary]:
     folder = tmp_path / "opened"
     with OpenedLibrary(Library.create(folder, None, DEMONSTRATOR), folder, None) as library:
         yield library
-
-
-def silent(_share: float, _what: str) -> None:
-    """For whom progress is nothing."""
 
 
 def test_the_course_of_the_patient_who_is_chosen_is_beside_the_list(qtbot: QtBot, home: Home) -> None:

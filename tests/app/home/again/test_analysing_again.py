@@ -26,13 +26,10 @@ from core.session import Session
 from devices.simulation.walker import FreeMotion, Standing, Walk, WalkerSettings
 from tests.app.home.course_library import PASSPHRASE, make_course_library
 from tests.simulated import session_of
+from tests.waiting import silent
 
 WAIT_MS = 60_000  # on a busy machine
 ANY_ROOM = Room(start_bytes=0, kept_bytes=0)
-
-
-def silent(_share: float, _what: str) -> None:
-    """For whom progress is nothing."""
 
 
 @pytest.fixture(scope="module")

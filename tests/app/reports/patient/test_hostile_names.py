@@ -64,8 +64,8 @@ def test_a_typed_text_prevents_no_report_and_moves_no_number(
 
 def test_no_name_lives_in_a_report_or_becomes_a_formula() -> None:
     trial = try_names(21)
-    assert trial.names == 21
-    assert (trial.alive, trial.changed, trial.formulas) == ([], [], [])
+    assert trial.count["names"] == 21
+    assert trial.faults == []
 
 
 def test_a_direction_stays_within_its_own_text(request_of_demonstration: ReportRequest) -> None:

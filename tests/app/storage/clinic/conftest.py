@@ -23,13 +23,10 @@ from app.storage.stored import Operator, Role
 from core.session import Session
 from devices.simulation.walker import FreeMotion, Standing, Walk, WalkerSettings
 from tests.simulated import session_of
+from tests.waiting import silent
 
 PASSPHRASE = "four short words here"
 ANY_ROOM = Room(start_bytes=0, kept_bytes=0)
-
-
-def silent(_share: float, _what: str) -> None:
-    """Report to nobody."""
 
 
 @pytest.fixture

@@ -21,8 +21,9 @@ from app.workers.library_holder import LibraryHolder
 from app.workers.library_state import NotOpened, OpenedState
 from core.goals import Goal, GoalOf, ordered
 from core.session import Patient, Session
-from tests.app.storage.clinic.conftest import PASSPHRASE, silent
+from tests.app.storage.clinic.conftest import PASSPHRASE
 from tests.app.storage.clinic.test_stations import found, read, record
+from tests.waiting import silent
 
 pytestmark = pytest.mark.endurance  # each starts with an empty server
 

@@ -20,7 +20,8 @@ from app.storage.library import Library
 from app.storage.opened import OpenedLibrary, open_library
 from app.storage.stored import LibraryError, Operator, Role
 from core.session import Session
-from tests.app.storage.clinic.conftest import PASSPHRASE, OpenAt, silent
+from tests.app.storage.clinic.conftest import PASSPHRASE, OpenAt
+from tests.waiting import silent
 
 pytestmark = pytest.mark.endurance  # each starts with an empty server
 

@@ -31,9 +31,10 @@ from app.storage.retention import destroy_recording
 from app.storage.stored import LibraryError, LibraryFaultError, ServerSilentError, StoredPatient
 from core.findings import Finding, Severity
 from core.session import Recording, RecordingKind, Session
-from tests.app.storage.clinic.conftest import OpenAt, silent
+from tests.app.storage.clinic.conftest import OpenAt
 from tests.app.storage.clinic.silent_server import SilentServer
 from tests.app.storage.clinic.test_stations import Stations, found, read, record
+from tests.waiting import silent
 
 pytestmark = pytest.mark.endurance  # each starts with an empty server
 

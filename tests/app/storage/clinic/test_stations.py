@@ -30,7 +30,8 @@ from app.storage.stored import ChangedMeanwhileError, LibraryError, RecordingSta
 from core.samples import ImuBlock
 from core.session import Recording, RecordingKind
 from devices.source import SourceInfo
-from tests.app.storage.clinic.conftest import ANY_ROOM, PASSPHRASE, Login, OpenAt, change_row, silent
+from tests.app.storage.clinic.conftest import ANY_ROOM, PASSPHRASE, Login, OpenAt, change_row
+from tests.waiting import silent
 
 pytestmark = pytest.mark.endurance  # each starts with an empty server
 

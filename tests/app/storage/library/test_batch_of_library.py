@@ -19,6 +19,7 @@ from app.storage.stored import Action, StoredSession
 from app.system.progress import Report
 from core.session import Patient, Session
 from tests.app.batch_material import results_in, swinging_session
+from tests.waiting import silent
 
 ANY_ROOM = Room(start_bytes=0, kept_bytes=0)
 BARE = ("--no-report", "--no-rrd", "--workers", "1")
@@ -44,10 +45,6 @@ def run_batch(opened: OpenedLibrary, tmp_path: Path) -> RunBatch:
         return cli.main(["batch", "library", "--out", str(out), *key, *(more or BARE)])
 
     return run
-
-
-def silent(_share: float, _what: str) -> None:
-    """Report to nobody."""
 
 
 def exported(opened: OpenedLibrary) -> list[str]:

@@ -14,13 +14,10 @@ from core.session import Patient, Session
 from devices.simulation.walker import DEMONSTRATION, Standing, Walk
 from tests.app.course_material import course, walked
 from tests.simulated import session_of
+from tests.waiting import silent
 
 SHOES = course((walked(), "shoes"))
 STICK = course((walked(), "shoes, stick"))
-
-
-def silent(_share: float, _what: str) -> None:
-    """For whom progress is nothing."""
 
 
 @pytest.fixture(scope="module")

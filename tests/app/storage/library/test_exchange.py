@@ -29,14 +29,11 @@ from devices.files.session_folder import read_session, write_session
 from devices.simulation.walker import FreeMotion, Standing, Walk, WalkerSettings
 from tests.app.storage.library.folder_export import write_folder
 from tests.simulated import session_of
+from tests.waiting import silent
 
 ANY_ROOM = Room(start_bytes=0, kept_bytes=0)
 NAMES = [f"Kowalczyk-{number:03d}" for number in range(200)]
 ODD = {"note_of_clinic": "kept", "table": {"deep": [1, 2, {"deeper": True}]}, "figure": 1.25}
-
-
-def silent(_share: float, _what: str) -> None:
-    """Report to nobody."""
 
 
 def same_bits(one: NDArray[Any] | None, other: NDArray[Any] | None) -> bool:

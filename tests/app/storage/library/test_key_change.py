@@ -37,14 +37,11 @@ from app.storage.slots import Cost
 from app.storage.stored import LibraryBusyError, LibraryError, Operator, Role, StoredRecording
 from core.session import Recording, RecordingKind
 from tests.app.storage.library.conftest import ANY_ROOM, PASSPHRASE
+from tests.waiting import silent
 
 LEAVING = "another four short words"
 
 Record = Callable[..., StoredRecording]
-
-
-def silent(_share: float, _what: str) -> None:
-    """Report to nobody."""
 
 
 @pytest.fixture

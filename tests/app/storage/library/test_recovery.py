@@ -22,12 +22,9 @@ from core.session import Recording, RecordingKind
 from devices.files.formats import read_trial
 from devices.files.site_files import read_site
 from tests.app.storage.library.conftest import SENSOR, samples
+from tests.waiting import silent
 
 Record = Callable[..., StoredRecording]
-
-
-def silent(_share: float, _what: str) -> None:
-    """Report to nobody."""
 
 
 def test_an_interrupted_recording_is_listed_then_closed_with_all_that_there_is(
