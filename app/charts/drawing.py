@@ -47,6 +47,16 @@ def box(x: float, y: float, width: float, height: float, fill: str, edge: str = 
     return f'<rect {place} fill="{fill}" stroke="{edge}" stroke-width="{edge_width}"/>'
 
 
+def circle(x: float, y: float, radius: float, fill: str, edge: str, edge_width: float) -> str:
+    look = f'fill="{fill}" stroke="{edge}" stroke-width="{edge_width}"'
+    return f'<circle cx="{x:.2f}" cy="{y:.2f}" r="{radius}" {look}/>'
+
+
+def polygon(corners: Sequence[tuple[float, float]], fill: str) -> str:
+    tips = " ".join(f"{x:.2f},{y:.2f}" for x, y in corners)
+    return f'<polygon points="{tips}" fill="{fill}"/>'
+
+
 def text(
     x: float, y: float, stated: str, size: float, *, anchor: str = "start", weight: int = 400, fill: str = PAPER.ink
 ) -> str:
@@ -69,10 +79,10 @@ def area(x: FloatArray, low: FloatArray, high: FloatArray, fill: str, edge: str,
 def badge(x: float, y: float, letter: str, side: Side, colour: str, size: float = BADGE) -> str:
     """A letter on a line: in a circle on the left leg's, in a square on the right leg's."""
     half = size / 2
-    look = f'fill="{PAPER.paper}" stroke="{colour}" stroke-width="1.1"'
     if side is Side.LEFT:
-        shape = f'<circle cx="{x:.2f}" cy="{y:.2f}" r="{half}" {look}/>'
+        shape = circle(x, y, half, PAPER.paper, colour, 1.1)
     else:
+        look = f'fill="{PAPER.paper}" stroke="{colour}" stroke-width="1.1"'
         shape = f'<rect x="{x - half:.2f}" y="{y - half:.2f}" width="{size}" height="{size}" {look}/>'
     return shape + text(x, y + 0.36 * 6.6, letter, 6.6, anchor="middle", weight=600)
 
@@ -81,7 +91,7 @@ def marker(x: float, y: float, side: Side, fill: str = PAPER.ink, size: float = 
     """A mark at one value: round for the left leg, square for the right."""
     half = size / 2
     if side is Side.LEFT:
-        return f'<circle cx="{x:.2f}" cy="{y:.2f}" r="{half}" fill="{fill}" stroke="{PAPER.paper}" stroke-width="0.5"/>'
+        return circle(x, y, half, fill, PAPER.paper, 0.5)
     return box(x - half, y - half, size, size, fill, PAPER.paper, 0.5)
 
 

@@ -23,6 +23,7 @@ from app.charts.drawing import (
     line,
     mixed,
     picture,
+    polygon,
     text,
 )
 from app.charts.frame import Frame
@@ -221,8 +222,7 @@ def _beyond(frame: Frame, axis: Axis, one: StrideCurve) -> list[str]:
         edges = np.flatnonzero(np.diff(np.concatenate([[0], is_out.astype(int), [0]])))
         for first, last in zip(edges[::2], edges[1::2], strict=True):
             x = float(frame.x((first + last - 1) / 2))
-            tip = f"{x:.2f},{y + step:.2f} {x - 2.6:.2f},{y:.2f} {x + 2.6:.2f},{y:.2f}"
-            parts.append(f'<polygon points="{tip}" fill="{_look(one)[0]}"/>')
+            parts.append(polygon([(x, y + step), (x - 2.6, y), (x + 2.6, y)], _look(one)[0]))
     return parts
 
 

@@ -4,7 +4,7 @@ import math
 from collections.abc import Sequence
 
 from app.charts.cycles import is_mean_enough
-from app.charts.drawing import MM, Picture, box, line, picture
+from app.charts.drawing import MM, Picture, box, circle, line, picture
 from app.charts.joint_on_paper import CHIP, chip_picture
 from app.summary.facts import Facts
 from app.summary.goals import goal_mark
@@ -128,8 +128,7 @@ def _marks(rows: Sequence[LegsRow], sides: Sequence[Side], headline: Headline) -
 def mark_picture(mark: Mark) -> Picture:
     fill = PAPER.ink if mark is Mark.HEALTHY else PAPER.paper
     words = tr("beyond 95 of 100") if mark is Mark.HEALTHY else tr("beyond error")
-    dot = f'<circle cx="{MARK / 2}" cy="{MARK / 2}" r="2.6" fill="{fill}" stroke="{PAPER.ink}" stroke-width="1.1"/>'
-    return picture([dot], MARK, MARK, words)
+    return picture([circle(MARK / 2, MARK / 2, 2.6, fill, PAPER.ink, 1.1)], MARK, MARK, words)
 
 
 def strip(row: LegsRow) -> Picture:

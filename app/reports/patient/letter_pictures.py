@@ -3,7 +3,7 @@
 import math
 from dataclasses import dataclass
 
-from app.charts.drawing import COLOURS, MM, Picture, line, picture, text
+from app.charts.drawing import COLOURS, MM, Picture, circle, line, picture, text
 from app.theme.colours import PAPER
 from core.body import Side
 
@@ -44,8 +44,7 @@ def leg_picture(side: Side, now: LetterValue, before: LetterValue | None, alt: s
         parts.append(text(100 * MM, 59 * MM, before.printed, SMALL, weight=600, fill=PAPER.note))
         parts.append(text(100 * MM, 65 * MM, before.when, WORD, fill=PAPER.note))
         parts.append(line(*_from(knee, 14 * MM, LEAN_DEG - before.value / 2), 98 * MM, 58 * MM, PAPER.note, 0.8))
-    look = f'fill="{PAPER.paper}" stroke="{PAPER.ink}" stroke-width="2"'
-    parts.append(f'<circle cx="{knee[0]:.2f}" cy="{knee[1]:.2f}" r="6" {look}/>')
+    parts.append(circle(*knee, 6, PAPER.paper, PAPER.ink, 2))
     behind = min(knee[0] - 14 * MM, _from(knee, SHANK, LEAN_DEG - now.value)[0] - 9 * MM)
     parts.append(text(behind, 54 * MM, now.printed, LARGE, anchor="end", weight=600))
     parts.append(text(behind, 61.5 * MM, now.when, WORD, anchor="end", weight=500))

@@ -2,14 +2,14 @@
 
 import math
 
-from app.charts.drawing import MM, Picture, box, line, picture
+from app.charts.drawing import MM, Picture, box, circle, line, picture
 from app.charts.joint_on_paper import CURVES
 from app.summary.tiles import Tile, TileChange, TileValue
 from app.theme.colours import LIGHT, PAPER
 from core.body import Side
 
 WIDTH, HEIGHT, TRACK = 34 * MM, 12.0, 2.6
-NOW, LAST, TICK = 2.6, 2.1, 10.0  # radii, and a goal's length
+NOW, LAST, EDGE, TICK = 2.6, 2.1, 1.1, 10.0  # radii, their line's width, and a goal's length
 ARROW = 6.5
 
 
@@ -29,9 +29,10 @@ def bar(tile: Tile) -> Picture:
         if math.isfinite(value.value):
             if math.isfinite(value.last):
                 parts.append(line(x(value.last), y, x(value.value), y, PAPER.note, TRACK * 0.6))
-                parts.append(_circle(x(value.last), y, LAST, PAPER.paper, _colour(value)))
+                parts.append(circle(x(value.last), y, LAST, PAPER.paper, _colour(value), EDGE))
             is_hollow = value.side is Side.RIGHT
-            parts.append(_circle(x(value.value), y, NOW, PAPER.paper if is_hollow else _colour(value), _colour(value)))
+            fill = PAPER.paper if is_hollow else _colour(value)
+            parts.append(circle(x(value.value), y, NOW, fill, _colour(value), EDGE))
     return picture(parts, WIDTH, HEIGHT)
 
 
@@ -46,7 +47,3 @@ def arrow(change: TileChange) -> Picture:
 
 def _colour(value: TileValue) -> str:
     return CURVES[value.side] if value.side is not None else PAPER.ink
-
-
-def _circle(x: float, y: float, radius: float, fill: str, edge: str) -> str:
-    return f'<circle cx="{x:.2f}" cy="{y:.2f}" r="{radius}" fill="{fill}" stroke="{edge}" stroke-width="1.1"/>'

@@ -7,7 +7,7 @@ from itertools import pairwise
 
 import numpy as np
 
-from app.charts.drawing import COLOURS, DASHES, MM, Picture, badge, line, picture, text
+from app.charts.drawing import COLOURS, DASHES, MM, Picture, badge, line, picture, polygon, text
 from app.summary.numbers_in_words import fixed
 from app.summary.trend_lines import TrendValue
 from app.theme.colours import PAPER
@@ -113,8 +113,7 @@ def _line(
         if side is None:
             height = y(one.value)
             corners = ((at, height - 4), (at + 4, height), (at, height + 4), (at - 4, height))
-            tips = " ".join(f"{px:.2f},{py:.2f}" for px, py in corners)
-            parts.append(f'<polygon points="{tips}" fill="{PAPER.ink}"/>')
+            parts.append(polygon(corners, PAPER.ink))
         else:
             parts.append(badge(at, y(one.value), side.letter, side, colour, 7.6))
     return parts
