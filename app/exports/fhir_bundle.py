@@ -15,12 +15,13 @@ from pathlib import Path
 from typing import Any
 from uuid import NAMESPACE_URL, uuid5
 
-from app.exports.figures import SIMULATED, WalkFigure, finite, reason_of, software, unit_of, walk_figures
+from app.exports.figures import SIMULATED, WalkFigure, reason_of, software, unit_of, walk_figures
 from app.storage.pseudonyms import AGE
 from app.summary.agreed import agreed_with
 from app.summary.comparison import compare_legs, first_and_second
 from app.summary.conditions import conditions_of
 from app.summary.differences import likely_figures
+from app.system.tables import finite
 from app.wording.measures import goal_in_words
 from app.wording.translation import PURPOSE
 from app.wording.verdicts import gate_sentence

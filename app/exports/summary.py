@@ -19,6 +19,7 @@ from app.summary.conditions import Part
 from app.summary.differences import likely_figures
 from app.summary.error_figures import error_figures_in_json
 from app.summary.reference_bands import reference_curves
+from app.system.tables import finite
 from app.wording.findings import sentence
 from app.wording.verdicts import gate_sentence
 from core.alignment import alignment_table
@@ -39,7 +40,6 @@ from core.verdicts.quantities import (
 )
 
 FORMAT = "gaitwright-analysis/1"
-MOST_BYTES = 50_000_000  # of a file that may be one: ours take a few hundred kilobytes
 BOTH = (*OF_BOTH, "symmetry_index_percent", "curve_difference_deg", "side_difference")
 KINDS = ("knee", "ankle")
 SYMMETRIC = tuple(quantity.column for quantity in REGISTRY if quantity.has_index)
@@ -58,18 +58,6 @@ def write_summary(
     text = json.dumps(summarise(analysis, recordings, agreed), indent=2, ensure_ascii=False, allow_nan=False)
     # a file's name may hold bytes that are no text: what replaces them is an escape of JSON too
     path.write_text(text + "\n", encoding="utf-8", errors="backslashreplace", newline="\n")
-
-
-def read_summary(path: Path) -> dict[str, Any] | None:
-    """Read what `write_summary` wrote; None when there is no such file, or one of another program."""
-    try:
-        if path.stat().st_size > MOST_BYTES:
-            return None
-        summary = json.loads(path.read_text(encoding="utf-8"))
-    except (OSError, ValueError, RecursionError):  # ValueError: no JSON, or not even UTF-8
-        return None
-    is_ours = isinstance(summary, dict) and summary.get("format") == FORMAT
-    return summary if is_ours else None
 
 
 def summarise(
@@ -120,7 +108,7 @@ def _walk(analysis: Analysis, recording: RecordingAnalysis) -> dict[str, Any]:
     sides = {str(side): _side(side, recording, found.legs[side]) if side in found.legs else {} for side in Side}
     both: dict[str, Any] = dict.fromkeys(BOTH)
     for name, average in found.both.items():
-        both[name], both[f"{name}_status"] = _number(average.mean), str(average.assessment.verdict)
+        both[name], both[f"{name}_status"] = finite(average.mean), str(average.assessment.verdict)
     walk = {**sides, "both": both, "verdicts": _verdicts(recording.verdicts), **summarise_pelvis(recording)}
     if recording.timed is not None:
         walk["timed_test"] = timed_summary(recording.timed)
@@ -130,10 +118,10 @@ def _walk(analysis: Analysis, recording: RecordingAnalysis) -> dict[str, Any]:
     part = Part("", recording.name, (recording,), analysis.calibrated_for(recording))
     both |= {
         "symmetry_index_percent": {
-            name: _number(symmetry_index_percent(*(found.legs[side].of[name].mean for side in (one, other))))
+            name: finite(symmetry_index_percent(*(found.legs[side].of[name].mean for side in (one, other))))
             for name in SYMMETRIC
         },
-        "curve_difference_deg": {kind: _number(_difference_deg(recording, kind)) for kind in KINDS},
+        "curve_difference_deg": {kind: finite(_difference_deg(recording, kind)) for kind in KINDS},
         "side_difference": {name: _side_difference(part, name, pair) for name in PARAMETERS if name.endswith("_deg")},
     }
     return walk
@@ -148,12 +136,12 @@ def _side(side: Side, recording: RecordingAnalysis, found: LegAverages) -> dict[
     of_hips: dict[str, Any] = {}
     for name, average in found.of.items():
         into = of_hips if name in OF_HIPS else figures
-        into[f"{name}_mean"], into[f"{name}_sd"] = _number(average.mean), _number(average.sd)
+        into[f"{name}_mean"], into[f"{name}_sd"] = finite(average.mean), finite(average.sd)
         if name not in OF_HIPS:
-            into[f"{name}_error"] = _number(average.error)
+            into[f"{name}_error"] = finite(average.error)
         into[f"{name}_status"] = str(average.assessment.verdict)
     joints = {kind: Joint(f"{side}_{kind}") for kind in KINDS}
-    scores = {kind: _number(_score_deg(recording, joint)) for kind, joint in joints.items()}
+    scores = {kind: finite(_score_deg(recording, joint)) for kind, joint in joints.items()}
     fitting = fitting_of_side(recording, side)
     return {**figures, "gait_variable_score_deg": scores, "fitting": fitting, **of_hips}
 
@@ -184,11 +172,11 @@ def _side_difference(part: Part, name: str, sides: tuple[Side, Side]) -> dict[st
         return None
     found = compare_legs(part, name, sides)
     return {
-        "difference_deg": _number(found.difference),
-        "error_deg": _number(found.error),
+        "difference_deg": finite(found.difference),
+        "error_deg": finite(found.error),
         "verdict": str(found.judgement),
         "error_sources": [str(source) for source in found.sources],
-        **{f"{key}_deg": _number(value) for key, value in likely_figures(found).items()},
+        **{f"{key}_deg": finite(value) for key, value in likely_figures(found).items()},
         "mark": str(found.mark),
     }
 
@@ -212,8 +200,8 @@ def _assessment(found: Assessment) -> dict[str, Any]:
     reasons = [
         {
             "gate": reason.gate,
-            "value": _number(reason.value),
-            "limit": _number(reason.limit),
+            "value": finite(reason.value),
+            "limit": finite(reason.limit),
             "unit": reason.unit,
             "text": gate_sentence(reason),
         }
@@ -232,15 +220,15 @@ def _joint(found: JointCalibration) -> dict[str, Any]:
         "axis_distal": _vector(found.axis_distal),
         "centre_proximal_m": _vector(found.centre_proximal_m),
         "centre_distal_m": _vector(found.centre_distal_m),
-        "axis_sd_deg": _number(found.axis_sd_rad, math.degrees(1)),
-        "centre_sd_mm": _number(found.centre_sd_m, 1000),
-        "sign_margin": _number(found.sign_margin),
+        "axis_sd_deg": None if found.axis_sd_rad is None else finite(found.axis_sd_rad * math.degrees(1)),
+        "centre_sd_mm": None if found.centre_sd_m is None else finite(found.centre_sd_m * 1000),
+        "sign_margin": finite(found.sign_margin),
         "clinical_sign": int(found.clinical_sign),
         "is_sign_certain": bool(found.is_sign_certain),
-        "clinical_sign_margin": _number(found.clinical_sign_margin),
-        "lag_s": _number(found.lag_s),
-        "lag_sd_s": _number(found.lag_sd_s),
-        "hinge_residual_rad_s": _number(found.hinge_residual_rad_s),
+        "clinical_sign_margin": finite(found.clinical_sign_margin),
+        "lag_s": finite(found.lag_s),
+        "lag_sd_s": finite(found.lag_sd_s),
+        "hinge_residual_rad_s": finite(found.hinge_residual_rad_s),
         "is_hinge": bool(found.is_hinge),
         "gyro_bias_proximal_rad_s": _vector(found.gyro_bias_proximal_rad_s),
         "gyro_bias_distal_rad_s": _vector(found.gyro_bias_distal_rad_s),
@@ -272,17 +260,10 @@ def _vector(vector: FloatArray | None) -> list[float] | None:
     return [float(part) for part in vector]
 
 
-def _number(value: float | None, factor: float = 1.0) -> float | None:
-    """Give a figure as JSON can hold it: None where it could not be found or has no bound."""
-    if value is None or not math.isfinite(value):
-        return None
-    return float(value) * factor
-
-
 def _plain(value: float | int | str) -> float | int | str | None:
     """Give a finding's figure as JSON can hold it, also where it came out of an array."""
     if isinstance(value, str):
         return str(value)
     if isinstance(value, int | np.integer):
         return int(value)
-    return _number(value)
+    return finite(value)

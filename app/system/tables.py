@@ -1,10 +1,13 @@
-"""Small tables of text as CSV files, safe to open in a spreadsheet."""
+"""Small tables of text as CSV files, safe to open in a spreadsheet, and small files of JSON."""
 
 import csv
+import json
 import math
 from collections.abc import Iterable, Sequence
 from pathlib import Path
+from typing import Any
 
+MOST_BYTES = 50_000_000  # of a file that may be one of ours, which take a few hundred kilobytes
 FORMULA = ("=", "+", "-", "@")
 
 
@@ -23,6 +26,25 @@ def write_table(header: Sequence[str], rows: Iterable[Sequence[str]], path: Path
 def figure_cell(value: float) -> str:
     """A figure as a table of CSV has it; empty where there is none."""
     return f"{value:.5f}" if math.isfinite(value) else ""
+
+
+def finite(value: float | None) -> float | None:
+    """A figure as JSON can hold it; None for what is not known or has no bound."""
+    return float(value) if value is not None and math.isfinite(value) else None
+
+
+def read_json(path: Path, form: str) -> dict[str, Any] | None:
+    """Read a file of ours that states its `format`; None where there is none, or one of another program."""
+    try:
+        content = json.loads(path.read_text(encoding="utf-8")) if path.stat().st_size <= MOST_BYTES else None
+    except (OSError, ValueError, RecursionError):  # ValueError: no JSON, or not even UTF-8
+        return None
+    return content if isinstance(content, dict) and content.get("format") == form else None
+
+
+def is_free(out: Path) -> bool:
+    """Whether nothing is at a place, or an empty folder."""
+    return not out.exists() or (out.is_dir() and not any(out.iterdir()))
 
 
 def typed_cell(text: str) -> str:

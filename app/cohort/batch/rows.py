@@ -9,10 +9,10 @@ from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from enum import StrEnum
 
-from app.exports.figures import finite
 from app.storage.pseudonyms import SEXES, age_in_words
 from app.summary.averages import LegAverages, WalkAverages, averages_of
 from app.system.logs import version_of
+from app.system.tables import finite
 from core.body import Side
 from core.parameters import SPEED
 from core.results import Analysis
