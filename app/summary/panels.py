@@ -11,6 +11,7 @@ from app.charts.drawing import COLOURS, DASHES, Picture, box, line, picture, tex
 from app.charts.on_paper import PLAIN
 from app.charts.stride_chart import NO_STRIDES, Axis, StrideCurve, usual_range_deg
 from app.summary import quality
+from app.summary.conditions import Part
 from app.summary.facts import KINDS, Facts, joint_of
 from app.summary.numbers_in_words import fixed
 from app.summary.reference_bands import OTHER_AGES, WHY_NO_BAND
@@ -244,21 +245,26 @@ def curve_alt(facts: Facts, kind: str, sides: Sequence[Side]) -> str:
     """The figure in words and numbers, for who does not see it."""
     stated = [title_of(facts, kind) + "."]
     for side in sides:
-        numbers = [tr("{count} strides").format(count=facts.strides(side))]
+        peaks = []
         for column in PEAK_COLUMNS[kind]:
             value, at = facts.value(side, column), facts.peak_percent(side, column)
             if is_mean_enough(value.n):
                 peak = tr("{name} {value}° at {percent} % of the gait cycle")
                 name = peak_name(column)
-                numbers.append(peak.format(name=name, value=fixed(value.mean, 0), percent=fixed(at.mean, 0)))
-        found = facts.value(side, f"{kind}_range_deg")
-        if is_mean_enough(found.n):
-            numbers.append(tr("range of motion {value}°").format(value=fixed(found.mean, 0)))
-        off = facts.value(side, "stance_percent")
-        if is_mean_enough(off.n):
-            numbers.append(tr("toe\u2011off at {percent} %").format(percent=fixed(off.mean, 0)))
-        stated.append(f"{capitalised(side_name(side))}: {', '.join(numbers)}.")
+                peaks.append(peak.format(name=name, value=fixed(value.mean, 0), percent=fixed(at.mean, 0)))
+        stated.append(f"{capitalised(side_name(side))}: {leg_in_numbers(facts.part, side, kind, peaks)}.")
     return " ".join([tr("SIMULATED.")] * facts.is_simulated + stated)
+
+
+def leg_in_numbers(part: Part, side: Side, kind: str, peaks: Sequence[str]) -> str:
+    """Strides, what is stated of the peaks, range and toe-off, as far as they are known."""
+    numbers = [tr("{count} strides").format(count=part.strides(side)), *peaks]
+    found, off = part.value(side, f"{kind}_range_deg"), part.value(side, "stance_percent")
+    if is_mean_enough(found.n):
+        numbers.append(tr("range of motion {value}°").format(value=fixed(found.mean, 0)))
+    if is_mean_enough(off.n):
+        numbers.append(tr("toe\u2011off at {percent} %").format(percent=fixed(off.mean, 0)))
+    return ", ".join(numbers)
 
 
 def peak_name(column: str) -> str:

@@ -92,7 +92,7 @@ def evidence_table(facts: Facts) -> list[Block]:
         (
             "plausible",
             tr("ROM in walking, median"),
-            lambda joint, _: _degrees(float(np.median(found)) if len(found := _ranges_deg(facts, joint)) else math.nan),
+            lambda joint, _: _median(facts, joint),
             tr("knee {knee}°, ankle {ankle}°").format(
                 knee=f"{knee[0]:.0f}–{knee[1]:.0f}", ankle=f"{ankle[0]:.0f}–{ankle[1]:.0f}"
             ),
@@ -100,13 +100,13 @@ def evidence_table(facts: Facts) -> list[Block]:
         (
             "halves",
             tr("ROM, second half of walk minus first"),
-            lambda joint, _: _degrees(_farthest(halves_apart, facts, joint), is_signed=True),
+            lambda joint, _: _farthest(2, facts, joint),
             tr("at most {limit}°").format(limit=fixed(LIMITS.halves_deg, 0)),
         ),
         (
             "drift",
             tr("ROM, last third minus first"),
-            lambda joint, _: _degrees(_farthest(thirds_apart, facts, joint), is_signed=True),
+            lambda joint, _: _farthest(3, facts, joint),
             tr("at most {limit}°").format(limit=fixed(LIMITS.thirds_deg, 0)),
         ),
         ("strap", tr("Strap"), lambda joint, _: _strap(facts, joint), tr("not moved")),
@@ -173,13 +173,13 @@ def hips_table(facts: Facts) -> list[Block]:
         (
             "plausible",
             tr("ROM in walking, median"),
-            lambda joint, _: _degrees(float(np.median(found)) if len(found := _ranges_deg(facts, joint)) else math.nan),
+            lambda joint, _: _median(facts, joint),
             f"{of_range[0]:.0f}–{of_range[1]:.0f}°",
         ),
         (
             "halves",
             tr("ROM, second half of walk minus first"),
-            lambda joint, _: _degrees(_farthest(halves_apart, facts, joint), is_signed=True),
+            lambda joint, _: _farthest(2, facts, joint),
             tr("at most {limit}°").format(limit=fixed(LIMITS.halves_deg, 0)),
         ),
     ]
@@ -271,20 +271,12 @@ def error_table() -> list[Block]:
     ]
 
 
-def halves_apart(values: FloatArray) -> float:
-    """The mean of the second half of some values (k,) less that of the first; NaN of too few."""
+def _parts_apart(values: FloatArray, parts: int) -> float:
+    """The mean of the last of so many parts of some values (k,) less that of the first; NaN of too few."""
     if len(values) < MIN_STRIDES_TO_SPLIT:
         return math.nan
-    half = len(values) // 2
-    return float(values[-half:].mean() - values[:half].mean())
-
-
-def thirds_apart(values: FloatArray) -> float:
-    """The mean of the last third of some values (k,) less that of the first; NaN of too few."""
-    if len(values) < MIN_STRIDES_TO_SPLIT:
-        return math.nan
-    third = len(values) // 3
-    return float(values[-third:].mean() - values[:third].mean())
+    each = len(values) // parts
+    return float(values[-each:].mean() - values[:each].mean())
 
 
 def _ranges_of_walks(facts: Facts, joint: Joint) -> list[FloatArray]:
@@ -294,14 +286,15 @@ def _ranges_of_walks(facts: Facts, joint: Joint) -> list[FloatArray]:
     return [one[np.isfinite(one)] for one in found]
 
 
-def _ranges_deg(facts: Facts, joint: Joint) -> FloatArray:
-    return np.concatenate([np.empty(0), *_ranges_of_walks(facts, joint)])
+def _median(facts: Facts, joint: Joint) -> str:
+    found = np.concatenate([np.empty(0), *_ranges_of_walks(facts, joint)])
+    return _degrees(float(np.median(found)) if len(found) else math.nan)
 
 
-def _farthest(apart: Callable[[FloatArray], float], facts: Facts, joint: Joint) -> float:
-    """Of the walk in which the parts lie farthest apart: each walk has to pass by itself."""
-    found = [value for one in _ranges_of_walks(facts, joint) if math.isfinite(value := apart(one))]
-    return max(found, key=abs, default=math.nan)
+def _farthest(parts: int, facts: Facts, joint: Joint) -> str:
+    """Of the walk in which the first and the last part lie farthest apart: each walk has to pass by itself."""
+    found = [value for one in _ranges_of_walks(facts, joint) if math.isfinite(value := _parts_apart(one, parts))]
+    return _degrees(max(found, key=abs, default=math.nan), is_signed=True)
 
 
 def _degrees(value: float, *, is_signed: bool = False) -> str:
