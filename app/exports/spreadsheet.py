@@ -16,6 +16,7 @@ from openpyxl import Workbook
 from openpyxl.cell import Cell, WriteOnlyCell
 from openpyxl.cell.cell import ILLEGAL_CHARACTERS_RE
 from openpyxl.styles import Font
+from openpyxl.utils import get_column_letter
 from openpyxl.worksheet._write_only import WriteOnlyWorksheet
 
 from app.exports.figures import SIMULATED, reason_of, software, unit_of, walk_figures
@@ -181,9 +182,9 @@ def _sheet(book: Workbook, title: str, header: Sequence[str], rows: Iterable[Seq
     sheet = book.create_sheet(title)
     sheet.freeze_panes = "A2"
     table = list(rows)  # strides and events: thousands of rows, where angles are millions and stay in CSV
-    for number, name in enumerate(header):
-        longest = max((len(text) for row in table if isinstance(text := row[number], str)), default=0)
-        sheet.column_dimensions[_letters(number)].width = min(max(len(name), longest, NARROWEST) + 2, WIDEST)
+    for number, name in enumerate(header, start=1):
+        longest = max((len(text) for row in table if isinstance(text := row[number - 1], str)), default=0)
+        sheet.column_dimensions[get_column_letter(number)].width = min(max(len(name), longest, NARROWEST) + 2, WIDEST)
     headings = [_text(sheet, name) for name in header]
     for heading in headings:
         heading.font = Font(name="Calibri", size=11, bold=True)
@@ -206,10 +207,6 @@ def _text(sheet: WriteOnlyWorksheet, value: str) -> Cell:
     cell = WriteOnlyCell(sheet, ILLEGAL_CHARACTERS_RE.sub("", value))
     cell.data_type = "s"  # or what begins with = would be a formula
     return cell
-
-
-def _letters(number: int) -> str:
-    return _letters(number // 26 - 1) + chr(65 + number % 26) if number >= 26 else chr(65 + number)
 
 
 def _without_times(workbook: bytes) -> bytes:
