@@ -27,6 +27,7 @@ from app.charts.drawing import (
     text,
 )
 from app.charts.frame import Frame
+from app.charts.marks import stretches
 from app.charts.stride_chart import Axis, StrideChart, StrideCurve, toe_offs_in_order
 from app.theme.colours import PAPER
 from app.wording.translation import tr
@@ -219,9 +220,8 @@ def _beyond(frame: Frame, axis: Axis, one: StrideCurve) -> list[str]:
         (one.angle_deg > axis.high, frame.top, -5.0),
         (one.angle_deg < axis.low, frame.bottom, 5.0),
     ):
-        edges = np.flatnonzero(np.diff(np.concatenate([[0], is_out.astype(int), [0]])))
-        for first, last in zip(edges[::2], edges[1::2], strict=True):
-            x = float(frame.x((first + last - 1) / 2))
+        for first, last in stretches(is_out):
+            x = float(frame.x((first + last) / 2))
             parts.append(polygon([(x, y + step), (x - 2.6, y), (x + 2.6, y)], _look(one)[0]))
     return parts
 

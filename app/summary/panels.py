@@ -107,12 +107,11 @@ def band_of(facts: Facts, kind: str, sides: Sequence[Side]) -> Band | None:
 
 def curve_of(facts: Facts, side: Side, kind: str) -> StrideCurve:
     """One leg of one walk: its mean, or its single strides where they are too few for one."""
-    letter = side[0].upper()
     off = facts.value(side, "stance_percent")
     is_known = is_mean_enough(off.n)
-    label = tr("{side} toe\u2011off {percent} %").format(side=letter, percent=fixed(off.mean, 1))
+    label = tr("{side} toe\u2011off {percent} %").format(side=side.letter, percent=fixed(off.mean, 1))
     return StrideCurve(
-        letter=letter,
+        letter=side.letter,
         side=side,
         angle_deg=facts.mean_curve_deg(side, kind),
         toe_off_percent=off.mean if is_known else math.nan,

@@ -14,6 +14,7 @@ from app.charts.drawing import COLOURS, MM, Picture, box, curve, line, picture, 
 from app.reports.agreement.printed import side_role
 from app.reports.agreement.study import AgreementStudy, AngleKind, ComparedWalk
 from app.theme.colours import PAPER
+from app.wording.numbers import MINUS
 from app.wording.translation import capitalised, later, tr
 from core.body import Joint, JointKind
 from core.gait.phases import PHASES, Phase
@@ -155,7 +156,7 @@ def _axis(top: float, height: float, limits: tuple[float, float], step: float) -
     y = _scale(top, height, limits)
     for value in np.arange(limits[0], limits[1] + step / 2, step):
         yield line(LEFT, float(y(value)), WIDTH - RIGHT, float(y(value)), PAPER.grid, 0.4)
-        yield text(LEFT - 4, float(y(value)) + 2.4, f"{value:.0f}°".replace("-", "\u2212"), 6.6, anchor="end")
+        yield text(LEFT - 4, float(y(value)) + 2.4, f"{value:.0f}°".replace("-", MINUS), 6.6, anchor="end")
 
 
 def caption(study: AgreementStudy, kind: JointKind) -> str:

@@ -18,6 +18,7 @@ from app.theme.colours import LIGHT, PAPER
 from app.wording.body import side_name
 from app.wording.dates import day_in_words
 from app.wording.measures import with_unit
+from app.wording.numbers import MINUS
 from app.wording.translation import tr
 from core.body import Side
 from core.parameters import KNEE, Unit, unit_of
@@ -40,7 +41,7 @@ def difference_table(facts: Facts, headline: Headline) -> dict[str, object] | No
     walked = walked_visits(facts.course, facts.condition)
     days = [visit.day for visit in walked]
     has_last, first = len(walked) > 1, facts.first_and_second[0]
-    less = f"{first.letter} \N{MINUS SIGN} {first.other.letter}"
+    less = f"{first.letter} {MINUS} {first.other.letter}"
     since = tr("Since {day}").format(day=day_in_words(days[-2], days)) if has_last else ""
     return {
         "title": tr("Largest differences") if len(sides) > 1 else tr("Values"),
