@@ -23,6 +23,7 @@ from app.storage.opened import OpenedLibrary, logged_in
 from app.storage.recovery import find_interrupted, recover
 from app.storage.slots import Cost
 from app.storage.stored import LibraryError, Operator, Role, StoredJournal
+from app.system.progress import nobody
 from core.session import Patient, Recording, RecordingKind, Session
 from tests.safety.failing_disk import FailingDisk, failing_disk, missing
 from tests.safety.journal_material import LINES, NO_ROOM_ASKED, LineDecoder, line, record_some
@@ -87,10 +88,6 @@ def wait_for(is_so: Callable[[], bool]) -> None:
         time.sleep(0.005)
 
 
-def silent(_share: float, _what: str) -> None:
-    """Report to nobody."""
-
-
 @REFUSED
 @pytest.mark.parametrize("has_shelter", [True, False])
 def test_a_recording_keeps_what_was_written_and_states_what_happened(
@@ -125,7 +122,7 @@ def test_a_recording_keeps_what_was_written_and_states_what_happened(
         bring_home(later)
         (found,) = find_interrupted(later)
         assert found.problem == ""
-        recover(later, found, silent)
+        recover(later, found, nobody)
         paths = list(find_segments(later.recordings)[recording_id].values())
         block = decode(paths, later.data_key, {"lines": LineDecoder}).sensors["line"].block
     numbers = [round(float(one)) for one in block.time_s * 200.0]
