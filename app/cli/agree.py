@@ -1,16 +1,18 @@
 """`gaitwright agree`: what a session and an optical system differ by, in the shape of Table 1."""
 
 import argparse
+import json
 from datetime import datetime
 from pathlib import Path
 
-from app.cli.library import add_library_arguments, read_place, session_place
+from app.cli.library import add_key_arguments, read_place, session_place
+from app.storage.layout import default_folder
 from app.system.logs import version_of
 from app.system.progress import Report
-from app.system.tables import is_free, read_json
 from devices.files.refusal import FileRefusedError, one_line
 
 REPORT = "agreement.pdf"  # as app.reports.agreement.folder has it, whose imports take long
+MOST_SUMMARY_BYTES = 10_000_000
 
 
 def add_agree_arguments(parser: argparse.ArgumentParser) -> None:
@@ -33,7 +35,10 @@ def add_agree_arguments(parser: argparse.ArgumentParser) -> None:
         help="CSV with time_s and left_knee ... in degrees, OpenSim .mot, C3D, or Visual3D's text; to be given again "
         "for each further file",
     )
-    add_library_arguments(parser)
+    parser.add_argument(
+        "--library", metavar="LIBRARY", type=Path, default=default_folder(), help="the folder of the library (your own)"
+    )
+    add_key_arguments(parser)
     parser.add_argument("--out", metavar="OUT", type=Path, required=True, help="the folder of the agreement to write")
     parser.add_argument("--no-report", action="store_true", help=f"write no {REPORT}")
 
@@ -89,9 +94,15 @@ def check_agreement_place(out: Path) -> None:
     """
     from app.reports.agreement.tables import FORMAT, SUMMARY
 
-    if is_free(out):
+    if not out.exists() or (out.is_dir() and not any(out.iterdir())):
         return
-    if read_json(out / SUMMARY, FORMAT) is None or any(out.rglob("session.toml")):
+    summary = out / SUMMARY
+    try:
+        is_one = summary.stat().st_size <= MOST_SUMMARY_BYTES
+        is_one = is_one and json.loads(summary.read_text(encoding="utf-8")).get("format") == FORMAT
+    except (OSError, ValueError, AttributeError, RecursionError):
+        is_one = False
+    if not is_one or any(out.rglob("session.toml")):
         raise FileRefusedError(
             str(out), "this already exists and is not a comparison with a reference", "Choose another --out"
         )

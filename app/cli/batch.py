@@ -7,20 +7,19 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 from urllib.parse import urlsplit
 
-from app.cli.library import add_library_arguments, opened_library
+from app.cli.library import add_key_arguments, opened_library
 from app.cli.progress import one_of, positive
+from app.storage.layout import default_folder
 from app.system.progress import Report
 from devices.files.refusal import FileRefusedError, one_line
 
 if TYPE_CHECKING:
-    from app.cohort.batch.analysed_folder import AnalysisChoices
     from app.cohort.batch.run import BatchResult
     from app.cohort.batch.sources import SessionSource
     from app.cohort.batch.spread import Workers
 
 LIBRARY = "library"  # the word, in place of a folder; a folder of this name is ./library
-# as core.results.Method and core.published.angles have them, whose imports would cost half a second here
-METHODS = ("robust", "published")
+METHODS = ("robust", "published")  # as core.results.Method has them, whose import would cost half a second here
 DEFAULT_TAU_S = 2.0
 HERE = frozenset(("localhost", "127.0.0.1", "::1"))
 
@@ -39,7 +38,10 @@ def add_batch_arguments(parser: argparse.ArgumentParser) -> None:
         help="the folder that holds session folders, however deep, or the word library: all sessions of the library, "
         "whose results leave it with identity",
     )
-    add_library_arguments(parser)
+    parser.add_argument(
+        "--library", metavar="LIBRARY", type=Path, default=default_folder(), help="the folder of the library (your own)"
+    )
+    add_key_arguments(parser)
     parser.add_argument("--out", metavar="OUT", type=Path, required=True, help="the folder of the batch")
     where = parser.add_mutually_exclusive_group()
     where.add_argument(
@@ -51,25 +53,17 @@ def add_batch_arguments(parser: argparse.ArgumentParser) -> None:
         help="the scheduler of a Dask cluster of your own, such as tcp://192.0.2.1:8786. FOLDER and OUT have to be on "
         "a disk that all its workers see under the same path, and all need this version",
     )
-    of_report = "write no report.pdf, which takes half of the time"
-    add_analysis_arguments(parser, "as of analyse (robust)", "as of analyse (2)", of_report)
-    parser.set_defaults(stopped="What is done stays in OUT. Give the same command again to go on.")
-
-
-def add_analysis_arguments(parser: argparse.ArgumentParser, method: str, tau: str, no_report: str) -> None:
-    """How a session is analysed and what is written of it, with the help on three of them."""
-    names = f"{{{','.join(METHODS)}}}"
-    parser.add_argument("--method", type=one_of(METHODS), default=METHODS[0], metavar=names, help=method)
-    parser.add_argument("--tau", type=positive, default=DEFAULT_TAU_S, metavar="S", help=tau)
-    parser.add_argument("--no-report", action="store_true", help=no_report)
+    parser.add_argument(
+        "--method",
+        type=one_of(METHODS),
+        default=METHODS[0],
+        metavar="{robust,published}",
+        help="as of analyse (robust)",
+    )
+    parser.add_argument("--tau", type=positive, default=DEFAULT_TAU_S, metavar="S", help="as of analyse (2)")
+    parser.add_argument("--no-report", action="store_true", help="write no report.pdf, which takes half of the time")
     parser.add_argument("--no-rrd", action="store_true", help="write no session.rrd for Rerun")
-
-
-def analysis_choices(args: argparse.Namespace) -> "AnalysisChoices":
-    from app.cohort.batch.analysed_folder import AnalysisChoices
-    from core.results import Method
-
-    return AnalysisChoices(Method(args.method), args.tau, not args.no_report, not args.no_rrd)
+    parser.set_defaults(stopped="What is done stays in OUT. Give the same command again to go on.")
 
 
 def batch(args: argparse.Namespace, report: Report) -> Iterator[str]:
@@ -93,12 +87,15 @@ def batch(args: argparse.Namespace, report: Report) -> Iterator[str]:
 
 def _done(args: argparse.Namespace, workers: "Workers", report: Report) -> "tuple[BatchResult, list[str]]":
     """What came of the batch, and what is to be stated about its sessions; raises as `batch`."""
+    from app.cohort.batch.analysed_folder import AnalysisChoices
     from app.cohort.batch.done import batch_at
     from app.cohort.batch.run import Batch
     from app.cohort.batch.spread import ClusterLostError
+    from core.results import Method
 
+    choices = AnalysisChoices(Method(args.method), args.tau, not args.no_report, not args.no_rrd)
     with _sessions(args) as sessions, batch_at(args.out) as folder:
-        work = Batch(sessions, folder, analysis_choices(args))
+        work = Batch(sessions, folder, choices)
         try:
             work.run(workers, report)
         except ClusterLostError as lost:

@@ -7,7 +7,8 @@ from itertools import groupby
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from app.cli.library import add_library_arguments, read_place, session_place
+from app.cli.library import add_key_arguments, read_place, session_place
+from app.storage.layout import default_folder
 from app.system.progress import Report
 from core.parameters import BY_COLUMN
 from devices.files.refusal import FileRefusedError, one_line
@@ -40,7 +41,10 @@ def add_compare_arguments(parser: argparse.ArgumentParser) -> None:
         "session folders, results with their session inside, or library:ID; the first is what others differ from"
     )
     parser.add_argument("sessions", metavar="SESSION", type=session_place, nargs="+", help=help_text)
-    add_library_arguments(parser)
+    parser.add_argument(
+        "--library", metavar="LIBRARY", type=Path, default=default_folder(), help="the folder of the library (your own)"
+    )
+    add_key_arguments(parser)
     parser.add_argument(
         "--limit",
         metavar="COLUMN=VALUE",

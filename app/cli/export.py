@@ -5,9 +5,9 @@ from collections.abc import Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from app.cli.library import LibrarySession, add_library_arguments, opened_library, session_place
+from app.cli.library import LibrarySession, add_key_arguments, opened_library, session_place
+from app.storage.layout import default_folder
 from app.system.progress import Report
-from app.system.tables import is_free
 from devices.decoders import DECODERS
 from devices.files.refusal import FileRefusedError, one_line
 
@@ -26,7 +26,10 @@ def add_export_arguments(parser: argparse.ArgumentParser) -> None:
     )
     help_text = "the session folder, results with their session inside, or library:ID"
     parser.add_argument("session", metavar="SESSION", type=session_place, help=help_text)
-    add_library_arguments(parser)
+    parser.add_argument(
+        "--library", metavar="LIBRARY", type=Path, default=default_folder(), help="the folder of the library (your own)"
+    )
+    add_key_arguments(parser)
     parser.add_argument("--as", dest="formats", metavar="FORMAT,...", required=True, help=", ".join(FORMATS))
     parser.add_argument(
         "--keep",
@@ -67,7 +70,7 @@ def export(args: argparse.Namespace, report: Report) -> list[str]:
         )
     if args.preview:
         return _preview(args, kept)
-    if not is_free(args.out):
+    if args.out.exists() and not (args.out.is_dir() and not any(args.out.iterdir())):
         raise FileRefusedError(
             str(args.out), "this already exists and is not an empty folder", "Choose an empty folder or a new one"
         )

@@ -5,7 +5,6 @@ from pathlib import Path
 
 from app.cli.progress import finding_lines, one_of, positive
 from app.system.progress import Report
-from app.system.tables import is_free
 
 # as core.session.RecordingKind and devices.files.formats have them, whose imports would cost half a second here
 KINDS = ("standing", "free_motion", "walking")
@@ -53,7 +52,8 @@ def import_files(args: argparse.Namespace, progress: Report) -> list[str]:
 
     kind = RecordingKind(args.kind)
     placement = parse_map(args.map)
-    session = Session(()) if is_free(args.out) else read_foreign_session(args.out, lambda: progress(0.0, str(args.out)))
+    is_new = not args.out.exists() or (args.out.is_dir() and not any(args.out.iterdir()))
+    session = Session(()) if is_new else read_foreign_session(args.out, lambda: progress(0.0, str(args.out)))
     name = args.recording or free_name(session, kind)
     progress(0.0, name)
     trial = read_foreign_trial(args.format or "", args.files, args.rate, lambda: progress(0.0, name))

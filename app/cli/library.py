@@ -16,7 +16,6 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 from uuid import UUID
 
-from app.storage.layout import default_folder
 from app.system.progress import Report
 from app.wording.numbers import clock
 from devices.decoders import DECODERS
@@ -28,7 +27,6 @@ if TYPE_CHECKING:
     from core.session import Session
 
 PREFIX = "library:"
-OF_LIBRARY = "the folder of the library (your own)"
 WHO = "--operator"
 PASSPHRASE_FILE = "--passphrase-file"
 
@@ -67,11 +65,6 @@ def add_key_arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
         PASSPHRASE_FILE, metavar="FILE", type=Path, help="the passphrase is its first line; else it is asked for"
     )
-
-
-def add_library_arguments(parser: argparse.ArgumentParser) -> None:
-    parser.add_argument("--library", metavar="LIBRARY", type=Path, default=default_folder(), help=OF_LIBRARY)
-    add_key_arguments(parser)
 
 
 @contextmanager

@@ -15,13 +15,13 @@ from pathlib import Path
 from typing import TYPE_CHECKING, NoReturn
 
 from app.cli.agree import add_agree_arguments, agree
-from app.cli.batch import DEFAULT_TAU_S, METHODS, add_analysis_arguments, add_batch_arguments, analysis_choices, batch
+from app.cli.batch import add_batch_arguments, batch
 from app.cli.clinic import add_clinic_arguments, clinic
 from app.cli.compare import add_compare_arguments, compare
 from app.cli.devices import EMULATED
 from app.cli.export import add_export_arguments, export
 from app.cli.import_files import add_import_arguments, import_files
-from app.cli.library import OF_LIBRARY, LibrarySession, add_key_arguments, add_library_arguments, session_place
+from app.cli.library import LibrarySession, add_key_arguments, session_place
 from app.cli.progress import Progress, finding_lines, one_of, positive
 from app.cli.query import add_query_arguments, query
 from app.cli.repeatability import add_repeatability_arguments, repeatability
@@ -31,14 +31,20 @@ from app.system.logs import log_folder, start_logging, version_of
 from app.wording.translation import languages, use_language
 
 if TYPE_CHECKING:
+    from app.cohort.batch.analysed_folder import AnalysisChoices
     from core.results import Analysis
     from core.session import Session
 
 DONE, REFUSED, INTERRUPTED = 0, 2, 3
+
+# as core.results.Method and core.published.angles have them, whose imports would cost half a second here
+DEFAULT_TAU_S = 2.0
+METHODS = ("robust", "published")
 SUBCOMMANDS = (
     *("analyse", "demo", "report", "compare", "agree", "export", "import", "batch", "query"),
     *("repeatability", "clinic", "recover", "audit", "devices"),
 )
+OF_LIBRARY = "the folder of the library (your own)"
 
 
 def main(argv: Sequence[str] | None = None) -> int:
@@ -166,14 +172,25 @@ def _add_analyse(parser: argparse.ArgumentParser) -> None:
         type=session_place,
         help="the session folder, or library:ID for one of the library",
     )
-    add_library_arguments(parser)
+    parser.add_argument("--library", metavar="LIBRARY", type=Path, default=default_folder(), help=OF_LIBRARY)
+    add_key_arguments(parser)
     parser.add_argument("--out", metavar="OUT", type=Path, required=True, help="the folder of results to write")
-    add_analysis_arguments(
-        parser,
-        "how joints are identified and which angle is the result (robust)",
-        "time constant of the published fusion in seconds (2)",
-        "write no report.pdf",
+    parser.add_argument(
+        "--method",
+        type=one_of(METHODS),
+        default=METHODS[0],
+        metavar="{robust,published}",
+        help="how joints are identified and which angle is the result (robust)",
     )
+    parser.add_argument(
+        "--tau",
+        type=positive,
+        default=DEFAULT_TAU_S,
+        metavar="S",
+        help="time constant of the published fusion in seconds (2)",
+    )
+    parser.add_argument("--no-report", action="store_true", help="write no report.pdf")
+    parser.add_argument("--no-rrd", action="store_true", help="write no session.rrd for Rerun")
     parser.set_defaults(run=_analyse)
 
 
@@ -248,7 +265,7 @@ def _analyse(args: argparse.Namespace) -> None:
     with Progress(sys.stderr) as progress, written_beside(args.out, keeps_session=session_is_inside) as folder:
         progress(0.0, str(args.session))
         session = _read(args, progress)
-        analysis = write_analysed(session, folder, analysis_choices(args), progress)
+        analysis = write_analysed(session, folder, _choices(args), progress)
     _show_message(analysis, args.out)
 
 
@@ -330,6 +347,13 @@ def _query(args: argparse.Namespace) -> None:
             sys.stdout.flush()
         except BrokenPipeError:  # as of `| head`
             os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
+
+
+def _choices(args: argparse.Namespace) -> "AnalysisChoices":
+    from app.cohort.batch.analysed_folder import AnalysisChoices
+    from core.results import Method
+
+    return AnalysisChoices(Method(args.method), args.tau, not args.no_report, not args.no_rrd)
 
 
 def _show_message(analysis: "Analysis", out: Path) -> None:

@@ -6,7 +6,8 @@ from contextlib import contextmanager
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from app.cli.library import add_library_arguments, opened_library
+from app.cli.library import add_key_arguments, opened_library
+from app.storage.layout import default_folder
 from app.system.progress import Report
 from devices.files.refusal import FileRefusedError, one_line
 
@@ -35,7 +36,10 @@ def add_repeatability_arguments(parser: argparse.ArgumentParser) -> None:
         help="the folder that holds session folders, however deep, or the word library: of the library's sessions "
         "the walks with the condition repeatability",
     )
-    add_library_arguments(parser)
+    parser.add_argument(
+        "--library", metavar="LIBRARY", type=Path, default=default_folder(), help="the folder of the library (your own)"
+    )
+    add_key_arguments(parser)
     parser.add_argument(
         "--out",
         metavar="OUT",

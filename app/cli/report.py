@@ -4,8 +4,9 @@ import argparse
 from datetime import datetime
 from pathlib import Path
 
-from app.cli.library import add_library_arguments, read_place, session_place
+from app.cli.library import add_key_arguments, read_place, session_place
 from app.cli.progress import one_of
+from app.storage.layout import default_folder
 from app.system.logs import version_of
 from app.system.progress import Report
 
@@ -20,7 +21,10 @@ def add_report_arguments(parser: argparse.ArgumentParser) -> None:
         type=session_place,
         help="the session folder, results with their session inside, or library:ID",
     )
-    add_library_arguments(parser)
+    parser.add_argument(
+        "--library", metavar="LIBRARY", type=Path, default=default_folder(), help="the folder of the library (your own)"
+    )
+    add_key_arguments(parser)
     parser.add_argument("--out", metavar="FILE.pdf", type=Path, required=True, help="the report to write")
     parser.add_argument(
         "--walk",

@@ -14,7 +14,6 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from app.cli import batch as batch_command
 from app.cli import import_files as import_command
 from app.cli import main as cli
 from app.cli import report as report_command
@@ -190,11 +189,11 @@ def test_help_comes_without_the_heavy_libraries() -> None:
 
 
 def test_the_choices_are_those_of_the_core() -> None:
-    assert tuple(Method) == batch_command.METHODS
+    assert tuple(Method) == cli.METHODS
     assert tuple(RecordingKind) == import_command.KINDS
     assert tuple(FORMATS) == import_command.FORMATS
     assert report_command.PAPERS == request.PAPERS
-    assert batch_command.DEFAULT_TAU_S == DEFAULT_TAU_S
+    assert cli.DEFAULT_TAU_S == DEFAULT_TAU_S
 
 
 def test_without_a_screen_the_window_states_so(
