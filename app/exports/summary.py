@@ -10,7 +10,6 @@ import numpy as np
 
 from app.exports.fitting_csv import fitting_of_side
 from app.exports.goals_csv import goal_figures, goals_of_walk
-from app.exports.pelvis_summary import summarise_pelvis
 from app.exports.timed_csv import timed_summary
 from app.summary.averages import LegAverages, averages_of
 from app.summary.comparison import compare_legs, first_and_second
@@ -27,6 +26,7 @@ from core.body import Joint, Side, hip_of
 from core.findings import Finding
 from core.gait.symmetry import curve_difference, gait_variable_score, symmetry_index_percent
 from core.goals import NO_GOALS, AgreedGoals
+from core.hip.results import HipIdentification
 from core.parameters import REGISTRY
 from core.results import Analysis, JointCalibration, RecordingAnalysis
 from core.samples import FloatArray
@@ -109,7 +109,7 @@ def _walk(analysis: Analysis, recording: RecordingAnalysis) -> dict[str, Any]:
     both: dict[str, Any] = dict.fromkeys(BOTH)
     for name, average in found.both.items():
         both[name], both[f"{name}_status"] = finite(average.mean), str(average.assessment.verdict)
-    walk = {**sides, "both": both, "verdicts": _verdicts(recording.verdicts), **summarise_pelvis(recording)}
+    walk = {**sides, "both": both, "verdicts": _verdicts(recording.verdicts), **_of_pelvis(recording)}
     if recording.timed is not None:
         walk["timed_test"] = timed_summary(recording.timed)
     if len(recording.gait) < len(Side):
@@ -240,6 +240,40 @@ def _joint(found: JointCalibration) -> dict[str, Any]:
             "free_motion": found.free_motion_from,
             "walks": list(found.walks_from),
         },
+    }
+
+
+def _of_pelvis(recording: RecordingAnalysis) -> dict[str, Any]:
+    """Give the hips' identification, the clock of both legs, turns, and the pelvis's lean; nothing without a pelvis."""
+    reported: dict[str, Any] = {}
+    if recording.leg_clock is not None:
+        clock = recording.leg_clock
+        reported["leg_clock_offset_s"], reported["leg_clock_sd_s"] = finite(clock.offset_s), finite(clock.sd_s)
+        reported["leg_clock_status"] = str(clock.status)
+    if recording.pelvis is not None:
+        tilt, is_reported = recording.pelvis.tilt_rad, recording.verdicts.pelvis.is_reported
+        known = tilt[np.isfinite(tilt)]
+        reported["pelvis_lean_deg"] = finite(math.degrees(float(known.mean()))) if is_reported and len(known) else None
+        reported["hips"] = {str(joint): _hip(hip.identification) for joint, hip in recording.hips.items()}
+        reported["turns"] = [
+            {"start_s": turn.start_s, "end_s": turn.end_s, "angle_deg": math.degrees(turn.angle_rad)}
+            for turn in recording.turns
+        ]
+    return reported
+
+
+def _hip(found: HipIdentification) -> dict[str, Any]:
+    return {
+        "centre_proximal_m": [float(part) for part in found.centre_proximal_m],
+        "centre_distal_m": [float(part) for part in found.centre_distal_m],
+        "sign_margin": finite(found.margin),
+        "disagreement": finite(found.disagreement),
+        "heading_sd_deg": finite(math.degrees(found.heading_sd_rad)),
+        "is_3d": bool(found.is_3d),
+        "moving_s": finite(found.moving_s),
+        "lag_s": finite(found.lag_s),
+        "centres_apart_m": finite(found.centres_apart_m),
+        "from": {"standing": found.standing_from},
     }
 
 

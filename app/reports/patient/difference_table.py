@@ -12,7 +12,7 @@ from app.summary.headline import Headline
 from app.summary.interval_words import interval_in_figures
 from app.summary.numbers_in_words import CARE, DAGGER, NOTHING, dagger_note, fixed, marked, signed
 from app.summary.trend_lines import walked_visits
-from app.summary.what_differs import LegsRow, since_last, what_differs, without_family
+from app.summary.what_differs import LegsRow, half_of_strip, since_last, what_differs, without_family
 from app.summary.what_stands_out import FAMILIES
 from app.theme.colours import LIGHT, PAPER
 from app.wording.body import side_name
@@ -22,13 +22,12 @@ from app.wording.numbers import MINUS
 from app.wording.translation import tr
 from core.body import Side
 from core.parameters import KNEE, Unit, unit_of
-from core.verdicts.measurement_error import Difference, Mark
+from core.verdicts.measurement_error import Mark
 from core.verdicts.model import Verdict
 
 MOST_ROWS = 5
 HIP = "hip_range_deg"
 MARK, STRIP, STRIP_HEIGHT = 7.0, 20 * MM, 12.0
-ZONES, HALVES = 2.3, 1.6  # half a drawing: so many times healthy people's difference, else half of the interval
 MARGIN = 2.4  # so that what reaches an edge is seen whole
 
 
@@ -134,9 +133,7 @@ def mark_picture(mark: Mark) -> Picture:
 
 def strip(row: LegsRow) -> Picture:
     """A difference with its likely interval over what 95 of 100 healthy people differ by."""
-    found: Difference = row.difference
-    usual = ZONES * found.healthy if math.isfinite(found.healthy) else HALVES * found.error
-    reach = max(usual, abs(found.difference) + found.error)
+    found, reach = row.difference, half_of_strip(row.difference)
     y, half = STRIP_HEIGHT / 2, STRIP / 2
 
     def x(value: float) -> float:
