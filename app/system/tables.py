@@ -4,6 +4,7 @@ import csv
 import json
 import math
 from collections.abc import Iterable, Sequence
+from decimal import Decimal
 from pathlib import Path
 from typing import Any
 
@@ -50,3 +51,17 @@ def is_free(out: Path) -> bool:
 def typed_cell(text: str) -> str:
     """What somebody typed, as a cell that no spreadsheet works out: where it begins as a formula, ' goes before it."""
     return f"'{text}" if text.lstrip().startswith(FORMULA) or text.startswith(("\t", "\r", "\n")) else text
+
+
+def csv_cell(value: object) -> str:
+    """Give one value as a cell: empty where there is none, numbers with all their digits, no text as a formula."""
+    match value:
+        case None:
+            return ""
+        case bool():
+            return "true" if value else "false"
+        case float():
+            return "" if math.isnan(value) else repr(value)
+        case int() | Decimal():
+            return str(value)
+    return typed_cell(str(value))
