@@ -52,9 +52,9 @@ class Canvas(Protocol):
     @property
     def lengths(self) -> Lengths: ...
 
-    def line(self, start: tuple[float, float], end: tuple[float, float], tone: Tone, width: float) -> None: ...
+    def stroke(self, start: tuple[float, float], end: tuple[float, float], tone: Tone, width: float) -> None: ...
 
-    def text(self, x: float, middle: float, stated: str, anchor: Anchor) -> None:
+    def label(self, x: float, middle: float, stated: str, anchor: Anchor) -> None:
         """A label of an axis."""
 
     def words(

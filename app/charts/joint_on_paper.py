@@ -5,9 +5,9 @@ The same chart as the screen's, letters no smaller than nine points.
 
 from app.charts.canvas import Anchor, Lengths, Tone
 from app.charts.cycles import PERCENT
-from app.charts.drawing import Picture, box, circle, curve, line, picture, text
+from app.charts.drawing import Drawing, Picture
 from app.charts.frame import Frame
-from app.charts.on_paper import PaperFrame, band_on_paper, hatches
+from app.charts.on_paper import PaperFrame, draw_band, draw_hatches
 from app.charts.places import Size, layout_of
 from app.charts.stride_chart import StrideChart, StrideCurve, toe_off_labels, toe_offs_in_order
 from app.charts.stride_drawing import draw_axes, draw_marks
@@ -34,77 +34,72 @@ LETTERS = {Side.LEFT: LIGHT.left_text, Side.RIGHT: LIGHT.right_text}
 TONES = {Tone.INK: PAPER.ink, Tone.NOTE: PAPER.note, Tone.AXIS: PAPER.note, Tone.INSIDE_ERROR: PAPER.ink}
 
 
-class PaperCanvas:
-    """Gathers the elements of an SVG, one unit a point."""
+class PaperCanvas(Drawing):
+    """What screen and paper draw alike, as paper has it."""
 
     lengths = LENGTHS
 
-    def __init__(self) -> None:
-        self.parts: list[str] = []
+    def stroke(self, start: tuple[float, float], end: tuple[float, float], tone: Tone, width: float) -> None:
+        self.line(*start, *end, TONES[tone], width)
 
-    def line(self, start: tuple[float, float], end: tuple[float, float], tone: Tone, width: float) -> None:
-        self.parts.append(line(*start, *end, TONES[tone], width))
-
-    def text(self, x: float, middle: float, stated: str, anchor: Anchor) -> None:
-        self.parts.append(text(x, middle + DROP, stated, SMALL, anchor=anchor, fill=PAPER.note))
+    def label(self, x: float, middle: float, stated: str, anchor: Anchor) -> None:
+        self.text(x, middle + DROP, stated, SMALL, anchor=anchor, fill=PAPER.note)
 
     def words(self, x: float, middle: float, stated: str, anchor: Anchor, tone: Tone | Side, *, is_first: bool) -> None:
         size, weight = (WORDS, 600) if is_first else (SMALL, 400)
-        fill = LETTERS[tone] if isinstance(tone, Side) else TONES[tone]
-        svg = text(x, middle + 0.35 * size, stated, size, anchor=anchor, weight=weight, fill=fill)
-        halo = f'paint-order="stroke" stroke="{PAPER.paper}" stroke-width="{LENGTHS.halo}" stroke-linejoin="round"'
-        self.parts.append(svg.replace("<text", f"<text {halo}", 1))
+        fill, y = LETTERS[tone] if isinstance(tone, Side) else TONES[tone], middle + 0.35 * size
+        self.text(x, y, stated, size, anchor=anchor, weight=weight, fill=fill, halo=LENGTHS.halo)
 
     def width_of(self, stated: str, *, is_first: bool) -> float:
         return _width(stated, WORDS if is_first else SMALL)
 
     def dot(self, x: float, y: float, side: Side) -> None:
         fill, edge = (CURVES[side], PAPER.paper) if side is Side.LEFT else (PAPER.paper, CURVES[side])
-        self.parts.append(circle(x, y, DOT, fill, edge, DOT_EDGE))
+        self.circle(x, y, DOT, fill, edge, DOT_EDGE)
 
     def chip(self, left: float, middle: float, side: Side) -> None:
-        self.parts += [box(left, middle - CHIP / 2, CHIP, CHIP, PAPER.paper), chip(left, middle - CHIP / 2, side)]
+        self.box(left, middle - CHIP / 2, CHIP, CHIP, PAPER.paper)
+        draw_chip(self, left, middle - CHIP / 2, side)
 
     def hatched_box(self, left: float, top: float, width: float, height: float) -> None:
         place = f'x="{left:.2f}" y="{top:.2f}" width="{width:.2f}" height="{height}" rx="3"'
         edge = f'fill="none" stroke="{PAPER.note}" stroke-width="0.6" stroke-dasharray="3 2"'
-        inner = hatches(Frame(left, top, width, height, 0, 1))
-        self.parts += [f'<rect {place} fill="{PAPER.paper}"/>', *inner, f"<rect {place} {edge}/>"]
+        self.parts.append(f'<rect {place} fill="{PAPER.paper}"/>')
+        draw_hatches(self, Frame(left, top, width, height, 0, 1))
+        self.parts.append(f"<rect {place} {edge}/>")
 
 
 def draw_joint(chart: StrideChart, width: float, height: float) -> Picture:
     """Draw a chart of this size: title and key above, then axes, curves, and what is read on them."""
     frame = PaperFrame(LEFT, TOP, width - LEFT - RIGHT, height - TOP - FOOT, chart.axis.low, chart.axis.high)
-    canvas = PaperCanvas()
-    layout, parts = layout_of(canvas, frame, chart), canvas.parts
-    parts += [
-        text(0, 11, chart.title, TITLE, weight=600),
-        text(0, 28, chart.sign, SMALL, fill=PAPER.note),
-        *_key(chart, width),
-    ]
+    draw = PaperCanvas()
+    layout = layout_of(draw, frame, chart)
+    draw.text(0, 11, chart.title, TITLE, weight=600)
+    draw.text(0, 28, chart.sign, SMALL, fill=PAPER.note)
+    _draw_key(draw, chart, width)
     if chart.band is not None:
-        parts += band_on_paper(frame, chart.band)
-    draw_axes(canvas, frame, chart.axis)
+        draw_band(draw, frame, chart.band)
+    draw_axes(draw, frame, chart.axis)
     middle = (frame.left + frame.right) / 2
-    parts.append(text(middle, frame.bottom + 24.5, tr("Gait cycle"), SMALL, anchor="middle", fill=PAPER.note))
-    parts += _toe_offs(frame, chart)
+    draw.text(middle, frame.bottom + 24.5, tr("Gait cycle"), SMALL, anchor="middle", fill=PAPER.note)
+    _draw_toe_offs(draw, frame, chart)
     for one in chart.beside:
-        parts.append(_path(frame, one, LETTERS[one.side], THIN))
+        _draw_curve(draw, frame, one, LETTERS[one.side], THIN)
     for one in sorted(chart.curves, key=lambda curve: curve.side, reverse=True):
         for stride in one.strides_deg:
-            parts.append(curve(frame.x(PERCENT), frame.y(stride), CURVES[one.side], THIN, _dash(one.side)))
+            draw.curve(frame.x(PERCENT), frame.y(stride), CURVES[one.side], THIN, _dash(one.side))
         if one.is_known:
-            parts.append(curve(frame.x(PERCENT), frame.y(one.angle_deg), PAPER.paper, LINE + CASING))
-            parts.append(_path(frame, one, CURVES[one.side], LINE))
-    draw_marks(canvas, frame, layout)
+            draw.curve(frame.x(PERCENT), frame.y(one.angle_deg), PAPER.paper, LINE + CASING)
+            _draw_curve(draw, frame, one, CURVES[one.side], LINE)
+    draw_marks(draw, frame, layout)
     if chart.is_simulated:
-        parts.append(_simulated(frame, width))
+        _draw_simulated(draw, frame, width)
     alt = " ".join(filter(None, [chart.alt, *(bracket.in_words() for bracket in chart.deviations)]))
-    return picture(parts, width, height, alt)
+    return draw.picture(width, height, alt)
 
 
-def _path(frame: Frame, one: StrideCurve, colour: str, width: float) -> str:
-    return curve(frame.x(PERCENT), frame.y(one.angle_deg), colour, width, _dash(one.side))
+def _draw_curve(draw: Drawing, frame: Frame, one: StrideCurve, colour: str, width: float) -> None:
+    draw.curve(frame.x(PERCENT), frame.y(one.angle_deg), colour, width, _dash(one.side))
 
 
 def _dash(side: Side) -> str:
@@ -115,23 +110,20 @@ def _width(words: str, size: float) -> float:
     return PER_LETTER * size * len(words)
 
 
-def _toe_offs(frame: Frame, chart: StrideChart) -> list[str]:
+def _draw_toe_offs(draw: Drawing, frame: Frame, chart: StrideChart) -> None:
     """Each line with its words above the plot, the earlier at the left of its line."""
-    parts, labels = [], toe_off_labels(chart.curves)
+    labels = toe_off_labels(chart.curves)
     for k, one in enumerate(toe_offs_in_order(chart.curves, 0)):
         x = float(frame.x(one.toe_off_percent))
         dash = "2.6 1.7" if one.side is Side.RIGHT else ""
-        parts.append(line(x, frame.top - 9, x, frame.bottom, CURVES[one.side], TOE_OFF, dash))
+        draw.line(x, frame.top - 9, x, frame.bottom, CURVES[one.side], TOE_OFF, dash)
         at, anchor = (x - 3, "end") if k == 0 else (x + 3, "start")
-        parts.append(
-            text(at, frame.top - 3, labels[one.side], SMALL, anchor=anchor, weight=500, fill=LETTERS[one.side])
-        )
-    return parts
+        draw.text(at, frame.top - 3, labels[one.side], SMALL, anchor=anchor, weight=500, fill=LETTERS[one.side])
 
 
-def _key(chart: StrideChart, width: float) -> list[str]:
+def _draw_key(draw: Drawing, chart: StrideChart, width: float) -> None:
     """At the right of the title: each leg's chip and line, the thin line with its date, the reference's swatch."""
-    parts, right, y = [], width - 1, 7.5
+    right, y = width - 1, 7.5
     legs = [one for one in chart.curves if one.is_known]
     if chart.band is not None:
         words, (swatch, high) = tr("Reference"), SWATCH
@@ -139,44 +131,46 @@ def _key(chart: StrideChart, width: float) -> list[str]:
         if chart.beside:
             needed += KEY_GAP + KEY_LINE + KEY_APART + _width(chart.beside[0].letter, SMALL)
         if _width(chart.title, TITLE) + KEY_GAP + needed <= width:  # else its swatch alone has room
-            parts.append(text(right, y + 3.2, words, SMALL, anchor="end", fill=PAPER.note))
+            draw.text(right, y + 3.2, words, SMALL, anchor="end", fill=PAPER.note)
             right -= _width(words, SMALL) + KEY_APART
         right -= swatch
-        parts.append(box(right, y - high / 2, swatch, high, PAPER.band_2sd, PAPER.band_2sd_edge, 0.35))
-        parts.append(box(right, y - high / 4, swatch, high / 2, PAPER.band_1sd))
+        draw.box(right, y - high / 2, swatch, high, PAPER.band_2sd, PAPER.band_2sd_edge, 0.35)
+        draw.box(right, y - high / 4, swatch, high / 2, PAPER.band_1sd)
         right -= KEY_GAP
     if chart.beside:
-        parts.append(text(right, y + 3.2, chart.beside[0].letter, SMALL, anchor="end", fill=PAPER.note))
+        draw.text(right, y + 3.2, chart.beside[0].letter, SMALL, anchor="end", fill=PAPER.note)
         right -= _width(chart.beside[0].letter, SMALL) + KEY_APART + KEY_LINE
         colour = LETTERS[chart.beside[0].side] if len(chart.beside) == 1 else PAPER.note
-        parts.append(line(right, y, right + KEY_LINE, y, colour, THIN))
+        draw.line(right, y, right + KEY_LINE, y, colour, THIN)
         right -= KEY_GAP
     for one in reversed(legs):
         right -= KEY_LINE
-        parts.append(line(right, y, right + KEY_LINE, y, CURVES[one.side], LINE, _dash(one.side)))
+        draw.line(right, y, right + KEY_LINE, y, CURVES[one.side], LINE, _dash(one.side))
         right -= KEY_APART + CHIP
-        parts.append(chip(right, y - CHIP / 2, one.side))
+        draw_chip(draw, right, y - CHIP / 2, one.side)
         right -= KEY_GAP
-    return parts
 
 
-def chip(x: float, y: float, side: Side, size: float = CHIP) -> str:
+def draw_chip(draw: Drawing, x: float, y: float, side: Side, size: float = CHIP) -> None:
     """The letter of a leg in its frame, L filled, R outlined and dashed; `x`, `y` are its corner."""
     is_left = side is Side.LEFT
     place = f'x="{x + 0.5:.2f}" y="{y + 0.5:.2f}" width="{size - 1:.2f}" height="{size - 1:.2f}" rx="2.4"'
     look = f'fill="{LETTERS[side]}"' if is_left else f'fill="none" stroke="{LETTERS[side]}" stroke-dasharray="2 1.2"'
     fill = PAPER.paper if is_left else LETTERS[side]
-    letter = text(x + size / 2, y + size / 2 + 3.2, side.letter, SMALL, anchor="middle", weight=600, fill=fill)
-    return f"<rect {place} {look}/>{letter}"
+    draw.parts.append(f"<rect {place} {look}/>")
+    draw.text(x + size / 2, y + size / 2 + DROP, side.letter, SMALL, anchor="middle", weight=600, fill=fill)
 
 
 def chip_picture(side: Side, size: float, words: str = "") -> Picture:
     """The same by itself; without words it is decoration."""
-    return picture([chip(0, 0, side, size)], size, size, words)
+    draw = Drawing()
+    draw_chip(draw, 0, 0, side, size)
+    return draw.picture(size, size, words)
 
 
-def _simulated(frame: Frame, width: float) -> str:
+def _draw_simulated(draw: Drawing, frame: Frame, width: float) -> None:
     """Turned, at the right edge."""
     x, y = width - 3, (frame.top + frame.bottom) / 2
-    stated = text(0, 0, tr("SIMULATED"), SMALL, anchor="middle", weight=600, fill=PAPER.note)
-    return f'<g transform="translate({x:.2f} {y:.2f}) rotate(-90)">{stated}</g>'
+    draw.parts.append(f'<g transform="translate({x:.2f} {y:.2f}) rotate(-90)">')
+    draw.text(0, 0, tr("SIMULATED"), SMALL, anchor="middle", weight=600, fill=PAPER.note)
+    draw.parts.append("</g>")

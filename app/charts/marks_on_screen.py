@@ -44,12 +44,12 @@ class ScreenCanvas:
             *(px(CHIP), px(HIDDEN_PADDING), px(3 * HIDDEN_PADDING + CHIP), px(HIDDEN_HEIGHT)),
         )
 
-    def line(self, start: tuple[float, float], end: tuple[float, float], tone: Tone, width: float) -> None:
+    def stroke(self, start: tuple[float, float], end: tuple[float, float], tone: Tone, width: float) -> None:
         pen = self._theme.pen(self._tones[tone], width)
         self._painter.setPen(flat(pen) if tone is Tone.AXIS else pen)
         self._painter.drawLine(QPointF(*start), QPointF(*end))
 
-    def text(self, x: float, middle: float, stated: str, anchor: Anchor) -> None:
+    def label(self, x: float, middle: float, stated: str, anchor: Anchor) -> None:
         self._painter.setFont(self._theme.font(WORDS_SIZE))
         self._painter.setPen(QColor(self._theme.colours.ink2))
         room = QRectF(x - 2 * FAR * BEFORE[anchor], middle - FAR, 2 * FAR, 2 * FAR)

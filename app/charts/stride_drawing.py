@@ -16,19 +16,19 @@ def draw_axes(canvas: Canvas, frame: Frame, axis: Axis) -> None:
     """The line of zero, both axes, and their ticks with labels."""
     size = canvas.lengths
     zero = float(frame.y(0))
-    canvas.line((frame.left, zero), (frame.right, zero), Tone.AXIS, size.zero)
-    canvas.line((frame.left, frame.top), (frame.left, frame.bottom), Tone.AXIS, size.axis)
-    canvas.line((frame.left, frame.bottom), (frame.right, frame.bottom), Tone.AXIS, size.axis)
+    canvas.stroke((frame.left, zero), (frame.right, zero), Tone.AXIS, size.zero)
+    canvas.stroke((frame.left, frame.top), (frame.left, frame.bottom), Tone.AXIS, size.axis)
+    canvas.stroke((frame.left, frame.bottom), (frame.right, frame.bottom), Tone.AXIS, size.axis)
     first = np.ceil(axis.low / axis.label_every) * axis.label_every
     for degrees in np.arange(first, axis.high + 1, axis.label_every):
         y = float(frame.y(degrees))
-        canvas.line((frame.left - size.tick, y), (frame.left, y), Tone.AXIS, size.axis)
-        canvas.text(frame.left - size.label_apart, y, angle_in_words(float(degrees)), "end")
+        canvas.stroke((frame.left - size.tick, y), (frame.left, y), Tone.AXIS, size.axis)
+        canvas.label(frame.left - size.label_apart, y, angle_in_words(float(degrees)), "end")
     for percent in range(0, 101, TICK_PERCENT):
         x = float(frame.x(percent))
-        canvas.line((x, frame.bottom), (x, frame.bottom + size.tick), Tone.AXIS, size.axis)
+        canvas.stroke((x, frame.bottom), (x, frame.bottom + size.tick), Tone.AXIS, size.axis)
         stated = f"{percent}" if percent < 100 else "100 %"
-        canvas.text(x, frame.bottom + size.percents_below, stated, "middle")
+        canvas.label(x, frame.bottom + size.percents_below, stated, "middle")
 
 
 def draw_marks(canvas: Canvas, frame: Frame, layout: Layout) -> None:
@@ -59,8 +59,8 @@ def _draw_bracket(canvas: Canvas, frame: Frame, bracket: Deviation, place: MarkP
     size, tone = canvas.lengths, Tone.INK if bracket.is_larger_than_error else Tone.INSIDE_ERROR
     for point in bracket.points:
         y = float(frame.y(point.angle_deg))
-        canvas.line((float(frame.x(point.percent)), y), (place.bar_x, y), tone, size.leader)
-    canvas.line((place.bar_x, place.top), (place.bar_x, place.bottom), tone, size.bar)
+        canvas.stroke((float(frame.x(point.percent)), y), (place.bar_x, y), tone, size.leader)
+    canvas.stroke((place.bar_x, place.top), (place.bar_x, place.bottom), tone, size.bar)
     for point in bracket.points:
         _draw_dot(canvas, frame, point)
     if (box := place.words) is None:

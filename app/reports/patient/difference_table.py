@@ -4,7 +4,7 @@ import math
 from collections.abc import Sequence
 
 from app.charts.cycles import is_mean_enough
-from app.charts.drawing import MM, Picture, box, circle, line, picture
+from app.charts.drawing import MM, Drawing, Picture
 from app.charts.joint_on_paper import CHIP, chip_picture
 from app.summary.facts import Facts
 from app.summary.goals import goal_mark
@@ -128,7 +128,9 @@ def _marks(rows: Sequence[LegsRow], sides: Sequence[Side], headline: Headline) -
 def mark_picture(mark: Mark) -> Picture:
     fill = PAPER.ink if mark is Mark.HEALTHY else PAPER.paper
     words = tr("beyond 95 of 100") if mark is Mark.HEALTHY else tr("beyond error")
-    return picture([circle(MARK / 2, MARK / 2, 2.6, fill, PAPER.ink, 1.1)], MARK, MARK, words)
+    draw = Drawing()
+    draw.circle(MARK / 2, MARK / 2, 2.6, fill, PAPER.ink, 1.1)
+    return draw.picture(MARK, MARK, words)
 
 
 def strip(row: LegsRow) -> Picture:
@@ -139,13 +141,14 @@ def strip(row: LegsRow) -> Picture:
     def x(value: float) -> float:
         return half + (half - MARGIN) * min(max(value / reach, -1.0), 1.0)
 
-    parts = []
+    draw = Drawing()
     if math.isfinite(found.healthy):
         left, right = x(-found.healthy), x(found.healthy)
-        parts.append(box(left, 1, right - left, STRIP_HEIGHT - 2, LIGHT.band_2sd))
-    parts.append(line(half, 0.5, half, STRIP_HEIGHT - 0.5, PAPER.note, 0.5))
+        draw.box(left, 1, right - left, STRIP_HEIGHT - 2, LIGHT.band_2sd)
+    draw.line(half, 0.5, half, STRIP_HEIGHT - 0.5, PAPER.note, 0.5)
     low, high = (x(edge) for edge in found.interval)
-    parts.append(line(low, y, high, y, PAPER.ink, 0.9))
-    parts += [line(end, y - 2.2, end, y + 2.2, PAPER.ink, 0.9) for end in (low, high)]
-    parts.append(line(x(found.difference), y - 4, x(found.difference), y + 4, PAPER.ink, 2.0))  # dots are the marks
-    return picture(parts, STRIP, STRIP_HEIGHT)
+    draw.line(low, y, high, y, PAPER.ink, 0.9)
+    for end in (low, high):
+        draw.line(end, y - 2.2, end, y + 2.2, PAPER.ink, 0.9)
+    draw.line(x(found.difference), y - 4, x(found.difference), y + 4, PAPER.ink, 2.0)  # dots are the marks
+    return draw.picture(STRIP, STRIP_HEIGHT)
