@@ -42,6 +42,12 @@ from core.verdicts.quantities import (
 FORMAT = "gaitwright-analysis/1"
 BOTH = (*OF_BOTH, "symmetry_index_percent", "curve_difference_deg", "side_difference")
 KINDS = ("knee", "ankle")
+OF_JOINT = (
+    *("axis_proximal", "axis_distal", "centre_proximal_m", "centre_distal_m", "axis_sd_deg", "centre_sd_mm"),
+    *("sign_margin", "clinical_sign", "is_sign_certain", "clinical_sign_margin", "lag_s", "lag_sd_s"),
+    *("hinge_residual_rad_s", "is_hinge", "gyro_bias_proximal_rad_s", "gyro_bias_distal_rad_s"),
+    *("zero", "axis_source", "method"),
+)
 SYMMETRIC = tuple(quantity.column for quantity in REGISTRY if quantity.has_index)
 
 
@@ -215,26 +221,13 @@ def _joints(joints: Mapping[Joint, JointCalibration]) -> dict[str, Any]:
 
 
 def _joint(found: JointCalibration) -> dict[str, Any]:
+    axis_sd, centre_sd = found.axis_sd_rad, found.centre_sd_m
+    scaled = {
+        "axis_sd_deg": None if axis_sd is None else finite(math.degrees(axis_sd)),
+        "centre_sd_mm": None if centre_sd is None else finite(1000 * centre_sd),
+    }
     return {
-        "axis_proximal": _vector(found.axis_proximal),
-        "axis_distal": _vector(found.axis_distal),
-        "centre_proximal_m": _vector(found.centre_proximal_m),
-        "centre_distal_m": _vector(found.centre_distal_m),
-        "axis_sd_deg": None if found.axis_sd_rad is None else finite(found.axis_sd_rad * math.degrees(1)),
-        "centre_sd_mm": None if found.centre_sd_m is None else finite(found.centre_sd_m * 1000),
-        "sign_margin": finite(found.sign_margin),
-        "clinical_sign": int(found.clinical_sign),
-        "is_sign_certain": bool(found.is_sign_certain),
-        "clinical_sign_margin": finite(found.clinical_sign_margin),
-        "lag_s": finite(found.lag_s),
-        "lag_sd_s": finite(found.lag_sd_s),
-        "hinge_residual_rad_s": finite(found.hinge_residual_rad_s),
-        "is_hinge": bool(found.is_hinge),
-        "gyro_bias_proximal_rad_s": _vector(found.gyro_bias_proximal_rad_s),
-        "gyro_bias_distal_rad_s": _vector(found.gyro_bias_distal_rad_s),
-        "zero": str(found.zero),
-        "axis_source": str(found.axis_source),
-        "method": str(found.method),
+        **{name: scaled[name] if name in scaled else _known(getattr(found, name)) for name in OF_JOINT},
         "from": {
             "standing": found.standing_from,
             "free_motion": found.free_motion_from,
@@ -287,17 +280,15 @@ def _finding(finding: Finding) -> dict[str, Any]:
     }
 
 
-def _vector(vector: FloatArray | None) -> list[float] | None:
-    """Give a vector as a list; None where any part of it is unknown."""
-    if vector is None or not np.isfinite(vector).all():
-        return None
-    return [float(part) for part in vector]
+def _known(value: FloatArray | bool | float | int | str | None) -> list[float] | float | int | str | None:
+    """What is known of a joint, as JSON can hold it: a vector whole, or not at all."""
+    if isinstance(value, np.ndarray):
+        return [float(part) for part in value] if np.isfinite(value).all() else None
+    return bool(value) if isinstance(value, bool | np.bool_) else _plain(value)
 
 
-def _plain(value: float | int | str) -> float | int | str | None:
-    """Give a finding's figure as JSON can hold it, also where it came out of an array."""
+def _plain(value: float | int | str | None) -> float | int | str | None:
+    """Give a figure as JSON can hold it, also where it came out of an array."""
     if isinstance(value, str):
         return str(value)
-    if isinstance(value, int | np.integer):
-        return int(value)
-    return finite(value)
+    return int(value) if isinstance(value, int | np.integer) else finite(value)
