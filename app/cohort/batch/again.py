@@ -8,7 +8,7 @@ from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 from uuid import UUID
 
-from app.cohort.batch.spread import Outcome, Workers, finished
+from app.cohort.batch.spread import SelectionResult, Workers, finished
 from app.storage.analysis_content import packed
 from app.storage.journal.header import JournalRefusedError
 from app.storage.kept_analyses import bare
@@ -40,7 +40,7 @@ def analyse_again(
     read: Callable[[UUID], tuple[Session, Keep] | None],
     workers: Workers,
     report: Report,
-) -> Outcome[UUID]:
+) -> SelectionResult[UUID]:
     """Analyse sessions that this version has not analysed as they are described now; each is kept once it is done.
 
     Parameters
@@ -50,7 +50,7 @@ def analyse_again(
     report
         What it raises ends the work; what was done until then is kept.
     """
-    result, keeps = Outcome[UUID](len(session_ids)), dict[UUID, Keep]()
+    result, keeps = SelectionResult[UUID](len(session_ids)), dict[UUID, Keep]()
 
     def reported() -> None:
         words = tr("{done} of {total} sessions").format(done=result.finished, total=result.total)

@@ -12,7 +12,7 @@ from app.cohort.batch.done import BatchFolder
 from app.cohort.batch.rows import COLUMNS, HIP_COLUMNS, UNNUMBERED, Row
 from app.cohort.batch.software import software
 from app.cohort.batch.sources import SessionSource
-from app.cohort.batch.spread import Outcome, WorkerLostError, Workers, finished
+from app.cohort.batch.spread import SelectionResult, WorkerLostError, Workers, finished
 from app.cohort.batch.table import write_tables
 from app.cohort.batch.task import BatchTask, SessionOutcome, analyse_task, key_of, making_of, summary_digest
 from app.system.progress import Report
@@ -27,7 +27,7 @@ Work = Callable[[BatchTask], SessionOutcome]
 
 
 @dataclass(slots=True)
-class BatchResult(Outcome[str]):
+class BatchResult(SelectionResult[str]):
     """What came of a batch, sessions by their names. `rows`: of the table."""
 
     rows: int = 0

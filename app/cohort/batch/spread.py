@@ -35,7 +35,7 @@ class ClusterLostError(Exception):
 
 
 @dataclass(slots=True)
-class Outcome(Generic[T]):
+class SelectionResult(Generic[T]):
     """What came of a selection of sessions so far. `failures`: reasons by what the sessions are called."""
 
     total: int

@@ -11,7 +11,7 @@ from PySide6.QtWidgets import QFileDialog
 
 from app.cohort.batch.again import analyse_again
 from app.cohort.batch.executors import of_this_computer, processors
-from app.cohort.batch.spread import Outcome
+from app.cohort.batch.spread import SelectionResult
 from app.home.again.analyse_again_page import AgainLine, AnalyseAgainPage
 from app.storage.kept_analyses import algorithm
 from app.system.progress import Report
@@ -88,7 +88,7 @@ class AnalysingAgain(QObject):
         if not ids:
             return
 
-        def work(opened: "OpenedLibrary", report: Report) -> Outcome[UUID]:
+        def work(opened: "OpenedLibrary", report: Report) -> SelectionResult[UUID]:
             with of_this_computer(processors()) as workers:
                 return analyse_again(ids, lambda session_id: session_to_analyse(opened, session_id), workers, report)
 
@@ -170,7 +170,7 @@ class AnalysingAgain(QObject):
     def _on_progressed(self, share: float, what: str) -> None:
         self.progressed.emit(share, what)
 
-    def _on_analysed(self, result: Outcome[UUID]) -> None:
+    def _on_analysed(self, result: SelectionResult[UUID]) -> None:
         self._failures, self._required = dict(result.failures), None
         stated = tr_n(
             "{count} session was analysed with this version.",

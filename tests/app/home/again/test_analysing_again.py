@@ -12,7 +12,7 @@ from pytestqt.qtbot import QtBot
 
 from app.cohort.batch.again import analyse_again
 from app.cohort.batch.executors import of_this_computer
-from app.cohort.batch.spread import Outcome
+from app.cohort.batch.spread import SelectionResult
 from app.home.again.analyse_again_page import AgainLine, AnalyseAgainPage
 from app.home.home import Home
 from app.storage.exchange import import_session
@@ -49,7 +49,7 @@ def opened(tmp_path: Path, walked: Session) -> Iterator[OpenedLibrary]:
         yield library
 
 
-def again(opened: OpenedLibrary, ids: tuple[UUID, ...], workers: int = 1) -> Outcome[UUID]:
+def again(opened: OpenedLibrary, ids: tuple[UUID, ...], workers: int = 1) -> SelectionResult[UUID]:
     with of_this_computer(workers) as those:
         return analyse_again(ids, lambda one: session_to_analyse(opened, one), those, nobody)
 
