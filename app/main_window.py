@@ -3,6 +3,7 @@
 import signal
 import sys
 import time
+from dataclasses import replace
 from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -31,7 +32,9 @@ from app.storage.idle_lock import IdleLock
 from app.storage.layout import default_folder
 from app.system.logs import log_qt_messages
 from app.system.settings import Scheme, Settings
-from app.theme.notifier import ThemeNotifier, load_fonts
+from app.theme.colours import DARK, LIGHT
+from app.theme.current import current_theme, grow, load_fonts, set_theme
+from app.theme.theme import Theme
 from app.widgets.accessible_role import show_roles
 from app.widgets.focus_ring import FocusRing
 from app.widgets.folder_dialog import keep_no_visited_folders
@@ -77,11 +80,9 @@ class MainWindow(QWidget):
     `seen` is where this computer remembers how far a library had come.
     """
 
-    def __init__(
-        self, look: ThemeNotifier, settings: Settings, library: Path | None = None, seen: Path | None = None
-    ) -> None:
+    def __init__(self, settings: Settings, library: Path | None = None, seen: Path | None = None) -> None:
         super().__init__()
-        self._look, self._settings = look, settings
+        self._settings = settings
         self.controller = LibraryController(self, seen)
         self._home: Home | None = None
         self._wizard: Wizard | None = None
@@ -98,8 +99,8 @@ class MainWindow(QWidget):
         self.setAcceptDrops(True)
         self.setMinimumSize(*SMALLEST_SIZE)
         self.resize(QSize(*FIRST_SIZE).boundedTo(self.screen().availableSize() - QSize(*FRAME)))
-        self.session = SessionScreen(look)
-        self.entry = Entry(look, self.controller, settings, library, self) if library is not None else None
+        self.session = SessionScreen()
+        self.entry = Entry(self.controller, settings, library, self) if library is not None else None
         self.screens = QStackedWidget()
         self.idle = IdleLock(time.time, self.lock)
         self._poll = QTimer(self)
@@ -197,14 +198,13 @@ class MainWindow(QWidget):
         if self.entry is not None:
             for page in self.entry.pages:
                 self.screens.addWidget(page)
-        FocusRing(self._look, self)
-        self._drop_frame = _DropFrame(self._look, self)
+        FocusRing(self)
+        self._drop_frame = _DropFrame(self)
 
     def _connect(self) -> None:
         self.session.left.connect(self._on_session_left)
         self.preparing.done.connect(self._on_prepared)
         self._settings.changed.connect(self._apply_settings)
-        self._look.changed.connect(self._on_look_changed)
         QGuiApplication.styleHints().colorSchemeChanged.connect(self._apply_settings)
         self.session.demonstration_requested.connect(self.open_demonstration)
         for keys, slot in (
@@ -267,7 +267,7 @@ class MainWindow(QWidget):
         from app.help.help_topics import Topic
 
         if self._help is None:
-            self._help = HelpPage(self._look)
+            self._help = HelpPage()
             self.screens.addWidget(self._help)
             self._help.closed.connect(self._on_help_closed)
             self._fit()
@@ -297,7 +297,7 @@ class MainWindow(QWidget):
         if self._home is None:
             from app.home.home import Home
 
-            self._home = Home(self._look, self.controller, self._settings)
+            self._home = Home(self.controller, self._settings)
             self.screens.addWidget(self._home)
             self._home.session_requested.connect(self._on_session_requested)
             self._home.session_opened.connect(self._on_session_opened)
@@ -339,7 +339,7 @@ class MainWindow(QWidget):
         if self._wizard is None:
             from app.wizard.wizard import Wizard
 
-            self._wizard = Wizard(self._look, self.controller, self._settings)
+            self._wizard = Wizard(self.controller, self._settings)
             self.screens.addWidget(self._wizard)
             self._wizard.left.connect(self._on_wizard_left)
             self._wizard.settings_required.connect(self._on_settings_required)
@@ -473,32 +473,36 @@ class MainWindow(QWidget):
     def _apply_settings(self) -> None:
         scheme, system = self._settings.scheme, QGuiApplication.styleHints().colorScheme()
         is_dark = scheme is Scheme.DARK or (scheme is Scheme.SYSTEM and system is Qt.ColorScheme.Dark)
-        if is_dark is not self._is_dark:  # else what the look was set to otherwise holds
+        theme = replace(current_theme(), scale=self._settings.scale, has_less_motion=self._settings.has_less_motion)
+        if is_dark is not self._is_dark:  # else the scheme that was chosen otherwise stays
             self._is_dark = is_dark
-            self._look.set_dark(is_dark)
-        if self._settings.scale != self._look.theme.scale:
-            self._look.set_scale(self._settings.scale)
-        if self._settings.has_less_motion is not self._look.theme.has_less_motion:
-            self._look.set_less_motion(self._settings.has_less_motion)
+            theme = replace(theme, colours=DARK if is_dark else LIGHT)
+        if theme != current_theme():  # in one step, since each change is written to the settings
+            set_theme(theme)
 
-    def _on_look_changed(self) -> None:
-        self._settings.scale = self._look.theme.scale  # also when the keys changed it
+    def changeEvent(self, event: QEvent) -> None:
+        super().changeEvent(event)
+        if event.type() is QEvent.Type.StyleChange:
+            self._on_theme_changed()
+
+    def _on_theme_changed(self) -> None:
+        self._settings.scale = current_theme().scale  # also when the keys changed it
         self._fit()
 
     def _fit(self) -> None:
         if self._help is not None:
-            scale = self._look.theme.scale
+            scale = current_theme().scale
             width, height = self.width() / scale, self.height() / scale
             self._help.set_compact(is_compact=width < COMPACT_BELOW[0] or height < COMPACT_BELOW[1])
 
     def _on_larger(self) -> None:
-        self._look.grow(1)
+        grow(1)
 
     def _on_smaller(self) -> None:
-        self._look.grow(-1)
+        grow(-1)
 
     def _on_usual_size(self) -> None:
-        self._look.grow(0)
+        grow(0)
 
     def _on_open(self) -> None:
         if self._takes_folders:
@@ -527,9 +531,9 @@ class MainWindow(QWidget):
 class _DropFrame(QWidget):
     """The edge round the window while a folder is held over it."""
 
-    def __init__(self, look: ThemeNotifier, window: QWidget) -> None:
+    def __init__(self, window: QWidget) -> None:
         super().__init__(window)
-        self._look, self._window = look, window
+        self._window = window
         self.setAttribute(Qt.WidgetAttribute.WA_TransparentForMouseEvents)
         self.setAttribute(Qt.WidgetAttribute.WA_NoSystemBackground)
         self.hide()
@@ -540,7 +544,7 @@ class _DropFrame(QWidget):
         self.show()
 
     def paintEvent(self, _event: QPaintEvent) -> None:
-        theme = self._look.theme
+        theme = current_theme()
         painter = QPainter(self)
         painter.setPen(theme.pen(theme.colours.ink, DROP_EDGE))
         painter.drawRect(self.rect().adjusted(2, 2, -3, -3))
@@ -583,7 +587,8 @@ def show_window(
     """Give what the event loop ended with, and who is logged in where another window follows."""
     use_language(settings.language)
     library = default_folder()
-    window = MainWindow(ThemeNotifier(app), settings, library, library.with_name("seen"))
+    set_theme(Theme())
+    window = MainWindow(settings, library, library.with_name("seen"))
     if kept is not None:
         window.go_on(kept)
     window.show()

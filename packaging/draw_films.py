@@ -30,19 +30,18 @@ def main(arguments: list[str]) -> None:
     from PySide6.QtWidgets import QApplication
 
     from app.films.film import Film
-    from app.theme.notifier import ThemeNotifier, load_fonts
+    from app.theme.current import current_theme, load_fonts, set_dark
     from app.wording.translation import use_language
 
-    application = QApplication([])
+    _application = QApplication([])
     load_fonts()
     use_language(required.lang)
-    look = ThemeNotifier(application)
     required.into.mkdir(parents=True, exist_ok=True)
     for is_dark, suffix in ((False, ""), (True, "-dark")):
-        look.set_dark(is_dark)
+        set_dark(is_dark)
         for film in Film:
-            _drawn(look.theme, film, None).save(required.into / f"{film}{suffix}-stills.png")
-            _save_film(look.theme, film, required.into / f"{film}{suffix}.webp")
+            _drawn(current_theme(), film, None).save(required.into / f"{film}{suffix}-stills.png")
+            _save_film(current_theme(), film, required.into / f"{film}{suffix}.webp")
 
 
 def _save_film(theme: "Theme", film: "Film", file: Path) -> None:

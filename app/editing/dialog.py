@@ -11,7 +11,7 @@ from PySide6.QtWidgets import QBoxLayout, QButtonGroup, QDialog, QFrame, QHBoxLa
 from app.editing.question import EditQuestion
 from app.editing.words import by_words, field_word, value_words
 from app.storage.three_way import MergeConflict
-from app.theme.notifier import ThemeNotifier
+from app.theme.current import current_theme
 from app.widgets.button import Button, ButtonKind
 from app.widgets.text import MEDIUM, SEMIBOLD, Text
 from app.widgets.version_cell import VersionCell
@@ -36,20 +36,16 @@ class EditDialog(QDialog):
 
     def __init__(
         self,
-        look: ThemeNotifier,
         question: EditQuestion,
         parent: QWidget,
         now: Callable[[], datetime.datetime] = datetime.datetime.now,
     ) -> None:
         super().__init__(parent)
-        self._look, self._question, self._parent = look, question, parent
+        self._question, self._parent = question, parent
         self.setWindowTitle(tr("Someone else has changed this in the meantime"))
         self.setAttribute(Qt.WidgetAttribute.WA_DeleteOnClose)
-        self._title = Text(
-            look, tr("Someone else has changed this in the meantime"), size=20, weight=SEMIBOLD, wraps=True
-        )
+        self._title = Text(tr("Someone else has changed this in the meantime"), size=20, weight=SEMIBOLD, wraps=True)
         self._lead = Text(
-            look,
             tr(
                 "{subject}: this was changed here and on another workstation. Choose the values to keep. The "
                 "others stay in the history."
@@ -59,9 +55,9 @@ class EditDialog(QDialog):
         )
         self._table = QWidget()
         self._scroll = QScrollArea()
-        self._note = Text(look, tr("Choose a value in each line with the arrow keys."), tone="ink2", wraps=True)
-        self.save = Button(look, tr("Save choice"), ButtonKind.PRIMARY, key=tr("Enter"))
-        self.leave = Button(look, tr("Keep theirs"), ButtonKind.SECONDARY, key=tr("Esc"))
+        self._note = Text(tr("Choose a value in each line with the arrow keys."), tone="ink2", wraps=True)
+        self.save = Button(tr("Save choice"), ButtonKind.PRIMARY, key=tr("Enter"))
+        self.leave = Button(tr("Keep theirs"), ButtonKind.SECONDARY, key=tr("Esc"))
         self._pairs: list[QBoxLayout] = []
         self.cells = [self._row(contest, now().astimezone()) for contest in question.contests]
         self._build()
@@ -91,8 +87,8 @@ class EditDialog(QDialog):
     def _row(self, contest: MergeConflict, now: datetime.datetime) -> tuple[VersionCell, VersionCell]:
         field = field_word(contest.field)
         whose = tr("Theirs: {who}").format(who=by_words(contest.by, contest.at, now))
-        mine = VersionCell(self._look, field, value_words(contest.field, contest.mine), tr("Yours"))
-        theirs = VersionCell(self._look, field, value_words(contest.field, contest.theirs), whose)
+        mine = VersionCell(field, value_words(contest.field, contest.mine), tr("Yours"))
+        theirs = VersionCell(field, value_words(contest.field, contest.theirs), whose)
         group = QButtonGroup(self)
         for column, cell in enumerate((mine, theirs)):
             group.addButton(cell)
@@ -106,7 +102,7 @@ class EditDialog(QDialog):
         rows = QVBoxLayout(self._table)
         rows.setContentsMargins(0, 0, 0, 0)
         for contest, pair, cells in zip(self._question.contests, self._pairs, self.cells, strict=True):
-            rows.addWidget(Text(self._look, field_word(contest.field), weight=MEDIUM, wraps=True))
+            rows.addWidget(Text(field_word(contest.field), weight=MEDIUM, wraps=True))
             for cell in cells:
                 pair.addWidget(cell, 1)
             rows.addLayout(pair)
@@ -129,7 +125,7 @@ class EditDialog(QDialog):
 
     def _fit(self) -> None:
         """Be as large as the window allows, and no larger than needed; where it is narrow, stack the two versions."""
-        px, colours = self._look.theme.px, self._look.theme.colours
+        px, colours = current_theme().px, current_theme().colours
         palette = self.palette()
         palette.setColor(QPalette.ColorRole.Window, QColor(colours.surface))
         self.setPalette(palette)

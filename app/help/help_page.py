@@ -24,8 +24,8 @@ from PySide6.QtWidgets import (
 
 from app.help.help_reader import HelpReader
 from app.help.help_topics import Topic, TopicGroup, group_title, markdown_of, plain_words_of, topic_title
+from app.theme.current import current_theme
 from app.theme.icons import Icon
-from app.theme.notifier import ThemeNotifier
 from app.widgets.button import Button, ButtonKind
 from app.widgets.card import Card
 from app.widgets.choice import Choice
@@ -45,24 +45,24 @@ class HelpPage(Themed):
 
     closed = Signal()
 
-    def __init__(self, look: ThemeNotifier) -> None:
+    def __init__(self) -> None:
         super().__init__()
-        self._look, self._is_compact = look, False
+        self._is_compact = False
         self._topic = Topic.HOME
-        self.search = Field(look, tr("Search the help"), placeholder=tr("Search the help"), has_label=False)
-        self.found = Text(look, size=14, tone="ink2", wraps=True)
-        self.topics = _TopicList(look)
-        self.choice = Choice(look, tr("Topic"))
+        self.search = Field(tr("Search the help"), placeholder=tr("Search the help"), has_label=False)
+        self.found = Text(size=14, tone="ink2", wraps=True)
+        self.topics = _TopicList()
+        self.choice = Choice(tr("Topic"))
         self.choice.addItems([topic_title(topic) for topic in Topic])
-        self.text = HelpReader(look)
-        self.back = Button(look, tr("Back"), ButtonKind.SECONDARY, Icon.BACK, tr("Esc"))
+        self.text = HelpReader()
+        self.back = Button(tr("Back"), ButtonKind.SECONDARY, Icon.BACK, tr("Esc"))
         self._build()
         self.topics.chosen.connect(self.show_topic)
         self.text.page_required.connect(self._on_page_required)
         self.choice.currentIndexChanged.connect(self._on_choice_changed)
         self.search.edited.connect(self._on_search_edited)
         self.back.clicked.connect(self.closed)
-        self._on_look_changed()
+        self._apply_theme()
         self.show_topic(Topic.HOME)
         self.set_compact(is_compact=False)
 
@@ -97,7 +97,7 @@ class HelpPage(Themed):
         top = Qt.AlignmentFlag.AlignTop
         self._side.setAlignment(self.choice, top)
         self._side.setAlignment(self.back, top if is_compact else Qt.AlignmentFlag.AlignLeft)
-        self._on_look_changed()
+        self._apply_theme()
 
     def focus(self) -> None:
         """Give the focus to the text, so that the keys scroll it."""
@@ -132,7 +132,7 @@ class HelpPage(Themed):
             (self.back, 0),
         ):
             self._side.addWidget(widget, stretch)
-        page = Card(self._look, padding=16)
+        page = Card(padding=16)
         page.column.addWidget(self.text)
         self._row = QBoxLayout(QBoxLayout.Direction.LeftToRight, self)
         self._row.addWidget(self._beside)
@@ -181,8 +181,8 @@ class HelpPage(Themed):
     def _on_choice_changed(self, index: int) -> None:
         self.show_topic(list(Topic)[index])
 
-    def _on_look_changed(self) -> None:
-        px = self._look.theme.px
+    def _apply_theme(self) -> None:
+        px = current_theme().px
         margin = px(16 if self._is_compact else 24)
         self._row.setContentsMargins(margin, margin, margin, margin)
         self._row.setSpacing(px(16))
@@ -199,19 +199,18 @@ class _TopicList(QWidget):
 
     chosen = Signal(object)
 
-    def __init__(self, look: ThemeNotifier) -> None:
+    def __init__(self) -> None:
         super().__init__()
-        self._look = look
         self.setAccessibleName(tr("Topics"))
         self._group = QButtonGroup(self)
-        self._by_topic = {topic: _TopicRow(look, topic_title(topic)) for topic in Topic}
+        self._by_topic = {topic: _TopicRow(topic_title(topic)) for topic in Topic}
         self._column = QVBoxLayout(self)
         self._column.setContentsMargins(0, 0, 0, 0)
         self._column.setSpacing(2)
         begun = {Topic(group): group for group in TopicGroup}
         for topic, row in self._by_topic.items():
             if topic in begun:
-                self._column.addWidget(_GroupTitle(look, group_title(begun[topic])))
+                self._column.addWidget(_GroupTitle(group_title(begun[topic])))
             self._group.addButton(row)
             self._column.addWidget(row)
         self._column.addStretch(1)
@@ -238,15 +237,14 @@ class _TopicList(QWidget):
 
 
 class _GroupTitle(Text):
-    def __init__(self, look: ThemeNotifier, title: str) -> None:
-        super().__init__(look, title, size=12, weight=SEMIBOLD, tone="ink2")
+    def __init__(self, title: str) -> None:
+        super().__init__(title, size=12, weight=SEMIBOLD, tone="ink2")
         self.setContentsMargins(PADDING, PADDING, PADDING, 0)
 
 
 class _TopicRow(QAbstractButton):
-    def __init__(self, look: ThemeNotifier, title: str) -> None:
+    def __init__(self, title: str) -> None:
         super().__init__()
-        self._look = look
         self._count: int | None = None
         self.setText(title)
         self.setCheckable(True)
@@ -265,7 +263,7 @@ class _TopicRow(QAbstractButton):
         self.update()
 
     def sizeHint(self) -> QSize:
-        theme = self._look.theme
+        theme = current_theme()
         width = QFontMetrics(theme.font(14, SEMIBOLD)).horizontalAdvance(self.text())
         return QSize(width + self._count_width() + theme.px(3 * PADDING), theme.px(ROW))
 
@@ -273,7 +271,7 @@ class _TopicRow(QAbstractButton):
         return self.sizeHint()
 
     def paintEvent(self, _event: QPaintEvent) -> None:
-        theme = self._look.theme
+        theme = current_theme()
         c, px = theme.colours, theme.px
         painter = QPainter(self)
         box = QRectF(self.rect())
@@ -290,4 +288,4 @@ class _TopicRow(QAbstractButton):
             painter.drawText(room, Qt.AlignmentFlag.AlignRight | middle, str(self._count))
 
     def _count_width(self) -> int:
-        return QFontMetrics(self._look.theme.font(14, MEDIUM)).horizontalAdvance(str(self._count or ""))
+        return QFontMetrics(current_theme().font(14, MEDIUM)).horizontalAdvance(str(self._count or ""))

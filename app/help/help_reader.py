@@ -27,8 +27,8 @@ from PySide6.QtWidgets import QFrame, QTextBrowser, QTextEdit
 
 from app.films.film import Film, duration_s, film_height, paint_frame, paint_stills
 from app.help.help_topics import help_file
+from app.theme.current import current_theme, px
 from app.theme.motion import duration_ms
-from app.theme.notifier import ThemeNotifier
 from app.widgets.text import MEDIUM, SEMIBOLD
 from app.wording.translation import tr
 
@@ -57,9 +57,9 @@ class HelpReader(QTextBrowser):
 
     page_required = Signal(str)
 
-    def __init__(self, look: ThemeNotifier) -> None:
+    def __init__(self) -> None:
         super().__init__()
-        self._look, self._markdown = look, ""
+        self._markdown = ""
         self._film_name, self._film_s = "", 0.0
         self._beat = QTimer(self)
         self._beat.setInterval(FRAME_MS)
@@ -72,7 +72,7 @@ class HelpReader(QTextBrowser):
         self.setOpenLinks(False)  # nothing leads out of this computer
         self.anchorClicked.connect(self._on_link)
         self.setHorizontalScrollBarPolicy(Qt.ScrollBarPolicy.ScrollBarAlwaysOff)
-        self._on_look_changed()
+        self._apply_theme()
 
     @property
     def has_marks(self) -> bool:
@@ -125,7 +125,7 @@ class HelpReader(QTextBrowser):
 
     @property
     def _has_moving_film(self) -> bool:
-        return bool(self._film_name) and duration_ms(FRAME_MS, self._look.theme) > 0
+        return bool(self._film_name) and duration_ms(FRAME_MS, current_theme()) > 0
 
     def _turn(self) -> None:
         """Stop the film, or play it; from its beginning where it has ended."""
@@ -159,7 +159,7 @@ class HelpReader(QTextBrowser):
             self.page_required.emit(found[1])
 
     def _line_width(self) -> int:
-        return min(self.viewport().width(), self._look.theme.px(LONGEST_LINE))
+        return min(self.viewport().width(), px(LONGEST_LINE))
 
     def _wrap(self) -> None:
         self.setLineWrapColumnOrWidth(self._line_width())
@@ -189,7 +189,7 @@ class HelpReader(QTextBrowser):
 
     def _show_marks(self) -> None:
         """What is found lies on caution's ground; where the reading is, on ink."""
-        c = self._look.theme.colours
+        c = current_theme().colours
         selections = []
         for i, cursor in enumerate(self._marks):
             selection = QTextEdit.ExtraSelection()
@@ -204,7 +204,7 @@ class HelpReader(QTextBrowser):
 
     def _set_text(self) -> None:
         document = self.document()
-        document.setDocumentMargin(self._look.theme.px(8))
+        document.setDocumentMargin(px(8))
         document.setMarkdown(self._markdown, QTextDocument.MarkdownFeature.MarkdownDialectGitHub)
         self._set_pictures()
         whole = QTextCursor(document)
@@ -227,7 +227,7 @@ class HelpReader(QTextBrowser):
             return self._film_picture()
         path = help_file(name)
         dark = path.with_stem(f"{path.stem}-dark")
-        image = QImage(str(dark if self._look.theme.is_dark and dark.exists() else path))
+        image = QImage(str(dark if current_theme().is_dark and dark.exists() else path))
         ratio = self.devicePixelRatioF()
         width = self._picture_width() * ratio
         scaled = image.scaledToWidth(round(width), Qt.TransformationMode.SmoothTransformation)
@@ -250,15 +250,15 @@ class HelpReader(QTextBrowser):
         painter.setRenderHint(QPainter.RenderHint.Antialiasing)
         if is_moving:
             paint_frame(
-                painter, rect, self._look.theme, self._film(), self._film_s, tr("Space bar: pause or play film.")
+                painter, rect, current_theme(), self._film(), self._film_s, tr("Space bar: pause or play film.")
             )
         else:
-            paint_stills(painter, rect, self._look.theme, self._film())
+            paint_stills(painter, rect, current_theme(), self._film())
         painter.end()
         return image
 
     def _set_blocks(self) -> None:
-        theme, block = self._look.theme, self.document().begin()
+        theme, block = current_theme(), self.document().begin()
         cursor = QTextCursor(self.document())
         while block.isValid():
             cursor.setPosition(block.position())
@@ -287,7 +287,7 @@ class HelpReader(QTextBrowser):
                 continue
             letters = QTextCharFormat()
             if heading is not None or is_bold:
-                letters.setFont(heading or self._look.theme.font(BODY, SEMIBOLD))
+                letters.setFont(heading or current_theme().font(BODY, SEMIBOLD))
             letters.setFontUnderline(is_link)
             cursor.setPosition(start)
             cursor.setPosition(start + length, QTextCursor.MoveMode.KeepAnchor)
@@ -295,7 +295,7 @@ class HelpReader(QTextBrowser):
 
     def _set_tables(self) -> None:
         """Rows under hairlines, as everywhere; no cages."""
-        theme = self._look.theme
+        theme = current_theme()
         for frame in self.document().rootFrame().childFrames():
             if not isinstance(frame, QTextTable):
                 continue
@@ -320,10 +320,10 @@ class HelpReader(QTextBrowser):
     def changeEvent(self, event: QEvent) -> None:
         super().changeEvent(event)
         if event.type() is QEvent.Type.StyleChange:
-            self._on_look_changed()
+            self._apply_theme()
 
-    def _on_look_changed(self) -> None:
-        self.setFont(self._look.theme.font(BODY))
+    def _apply_theme(self) -> None:
+        self.setFont(current_theme().font(BODY))
         at = self.verticalScrollBar().value()
         self._set_playing(is_playing=self.is_playing)  # less motion may be asked for meanwhile
         self._wrap()

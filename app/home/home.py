@@ -27,8 +27,8 @@ from app.home.settings.controller import SettingsController
 from app.home.settings.settings_page import SettingsPage
 from app.summary.course_words import NextKind, NextStep
 from app.system.settings import Scheme, Settings
+from app.theme.current import current_theme
 from app.theme.icons import Icon
-from app.theme.notifier import ThemeNotifier
 from app.widgets.action_bar import ActionBar, BarAction, BarState
 from app.widgets.banner import Banner
 from app.widgets.grid import COMPACT_BELOW
@@ -56,32 +56,32 @@ class Home(Themed):
     help_requested = Signal(str)
     settings_left = Signal()
 
-    def __init__(self, look: ThemeNotifier, controller: LibraryController, settings: Settings) -> None:
+    def __init__(self, controller: LibraryController, settings: Settings) -> None:
         super().__init__()
-        self._look, self._controller, self._settings = look, controller, settings
+        self._controller, self._settings = controller, settings
         self.state: OpenedState | None = None
-        self.rail = StepRail(look)
-        self.banner = Banner(look)
-        self.notices = LibraryNotices(look, controller, self)
+        self.rail = StepRail()
+        self.banner = Banner()
+        self.notices = LibraryNotices(controller, self)
         self.recovering = Recovering(controller, self.banner, self)
-        self.page = HomePage(look)
-        self.importing = Importing(look, controller, self)
+        self.page = HomePage()
+        self.importing = Importing(controller, self)
         self._settings_controller: SettingsController | None = None
         self._questions: Questions | None = None
         self._again: AnalysingAgain | None = None
         self._goals: GoalsOfPatient | None = None
         self._repeatability: Repeatability | None = None
-        self.working = WorkingPage(look)
-        self.bar = ActionBar(look)
-        self.toast = Toast(look, self)
-        self.deleting = Deleting(look, controller, self)
+        self.working = WorkingPage()
+        self.bar = ActionBar()
+        self.toast = Toast(self)
+        self.deleting = Deleting(controller, self)
         self.computing = ComputingCourses(controller, self)
-        self.filling = FillingDemonstration(look, controller, self)
+        self.filling = FillingDemonstration(controller, self)
         self.patients = PatientsAtHome(controller, self.page, self.filling.is_awaited, self)
         self._build()
         self._connect()
         self._go_to(self.page)
-        self._on_look_changed()
+        self._apply_theme()
 
     @property
     def settings(self) -> SettingsController:
@@ -97,7 +97,7 @@ class Home(Themed):
     def again(self) -> AnalysingAgain:
         """What is analysed again, made when it is first asked for."""
         if self._again is None:
-            made = self._again = AnalysingAgain(self._look, self._controller, self)
+            made = self._again = AnalysingAgain(self._controller, self)
             self._add_page(made.page)
             made.changed.connect(self._show)
             made.working.connect(self._work)
@@ -110,7 +110,7 @@ class Home(Themed):
     def goals(self) -> GoalsOfPatient:
         """The goals of the patient, made when they are first asked for."""
         if self._goals is None:
-            made = self._goals = GoalsOfPatient(self._look, self._controller, self)
+            made = self._goals = GoalsOfPatient(self._controller, self)
             self._add_page(made.page)
             made.kept.connect(self.patients.read)
             made.reported.connect(self.banner.show_message)
@@ -121,7 +121,7 @@ class Home(Themed):
     def repeatability(self) -> Repeatability:
         """The clinic's own error figures, made when they are first asked for."""
         if self._repeatability is None:
-            made = self._repeatability = Repeatability(self._look, self._controller, self)
+            made = self._repeatability = Repeatability(self._controller, self)
             self._add_page(made.page)
             made.changed.connect(self._show)
             made.working.connect(self._work)
@@ -147,7 +147,7 @@ class Home(Themed):
             self._questions.finish()
 
     def _make_settings(self) -> SettingsController:
-        made = self._settings_controller = SettingsController(self._look, self._controller, self._settings, self)
+        made = self._settings_controller = SettingsController(self._controller, self._settings, self)
         self._add_page(made.page)
         made.reported.connect(self.banner.show_message)
         made.restored.connect(self.patients.read)
@@ -158,7 +158,7 @@ class Home(Themed):
         return made
 
     def _make_questions(self) -> Questions:
-        made = self._questions = Questions(self._look, self._settings, self)
+        made = self._questions = Questions(self._settings, self)
         self._add_page(made.page)
         made.changed.connect(self._show)
         made.reported.connect(self.banner.show_message)
@@ -232,7 +232,7 @@ class Home(Themed):
             page.focus()
 
     def paintEvent(self, _event: QPaintEvent) -> None:
-        QPainter(self).fillRect(self.rect(), QColor(self._look.theme.colours.ground))
+        QPainter(self).fillRect(self.rect(), QColor(current_theme().colours.ground))
 
     def resizeEvent(self, event: QResizeEvent) -> None:
         super().resizeEvent(event)
@@ -341,7 +341,7 @@ class Home(Themed):
         return page
 
     def _fit(self) -> None:
-        scale = self._look.theme.scale
+        scale = current_theme().scale
         width, height = self.width() / scale, self.height() / scale
         is_compact = width < COMPACT_BELOW[0] or height < COMPACT_BELOW[1]
         form = RailForm.COMPACT if is_compact else RailForm.WIDE if width >= WIDE_FROM else RailForm.USUAL
@@ -353,7 +353,7 @@ class Home(Themed):
         if self._goals is not None:
             self._goals.page.set_room(width - form.value)
         self.bar.show_state(self._bar())
-        px = self._look.theme.px
+        px = current_theme().px
         self.toast.move(px(form.value + 24), self.height() - self.bar.height() - self.toast.height() - px(16))
 
     def _show(self) -> None:
@@ -526,7 +526,7 @@ class Home(Themed):
 
     def _on_below_pressed(self, name: str) -> None:
         if name == "look":
-            self._settings.scheme = Scheme.LIGHT if self._look.theme.is_dark else Scheme.DARK
+            self._settings.scheme = Scheme.LIGHT if current_theme().is_dark else Scheme.DARK
         elif name == "lock":
             self.lock_requested.emit()
         elif name == "settings" and self.current is not self.working:
@@ -572,8 +572,8 @@ class Home(Themed):
         else:
             self.importing.stop()
 
-    def _on_look_changed(self) -> None:
-        px = self._look.theme.px
+    def _apply_theme(self) -> None:
+        px = current_theme().px
         self._banner_row.setContentsMargins(px(24), 0, px(24), 0)
         self._fit()
         self.update()

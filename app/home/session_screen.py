@@ -19,8 +19,8 @@ from PySide6.QtWidgets import (
 )
 
 from app.results.detail_pages import DetailPages
+from app.theme.current import current_theme, px
 from app.theme.icons import Icon
-from app.theme.notifier import ThemeNotifier
 from app.widgets.banner import Banner
 from app.widgets.button import Button, ButtonKind
 from app.widgets.folder_dialog import ask_for_folder
@@ -64,25 +64,24 @@ class SessionScreen(Themed):
     left = Signal()
     demonstration_requested = Signal()
 
-    def __init__(self, look: ThemeNotifier) -> None:
+    def __init__(self) -> None:
         super().__init__()
-        self._look = look
         self._background, self._looking, self._comparing, self._saving = (Background(self) for _ in range(4))
         self._has_way_back = False
         self._results: ResultPage | None = None
         self._opened: Opened | None = None
         self._saved_in = Path()
         self._dialog: QFileDialog | None = None
-        self.header = Header(look)
-        self.banner = Banner(look)
-        self.empty = EmptyPage(look)
-        self.working = WorkingPage(look)
+        self.header = Header()
+        self.banner = Banner()
+        self.empty = EmptyPage()
+        self.working = WorkingPage()
         self.pages = PageStack()
-        self.behind = DetailPages(look, self.pages, self._looking, self._comparing, self)
-        self.bar = _ActionBar(look)
+        self.behind = DetailPages(self.pages, self._looking, self._comparing, self)
+        self.bar = _ActionBar()
         self._build()
         self._connect()
-        self._on_look_changed()
+        self._apply_theme()
         self._show_page(self.empty)
 
     @property
@@ -152,7 +151,7 @@ class SessionScreen(Themed):
         self._fit()
 
     def paintEvent(self, _event: QPaintEvent) -> None:
-        QPainter(self).fillRect(self.rect(), QColor(self._look.theme.colours.ground))
+        QPainter(self).fillRect(self.rect(), QColor(current_theme().colours.ground))
 
     def _build(self) -> None:
         for page in (self.empty, self.working):
@@ -207,7 +206,7 @@ class SessionScreen(Themed):
 
     def _fit(self) -> None:
         """Pass to the pages how much room there is, in px of the design."""
-        scale = self._look.theme.scale
+        scale = current_theme().scale
         width, height = self.width() / scale, self.height() / scale
         is_narrow = width < NARROW_BELOW
         self.empty.set_narrow(is_narrow)
@@ -229,7 +228,7 @@ class SessionScreen(Themed):
         if self._results is None:
             from app.results.result_page import ResultPage
 
-            self._results = ResultPage(self._look)
+            self._results = ResultPage()
             self.pages.addWidget(self._results)
             self._results.quality.how_found.clicked.connect(self._on_how_found)
             self._results.quality.agreement.clicked.connect(self._on_agreement)
@@ -289,8 +288,8 @@ class SessionScreen(Themed):
             _log.error("the analysis ended early", exc_info=error)
             self.banner.show_message(*map(tr, ENDED_EARLY))
 
-    def _on_look_changed(self) -> None:
-        px = self._look.theme.px
+    def _apply_theme(self) -> None:
+        px = current_theme().px
         self._banner_row.setContentsMargins(px(24), 0, px(24), 0)
         self._fit()
         self.update()
@@ -299,16 +298,16 @@ class SessionScreen(Themed):
 class _ActionBar(Themed):
     """The ways on from a result. Where they do not all fit, the demonstration, which has its key, is left out."""
 
-    def __init__(self, look: ThemeNotifier) -> None:
+    def __init__(self) -> None:
         super().__init__()
-        self._look, self._is_narrow = look, False
+        self._is_narrow = False
         self.setSizePolicy(QSizePolicy.Policy.Expanding, QSizePolicy.Policy.Fixed)
-        self.back = Button(look, tr("Back"), ButtonKind.SECONDARY, Icon.BACK)
+        self.back = Button(tr("Back"), ButtonKind.SECONDARY, Icon.BACK)
         self.back.hide()
-        self.open_folder = Button(look, tr("Open a session folder"), ButtonKind.SECONDARY, Icon.FOLDER, tr("Ctrl O"))
-        self.open_demonstration = Button(look, tr("Open the demonstration"), ButtonKind.QUIET, Icon.PLAY, tr("Ctrl D"))
-        self.how_found = Button(look, tr("Show calibration"), ButtonKind.QUIET, Icon.SEARCH)
-        self._purpose = Text(look, tr(PURPOSE), size=12, tone="ink2", wraps=True)
+        self.open_folder = Button(tr("Open a session folder"), ButtonKind.SECONDARY, Icon.FOLDER, tr("Ctrl O"))
+        self.open_demonstration = Button(tr("Open the demonstration"), ButtonKind.QUIET, Icon.PLAY, tr("Ctrl D"))
+        self.how_found = Button(tr("Show calibration"), ButtonKind.QUIET, Icon.SEARCH)
+        self._purpose = Text(tr(PURPOSE), size=12, tone="ink2", wraps=True)
         self._purpose.setAlignment(Qt.AlignmentFlag.AlignRight | Qt.AlignmentFlag.AlignVCenter)
         self._row = QHBoxLayout(self)
         self._row.addWidget(self.back)
@@ -316,7 +315,7 @@ class _ActionBar(Themed):
         self._row.addWidget(self.open_demonstration)
         self._row.addWidget(self.how_found)
         self._row.addWidget(self._purpose, 1)
-        self._on_look_changed()
+        self._apply_theme()
 
     def show_message(self, note: str) -> None:
         """Say what must be known of the curves, before what the program is for."""
@@ -325,7 +324,7 @@ class _ActionBar(Themed):
     def set_narrow(self, is_narrow: bool) -> None:
         self._is_narrow = is_narrow
         self._purpose.setVisible(not is_narrow)
-        self._on_look_changed()
+        self._apply_theme()
         self._leave_out()
 
     def minimumSizeHint(self) -> QSize:
@@ -340,19 +339,19 @@ class _ActionBar(Themed):
     def _leave_out(self) -> None:
         widgets = (self.back, self.open_folder, self.open_demonstration, self.how_found)
         needed = [widget.sizeHint().width() for widget in widgets if widget is not self.back or not widget.isHidden()]
-        needed += [] if self._is_narrow else [self._look.theme.px(PURPOSE_WIDTH)]
+        needed += [] if self._is_narrow else [px(PURPOSE_WIDTH)]
         room = self.width() - 2 * self._row.contentsMargins().left() - self._row.spacing() * (len(needed) - 1)
         self.open_demonstration.setVisible(sum(needed) <= room)
 
     def paintEvent(self, _event: QPaintEvent) -> None:
-        theme = self._look.theme
+        theme = current_theme()
         painter = QPainter(self)
         painter.fillRect(self.rect(), QColor(theme.colours.surface))
         painter.setPen(theme.pen(theme.colours.line, 1))
         painter.drawLine(self.rect().topLeft(), self.rect().topRight())
 
-    def _on_look_changed(self) -> None:
-        px = self._look.theme.px
+    def _apply_theme(self) -> None:
+        px = current_theme().px
         side = px(16 if self._is_narrow else 24)
         self._row.setContentsMargins(side, 0, side, 0)
         self._row.setSpacing(px(8 if self._is_narrow else 16))

@@ -7,8 +7,8 @@ from PySide6.QtGui import QKeyEvent, QResizeEvent
 from PySide6.QtWidgets import QBoxLayout, QSizePolicy, QWidget
 
 from app.patient_screen.metronome import LEAST, MOST
+from app.theme.current import current_theme, px
 from app.theme.icons import Icon
-from app.theme.notifier import ThemeNotifier
 from app.widgets.button import Button, ButtonKind
 from app.widgets.card import Card
 from app.widgets.field import NumberField
@@ -49,7 +49,7 @@ class ControlsCard(Card):
     full_screen_pressed = Signal()
     close_pressed = Signal()
 
-    def __init__(self, look: ThemeNotifier) -> None:
+    def __init__(self) -> None:
         self._typed: dict[TargetMeasure, int] = {}
         self._reasons: Mapping[Choice, str] = {}
         self._is_ticking = False
@@ -59,17 +59,17 @@ class ControlsCard(Card):
             TargetMeasure.STANCE_RATIO: tr("Stance symmetry"),
             TargetMeasure.CADENCE: tr("Cadence"),
         }
-        self.measure = Segmented(look, tr("Measure"), [(key, words[key], "") for key in TargetMeasure])
-        self.side = Segmented(look, tr("Side"), [(Side.LEFT, tr("Left"), ""), (Side.RIGHT, tr("Right"), "")])
+        self.measure = Segmented(tr("Measure"), [(key, words[key], "") for key in TargetMeasure])
+        self.side = Segmented(tr("Side"), [(Side.LEFT, tr("Left"), ""), (Side.RIGHT, tr("Right"), "")])
         low, high = TargetMeasure.KNEE_SWING_PEAK.limits
-        self.target = NumberField(look, tr("Target"), low=low, high=high, unit="°", states_wrong=False)
-        self.rate = NumberField(look, tr("Metronome"), low=LEAST, high=MOST, unit=tr("/min"), states_wrong=False)
-        self.tick = Button(look, tr("Start metronome"), ButtonKind.SECONDARY, Icon.SOUND)
-        self.full = Button(look, tr("Full screen"), ButtonKind.QUIET, Icon.WHOLE, key="F11")
-        self.close_screen = Button(look, tr("Close"), ButtonKind.QUIET, Icon.CLOSE, key="F8")
-        self._reason, self._wrong = Notice(look, size=14), Notice(look, size=14)
+        self.target = NumberField(tr("Target"), low=low, high=high, unit="°", states_wrong=False)
+        self.rate = NumberField(tr("Metronome"), low=LEAST, high=MOST, unit=tr("/min"), states_wrong=False)
+        self.tick = Button(tr("Start metronome"), ButtonKind.SECONDARY, Icon.SOUND)
+        self.full = Button(tr("Full screen"), ButtonKind.QUIET, Icon.WHOLE, key="F11")
+        self.close_screen = Button(tr("Close"), ButtonKind.QUIET, Icon.CLOSE, key="F8")
+        self._reason, self._wrong = Notice(size=14), Notice(size=14)
         self._choose, self._set = QBoxLayout(ACROSS), QBoxLayout(ACROSS)
-        super().__init__(look)
+        super().__init__()
         self.setSizePolicy(QSizePolicy.Policy.Preferred, QSizePolicy.Policy.Maximum)
         self.setAccessibleName(tr("Patient screen"))
         self._choose.addWidget(self.measure, 1)
@@ -144,7 +144,7 @@ class ControlsCard(Card):
 
     def resizeEvent(self, event: QResizeEvent) -> None:
         super().resizeEvent(event)
-        self._choose.setDirection(DOWN if self.width() < self._look.theme.px(NARROW_BELOW) else ACROSS)
+        self._choose.setDirection(DOWN if self.width() < px(NARROW_BELOW) else ACROSS)
 
     def _show(self) -> None:
         """Show the field of the chosen measure, and which sides it can be of."""
@@ -196,9 +196,9 @@ class ControlsCard(Card):
             self.rate.set_wrong(tr("Enter the steps per minute."))
             self._show_wrong()
 
-    def _on_look_changed(self) -> None:
-        super()._on_look_changed()
-        px = self._look.theme.px
+    def _apply_theme(self) -> None:
+        super()._apply_theme()
+        px = current_theme().px
         for row in (self._choose, self._set):
             row.setSpacing(px(12))
         for field in (self.target, self.rate):

@@ -21,9 +21,9 @@ from app.patient_screen.patient_view import (
     tone_words,
     unit_words,
 )
+from app.theme.current import current_theme
 from app.theme.icons import Icon, paint_icon
 from app.theme.leg_chip import CHIP, paint_chip
-from app.theme.notifier import ThemeNotifier
 from app.theme.theme import Theme
 from app.widgets.text import MEDIUM, SEMIBOLD
 from app.wording.numbers import MINUS
@@ -53,9 +53,9 @@ class _Inks(NamedTuple):
     soft: QColor
 
 
-def paint_patient_view(painter: QPainter, room: QRectF, view: PatientView, look: ThemeNotifier) -> None:
+def paint_patient_view(painter: QPainter, room: QRectF, view: PatientView) -> None:
     """Fill `room` with what the patient is shown."""
-    theme = replace(look.theme, scale=1.0)
+    theme = replace(current_theme(), scale=1.0)
     painter.fillRect(room, QColor(theme.colours.surface))
     painter.setRenderHint(QPainter.RenderHint.Antialiasing)
     scale = min(room.width() / WIDTH, room.height() / HEIGHT)

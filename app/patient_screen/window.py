@@ -6,7 +6,6 @@ from PySide6.QtWidgets import QWidget
 
 from app.patient_screen.patient_view import PatientView
 from app.patient_screen.picture import HEIGHT, WIDTH, paint_patient_view
-from app.theme.notifier import ThemeNotifier
 from app.wording.translation import tr
 
 
@@ -24,9 +23,9 @@ class PatientWindow(QWidget):
     closed = Signal()
     run_requested = Signal()
 
-    def __init__(self, look: ThemeNotifier) -> None:
+    def __init__(self) -> None:
         super().__init__()
-        self._look, self.view = look, PatientView()
+        self.view = PatientView()
         self.setWindowTitle(tr("Patient screen"))
         self.setAttribute(Qt.WidgetAttribute.WA_ShowWithoutActivating)
         self.setAttribute(Qt.WidgetAttribute.WA_OpaquePaintEvent)
@@ -56,7 +55,7 @@ class PatientWindow(QWidget):
 
     def paintEvent(self, _event: QPaintEvent) -> None:
         painter = QPainter(self)
-        paint_patient_view(painter, QRectF(self.rect()), self.view, self._look)
+        paint_patient_view(painter, QRectF(self.rect()), self.view)
         painter.end()
 
     def keyPressEvent(self, event: QKeyEvent) -> None:

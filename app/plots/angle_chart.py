@@ -5,14 +5,14 @@ from dataclasses import dataclass
 
 import numpy as np
 import pyqtgraph as pg
-from PySide6.QtCore import QRectF, QSize, Qt, Signal
+from PySide6.QtCore import QEvent, QRectF, QSize, Qt, Signal
 from PySide6.QtGui import QAccessible, QColor, QPainter, QPainterPath, QPen, QPolygonF
 from PySide6.QtWidgets import QStyleOptionGraphicsItem, QWidget
 
 from app.charts.axes import AXIS_WIDTH, RIGHT_MARGIN, range_for
 from app.charts.marks import stretches
 from app.plots.thinning import envelope, thin
-from app.theme.notifier import ThemeNotifier
+from app.theme.current import current_theme
 from app.wording.numbers import MINUS, clock
 from app.wording.translation import figure_text
 from core.body import Side
@@ -53,10 +53,9 @@ class AngleChart(pg.GraphicsView):  # type: ignore[misc]  # pyqtgraph has no typ
 
     view_moved = Signal()
 
-    def __init__(self, look: ThemeNotifier, lowest_deg: float, highest_deg: float, has_times: bool = True) -> None:
+    def __init__(self, lowest_deg: float, highest_deg: float, has_times: bool = True) -> None:
         super().__init__(useOpenGL=False)
         self._has_times, self._is_of_three = has_times, False
-        self._look = look
         self._fixed = (lowest_deg, highest_deg)
         self.range_deg = self._fixed
         self.curves: Mapping[Side, Curve] = {}
@@ -80,16 +79,20 @@ class AngleChart(pg.GraphicsView):  # type: ignore[misc]  # pyqtgraph has no typ
         self._zero = pg.InfiniteLine(0.0, angle=0)
         self._cursor = pg.InfiniteLine(angle=90)
         self._cursor.hide()
-        self._items = {side: _CurveItem(look, side) for side in Side}
+        self._items = {side: _CurveItem(side) for side in Side}
         for item in (self._zero, *self._items.values(), self._cursor):
             self._view.addItem(item, ignoreBounds=True)
         self._view.sigXRangeChanged.connect(self._on_x_range_changed)
         self._view.sigResized.connect(self._redraw)  # no finer than the screen: its width has changed
-        look.changed.connect(self._on_look_changed)
-        self._on_look_changed()
+        self._apply_theme()
+
+    def changeEvent(self, event: QEvent) -> None:
+        super().changeEvent(event)
+        if event.type() is QEvent.Type.StyleChange:
+            self._apply_theme()
 
     def sizeHint(self) -> QSize:
-        px = self._look.theme.px
+        px = current_theme().px
         less = 0 if self._has_times else AXIS_HEIGHT - BARE_AXIS_HEIGHT
         return QSize(px(LEAST_SIZE[0]), px((LEAST_OF_THREE if self._is_of_three else LEAST_SIZE[1]) - less))
 
@@ -166,8 +169,8 @@ class AngleChart(pg.GraphicsView):  # type: ignore[misc]  # pyqtgraph has no typ
         self._redraw()
         self.view_moved.emit()
 
-    def _on_look_changed(self) -> None:
-        theme = self._look.theme
+    def _apply_theme(self) -> None:
+        theme = current_theme()
         c = theme.colours
         self.setBackground(c.surface)
         self._angle_axis.setWidth(theme.px(AXIS_WIDTH))
@@ -202,9 +205,9 @@ class _TimeAxis(pg.AxisItem):  # type: ignore[misc]  # pyqtgraph has no types
 class _CurveItem(pg.GraphicsObject):  # type: ignore[misc]  # pyqtgraph has no types
     """Band and curves of one leg in one item: pyqtgraph's own curves join their bands across gaps."""
 
-    def __init__(self, look: ThemeNotifier, side: Side) -> None:
+    def __init__(self, side: Side) -> None:
         super().__init__()
-        self._look, self._side = look, side
+        self._side = side
         self.time_s: FloatArray = np.zeros(0)
         self.angle_deg: FloatArray = np.zeros(0)
         self._line: list[tuple[FloatArray, FloatArray]] = []
@@ -241,7 +244,7 @@ class _CurveItem(pg.GraphicsObject):  # type: ignore[misc]  # pyqtgraph has no t
         self.update()
 
     def boundingRect(self) -> QRectF:
-        reach = CURVE_PX * self._look.theme.scale
+        reach = CURVE_PX * current_theme().scale
         x, y = reach * (self.pixelWidth() or 0.0), reach * (self.pixelHeight() or 0.0)
         return self._bounds.adjusted(-x, -y, x, y)
 
@@ -250,7 +253,7 @@ class _CurveItem(pg.GraphicsObject):  # type: ignore[misc]  # pyqtgraph has no t
         super().viewTransformChanged()
 
     def paint(self, painter: QPainter, _option: QStyleOptionGraphicsItem, _widget: QWidget | None = None) -> None:
-        theme = self._look.theme
+        theme = current_theme()
         painter.setRenderHint(QPainter.RenderHint.Antialiasing, not self._is_dense)
         for band in self._bands:
             painter.fillPath(band, theme.band(self._side))
@@ -272,7 +275,7 @@ class _CurveItem(pg.GraphicsObject):  # type: ignore[misc]  # pyqtgraph has no t
                 painter.drawPolyline(_polygon(x[part], y[part]))
 
     def _pen(self, width: float) -> QPen:
-        pen = self._look.theme.side_pen(self._side, width)
+        pen = current_theme().side_pen(self._side, width)
         if not self._is_dashed:
             pen.setStyle(Qt.PenStyle.SolidLine)
             pen.setWidthF(0)

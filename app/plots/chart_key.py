@@ -7,9 +7,9 @@ from PySide6.QtCore import QRectF, QSize, Qt
 from PySide6.QtGui import QAccessible, QColor, QFontMetrics, QPainter, QPaintEvent, QPen
 from PySide6.QtWidgets import QSizePolicy
 
+from app.theme.current import current_theme, px
 from app.theme.icons import VERDICT_ICONS, paint_icon
 from app.theme.leg_chip import CHIP, paint_chip
-from app.theme.notifier import ThemeNotifier
 from app.widgets.chip import leg_name
 from app.widgets.painted_text import LEFT, PaintedText
 from app.widgets.themed import Themed
@@ -45,9 +45,8 @@ class ChartKey(Themed):
 
     accessible_role = QAccessible.Role.Graphic
 
-    def __init__(self, look: ThemeNotifier) -> None:
+    def __init__(self) -> None:
         super().__init__()
-        self._look = look
         self.words = NOTHING_DRAWN
         self.setSizePolicy(QSizePolicy.Policy.Expanding, QSizePolicy.Policy.Fixed)
 
@@ -60,15 +59,15 @@ class ChartKey(Themed):
         self.update()
 
     def sizeHint(self) -> QSize:
-        px = self._look.theme.px
+        px = current_theme().px
         return QSize(self._width_of_legs() + self._width_of_thin(self.words.thin) + px(GAP), px(HEIGHT))
 
     def minimumSizeHint(self) -> QSize:
-        return QSize(self._width_of_legs(), self._look.theme.px(HEIGHT))
+        return QSize(self._width_of_legs(), px(HEIGHT))
 
     def texts(self) -> list[PaintedText]:
         """What is painted, and where."""
-        font, px = self._look.theme.font(12), self._look.theme.px
+        font, px = current_theme().font(12), current_theme().px
         found, right = [], float(self.width())
         thin, reference = self._fitting()
         for text, mark in ((reference, px(SWATCH[0]) * self.words.has_band), (thin, px(LINE))):
@@ -79,7 +78,7 @@ class ChartKey(Themed):
         return found
 
     def paintEvent(self, _event: QPaintEvent) -> None:
-        theme, px, middle = self._look.theme, self._look.theme.px, self.height() / 2
+        theme, px, middle = current_theme(), current_theme().px, self.height() / 2
         painter = QPainter(self)
         painter.setRenderHint(QPainter.RenderHint.Antialiasing)
         right = float(self.width())
@@ -114,13 +113,13 @@ class ChartKey(Themed):
             left += px(GAP)
 
     def _paint_swatch(self, painter: QPainter, left: float) -> None:
-        c, px, middle = self._look.theme.colours, self._look.theme.px, self.height() / 2
+        c, px, middle = current_theme().colours, current_theme().px, self.height() / 2
         width, height = (px(length) for length in SWATCH)
         painter.fillRect(QRectF(left, middle - height / 2, width, height), QColor(c.band_2sd))
         painter.fillRect(QRectF(left, middle - height / 4, width, height / 2), QColor(c.band_1sd))
 
     def _thin_pen(self) -> QPen:
-        theme = self._look.theme
+        theme = current_theme()
         is_one = len(self.words.thin_sides) == 1
         return theme.pen(theme.text(self.words.thin_sides[0]) if is_one else theme.colours.ink2, THIN_PX)
 
@@ -133,7 +132,7 @@ class ChartKey(Themed):
         return thin, next(fitting, "")
 
     def _width_of_legs(self) -> int:
-        px = self._look.theme.px
+        px = current_theme().px
         each = (
             px(CHIP) + px(LINE_APART) + px(LINE) + (px(LINE_APART) + px(ICON)) * (verdict is not Verdict.READ)
             for verdict in self.words.legs.values()
@@ -141,16 +140,16 @@ class ChartKey(Themed):
         return sum(each) + px(GAP) * max(len(self.words.legs) - 1, 0)
 
     def _width_of_thin(self, text: str) -> int:
-        px = self._look.theme.px
+        px = current_theme().px
         return px(GAP) + px(LINE) + px(LINE_APART) + self._width(text) if text else 0
 
     def _width_of_reference(self, text: str) -> int:
-        px = self._look.theme.px
+        px = current_theme().px
         return px(GAP) + (px(SWATCH[0]) + px(LINE_APART)) * self.words.has_band + self._width(text)
 
     def _width(self, text: str) -> int:
-        return QFontMetrics(self._look.theme.font(12)).horizontalAdvance(text) + 1
+        return QFontMetrics(current_theme().font(12)).horizontalAdvance(text) + 1
 
-    def _on_look_changed(self) -> None:
+    def _apply_theme(self) -> None:
         self.updateGeometry()
         self.update()

@@ -11,7 +11,6 @@ from app.charts.axes import degrees_in_words, part_in_words, range_for, range_in
 from app.charts.stride_chart import StrideCurve
 from app.plots.cycle_chart import CycleChart
 from app.theme.icons import VERDICT_ICONS, Icon
-from app.theme.notifier import ThemeNotifier
 from app.widgets.card import Card
 from app.widgets.chip import Chip
 from app.widgets.icons import IconMark
@@ -42,24 +41,24 @@ class ComparedChart(CycleChart):
 class ComparedFrame(Card):
     """A chart under its leg, joint and sign, with what must be known to read it."""
 
-    def __init__(self, look: ThemeNotifier, chart: ComparedChart, side: Side, kind: JointKind) -> None:
+    def __init__(self, chart: ComparedChart, side: Side, kind: JointKind) -> None:
         self._side, self._kind = side, kind
         self.chart = chart
-        self._mark = IconMark(look, Icon.DIFFERENCE, size=18)
-        self._note = Text(look, size=12, weight=MEDIUM, wraps=True)
-        super().__init__(look, padding=12, spacing=2)
+        self._mark = IconMark(Icon.DIFFERENCE, size=18)
+        self._note = Text(size=12, weight=MEDIUM, wraps=True)
+        super().__init__(padding=12, spacing=2)
         self.setSizePolicy(QSizePolicy.Policy.Expanding, QSizePolicy.Policy.Expanding)
         head, notes = QHBoxLayout(), QHBoxLayout()
         head.setSpacing(8)
-        head.addWidget(Chip(look, side))
-        head.addWidget(Text(look, title_in_words(kind), size=16, weight=SEMIBOLD))
-        self._verdict_mark = IconMark(look, VERDICT_ICONS[Verdict.READ], size=16)
-        self.verdict = Text(look, size=12, weight=MEDIUM)
+        head.addWidget(Chip(side))
+        head.addWidget(Text(title_in_words(kind), size=16, weight=SEMIBOLD))
+        self._verdict_mark = IconMark(VERDICT_ICONS[Verdict.READ], size=16)
+        self.verdict = Text(size=12, weight=MEDIUM)
         for part in (self._verdict_mark, self.verdict):
             part.hide()
             head.addWidget(part)
         head.addStretch(1)
-        head.addWidget(Text(look, sign_in_words(kind), size=12, tone="ink2"))
+        head.addWidget(Text(sign_in_words(kind), size=12, tone="ink2"))
         notes.setSpacing(8)
         notes.addWidget(self._mark, 0, Qt.AlignmentFlag.AlignTop)
         notes.addWidget(self._note, 1)

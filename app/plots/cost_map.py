@@ -11,7 +11,7 @@ from PySide6.QtCore import QPointF, QRectF, QSize
 from PySide6.QtGui import QAccessible, QColor, QFont, QImage, QPainter, QPaintEvent, QPolygonF, QResizeEvent
 from PySide6.QtWidgets import QSizePolicy
 
-from app.theme.notifier import ThemeNotifier
+from app.theme.current import current_theme, px
 from app.widgets.painted_text import LEFT, RIGHT, PaintedText
 from app.widgets.themed import Themed
 from app.wording.translation import figure_text, tr
@@ -35,9 +35,8 @@ class CostMap(Themed):
 
     accessible_role = QAccessible.Role.Chart
 
-    def __init__(self, look: ThemeNotifier) -> None:
+    def __init__(self) -> None:
         super().__init__()
-        self._look = look
         self._side = Side.LEFT
         self._cost: CostOverSphere | None = None
         self._axis_sd_rad: float | None = None
@@ -55,7 +54,7 @@ class CostMap(Themed):
         apart = figure_text(math.degrees(cost.apart_rad), ".1f")
         self.setAccessibleName(tr("Fit error of all axes, {sensor}").format(sensor=name))
         self.setAccessibleDescription(stated.format(sensor=name, apart=apart, low=f"{low:.0f}", high=f"{high:.0f}"))
-        self._on_look_changed()
+        self._apply_theme()
 
     @property
     def limits_deg_s(self) -> tuple[float, float]:
@@ -65,7 +64,7 @@ class CostMap(Themed):
         return float(np.rad2deg(self._cost.rms_rad_s.min())), float(np.rad2deg(self._cost.rms_rad_s.max()))
 
     def sizeHint(self) -> QSize:
-        px = self._look.theme.px
+        px = current_theme().px
         return QSize(px(LEAST_WIDTH), self._height_for(px(LEAST_WIDTH)))
 
     def minimumSizeHint(self) -> QSize:
@@ -76,12 +75,12 @@ class CostMap(Themed):
         self.setFixedHeight(self._height_for(event.size().width()))
 
     def _height_for(self, width: int) -> int:
-        px = self._look.theme.px
+        px = current_theme().px
         return min(width // 2, px(MOST_HEIGHT)) + px(SCALE_HEIGHT + 4)
 
     def globe(self) -> QRectF:
         """The ellipse of the map, twice as wide as high, in px of the widget."""
-        room = self.height() - self._look.theme.px(SCALE_HEIGHT + 4)
+        room = self.height() - px(SCALE_HEIGHT + 4)
         width = min(float(self.width()), 2.0 * room) - 2
         return QRectF((self.width() - width) / 2, 1, width, width / 2)
 
@@ -99,7 +98,7 @@ class CostMap(Themed):
         )
 
     def painted_texts(self) -> list[PaintedText]:
-        theme = self._look.theme
+        theme = current_theme()
         px, (low, high) = theme.px, self.limits_deg_s
         top, middle = self.height() - px(SCALE_HEIGHT), self.width() / 2
         half = middle - px(RAMP / 2 + 8)
@@ -118,7 +117,7 @@ class CostMap(Themed):
     def paintEvent(self, _event: QPaintEvent) -> None:
         if self._cost is None:
             return
-        theme, globe = self._look.theme, self.globe()
+        theme, globe = current_theme(), self.globe()
         painter = QPainter(self)
         painter.setRenderHint(QPainter.RenderHint.Antialiasing)
         painter.setRenderHint(QPainter.RenderHint.SmoothPixmapTransform)
@@ -133,7 +132,7 @@ class CostMap(Themed):
     def _paint_marks(self, painter: QPainter) -> None:
         """A cross at the axis in use and its opposite, with the circle of its certainty; a ring at the best fit."""
         assert self._cost is not None
-        theme, c = self._look.theme, self._look.theme.colours
+        theme, c = current_theme(), current_theme().colours
         for sign in (1.0, -1.0):
             at = self.place(sign * self._cost.axis)
             best = self.place(sign * self._cost.lowest)
@@ -159,18 +158,18 @@ class CostMap(Themed):
         return QPolygonF([self.place(point) for point in points])
 
     def _paint_scale(self, painter: QPainter) -> None:
-        px = self._look.theme.px
+        px = current_theme().px
         width = px(RAMP) / BANDS
         top = self.height() - px(SCALE_HEIGHT) + px(SCALE_HEIGHT - 10) / 2
         left = (self.width() - px(RAMP)) / 2
         for k, colour in enumerate(self._ramp()):
             painter.fillRect(QRectF(left + k * width, top, width, px(10)), colour)
-        painter.setPen(self._look.theme.pen(self._look.theme.colours.control, 1))
+        painter.setPen(current_theme().pen(current_theme().colours.control, 1))
         painter.drawRect(QRectF(left, top, px(RAMP), px(10)))
 
     def _ramp(self) -> list[QColor]:
         """From what fits, in the leg's own colour, to what does not, the colour of the ground."""
-        theme = self._look.theme
+        theme = current_theme()
         dark, pale = theme.curve(self._side), QColor(theme.colours.ground)
         return [_mixed(dark, pale, k / (BANDS - 1)) for k in range(BANDS)]
 
@@ -202,9 +201,9 @@ class CostMap(Themed):
         return QImage(pixels.tobytes(), width, height, 4 * width, QImage.Format.Format_ARGB32).copy()
 
     def _font(self) -> QFont:
-        return self._look.theme.font(12)
+        return current_theme().font(12)
 
-    def _on_look_changed(self) -> None:
+    def _apply_theme(self) -> None:
         self._image = None
         self.setMinimumWidth(self.sizeHint().width())
         self.setFixedHeight(self._height_for(max(self.width(), self.minimumWidth())))

@@ -20,8 +20,8 @@ from app.summary.course_words import (
     visit_in_words,
 )
 from app.summary.progress_words import arrow_of
+from app.theme.current import current_theme, px
 from app.theme.icons import Icon
-from app.theme.notifier import ThemeNotifier
 from app.widgets.button import Button, ButtonKind
 from app.widgets.card import Card
 from app.widgets.change_arrow import ChangeArrow
@@ -55,20 +55,20 @@ class CourseCard(Card):
     visit_opened = Signal(object)
     computing_requested = Signal()
 
-    def __init__(self, look: ThemeNotifier) -> None:
+    def __init__(self) -> None:
         self._grid, self.head, self._foot = QGridLayout(), QHBoxLayout(), QHBoxLayout()
         self.rows: dict[LaneKind, LaneRow] = {}
         self._is_narrow: bool | None = None
-        super().__init__(look, padding=16, spacing=0)
+        super().__init__(padding=16, spacing=0)
         self.visits: tuple[CourseVisit, ...] = ()
         self.lanes: tuple[CourseLane, ...] = ()
         self.number: int | None = None
         self.setFocusPolicy(Qt.FocusPolicy.StrongFocus)
-        self.axis = DateAxis(look)
-        self.method = Text(look, size=12, tone="ink2", wraps=True)
-        self.note = Text(look, size=12, tone="ink2", wraps=True)
-        self.compute = Button(look, tr("Calculate"), ButtonKind.SECONDARY, height=36)
-        self.info = Button(look, "", ButtonKind.QUIET, Icon.INFO, height=36)
+        self.axis = DateAxis()
+        self.method = Text(size=12, tone="ink2", wraps=True)
+        self.note = Text(size=12, tone="ink2", wraps=True)
+        self.compute = Button(tr("Calculate"), ButtonKind.SECONDARY, height=36)
+        self.info = Button("", ButtonKind.QUIET, Icon.INFO, height=36)
         self.info.setAccessibleName(tr("Method"))
         self.info.setCheckable(True)
         self._grid_room = QWidget()
@@ -137,7 +137,7 @@ class CourseCard(Card):
                 part.hide()
                 part.deleteLater()
         for kind in [kind for kind in kinds if kind not in self.rows]:
-            self.rows[kind] = LaneRow(self._look, kind)
+            self.rows[kind] = LaneRow(kind)
             self._join(self.rows[kind].plot)
         self.rows = {kind: self.rows[kind] for kind in kinds}
         self._lay()
@@ -168,28 +168,28 @@ class CourseCard(Card):
             self._grid.addWidget(row.label, at, 0)
             self._grid.addWidget(row.changes, at, 1 if is_narrow else 2)
             self._grid.addWidget(row.plot, at + 1 if is_narrow else at, 0 if is_narrow else 1, 1, 2 if is_narrow else 1)
-            self._grid.setRowMinimumHeight(at, 0 if is_narrow else self._look.theme.px(ROW))
+            self._grid.setRowMinimumHeight(at, 0 if is_narrow else px(ROW))
         self._grid.removeWidget(self.axis)
         self._grid.addWidget(self.axis, 2 * len(self.rows), 0 if is_narrow else 1, 1, 2 if is_narrow else 1)
         self._grid.setColumnStretch(0, 1 if is_narrow else 0)
         self._grid.setColumnStretch(1, 0 if is_narrow else 1)
         hear_as_laid_out(self._grid_room)
-        self._on_look_changed()
+        self._apply_theme()
 
     def paintEvent(self, event: QPaintEvent) -> None:
         """A hairline over every row."""
         super().paintEvent(event)
         if self._grid_room.isHidden():
             return
-        painter, side = QPainter(self), self._look.theme.px(16)
-        painter.setPen(self._look.theme.pen(self._look.theme.colours.line, 1))
+        painter, side = QPainter(self), px(16)
+        painter.setPen(current_theme().pen(current_theme().colours.line, 1))
         for row in self.rows.values():
             top = self._grid_room.y() + min(row.plot.y(), row.label.y()) - 1.5
             painter.drawLine(QPointF(side, top), QPointF(self.width() - side, top))
 
-    def _on_look_changed(self) -> None:
-        super()._on_look_changed()
-        px = self._look.theme.px
+    def _apply_theme(self) -> None:
+        super()._apply_theme()
+        px = current_theme().px
         self.column.setContentsMargins(px(16), px(4), px(8), px(4))
         self._grid.setContentsMargins(0, px(2), px(8), 0)
         self._grid.setHorizontalSpacing(px(8))
@@ -204,12 +204,11 @@ class CourseCard(Card):
 class LaneRow:
     """The three parts of a lane: its name, its plot, and its last value with what has changed."""
 
-    def __init__(self, look: ThemeNotifier, kind: LaneKind) -> None:
+    def __init__(self, kind: LaneKind) -> None:
         self.kind = kind
-        self.label = _Words(look, LABELS)
-        self.plot = LanePlot(look)
-        self.changes = _Words(look, CHANGES)
-        self._look = look
+        self.label = _Words(LABELS)
+        self.plot = LanePlot()
+        self.changes = _Words(CHANGES)
 
     @property
     def parts(self) -> tuple[QWidget, ...]:
@@ -223,13 +222,13 @@ class LaneRow:
         self.plot.show_lane(lane, visits)
         self.label.clear()
         sides = [one.line.side for one in lane.changes if one.line.side is not None]
-        name = Text(self._look, lane_name(self.kind), weight=MEDIUM, wraps=True)
-        self.label.add(self._beside(name, *(Chip(self._look, side) for side in sides if len(sides) == 1), wide=name))
+        name = Text(lane_name(self.kind), weight=MEDIUM, wraps=True)
+        self.label.add(self._beside(name, *(Chip(side) for side in sides if len(sides) == 1), wide=name))
         self.changes.clear()
         values: list[QWidget] = []
         for one in lane.changes:
             if len(sides) > 1 and one.line.side is not None:
-                values.append(Chip(self._look, one.line.side))
+                values.append(Chip(one.line.side))
             values += self._value(lane, one, VALUE if len(lane.changes) == 1 else VALUE_OF_TWO)
         self.changes.add(self._beside(*values))
         for one in lane.changes:
@@ -239,9 +238,9 @@ class LaneRow:
         """Type follows trust: bold what is read, regular what is to be read with care, small what cannot be."""
         last, words = one.line.points[-1], last_in_words(lane, one)
         if not last.is_reported:
-            return [Text(self._look, words, size=12, tone="ink2")]
-        value = Text(self._look, words, size=size, weight=SEMIBOLD if last.verdict is Verdict.READ else REGULAR)
-        return [value, *([Text(self._look, unit, 13, tone="ink2")] if (unit := unit_beside(self.kind)) else [])]
+            return [Text(words, size=12, tone="ink2")]
+        value = Text(words, size=size, weight=SEMIBOLD if last.verdict is Verdict.READ else REGULAR)
+        return [value, *([Text(unit, 13, tone="ink2")] if (unit := unit_beside(self.kind)) else [])]
 
     def _add_change(self, lane: CourseLane, one: LaneChange, visits: Sequence[CourseVisit], *, has_sides: bool) -> None:
         """Since the first visit that can be read, after its arrow; of a value that is not the last visit's, its day."""
@@ -253,10 +252,8 @@ class LaneRow:
         arrow, who = arrow_of(lane, one.since_first), ""
         if has_sides and one.line.side is not None:
             who = f"{one.line.side.letter} "
-        text = Text(
-            self._look, who + words, 13, MEDIUM if arrow is not None and arrow.is_filled else REGULAR, wraps=True
-        )
-        before = [ChangeArrow(self._look, arrow)] if arrow is not None else []
+        text = Text(who + words, 13, MEDIUM if arrow is not None and arrow.is_filled else REGULAR, wraps=True)
+        before = [ChangeArrow(arrow)] if arrow is not None else []
         self.changes.add(self._beside(*before, text, wide=text))
 
     def _beside(self, *parts: QWidget, wide: QWidget | None = None) -> QWidget:
@@ -264,7 +261,7 @@ class LaneRow:
         room = QWidget()
         row = QHBoxLayout(room)
         row.setContentsMargins(0, 0, 0, 0)
-        row.setSpacing(self._look.theme.px(6))
+        row.setSpacing(px(6))
         for part in parts:
             row.addWidget(part, int(part is wide))
         if wide is None:
@@ -275,16 +272,16 @@ class LaneRow:
 class _Words(Themed):
     """Rows of words under one another, in the middle of the height that there is."""
 
-    def __init__(self, look: ThemeNotifier, width: int) -> None:
+    def __init__(self, width: int) -> None:
         super().__init__()
-        self._look, self._width, self._is_wide = look, width, False
+        self._width, self._is_wide = width, False
         self._parts: list[QWidget] = []
         self._column = QVBoxLayout(self)
         self._column.setContentsMargins(0, 0, 0, 0)
         self._column.setSpacing(0)
         self._column.addStretch(1)
         self._column.addStretch(1)
-        self._on_look_changed()
+        self._apply_theme()
 
     def clear(self) -> None:
         for part in self._parts:
@@ -301,9 +298,9 @@ class _Words(Themed):
     def set_wide(self, is_wide: bool) -> None:
         """Take all the width there is, in place of a column's."""
         self._is_wide = is_wide
-        self._on_look_changed()
+        self._apply_theme()
 
-    def _on_look_changed(self) -> None:
-        width = self._look.theme.px(self._width)
+    def _apply_theme(self) -> None:
+        width = px(self._width)
         self.setMinimumWidth(0 if self._is_wide else width)
         self.setMaximumWidth(WIDEST if self._is_wide else width)

@@ -29,7 +29,7 @@ from app.charts.stride_chart import (
     curves_of_walk,
     usual_range_deg,
 )
-from app.theme.notifier import ThemeNotifier
+from app.theme.current import current_theme
 from app.widgets.themed import Themed
 from core.body import JointKind, Side
 from core.samples import FloatArray
@@ -46,9 +46,9 @@ class CycleChart(Themed):
 
     picked = Signal(float, float)  # percent of the stride, degrees
 
-    def __init__(self, look: ThemeNotifier, kind: JointKind) -> None:
+    def __init__(self, kind: JointKind) -> None:
         super().__init__()
-        self._look, self._kind = look, kind
+        self._kind = kind
         self.range_deg = usual_range_deg(kind, is_about_mean=False)
         self.cycles: Mapping[Side, SideCycle] = {}
         self.band: Band | None = None
@@ -76,7 +76,7 @@ class CycleChart(Themed):
         return usual_range_deg(self._kind, is_about_mean=self.is_about_mean)
 
     def sizeHint(self) -> QSize:
-        px = self._look.theme.px
+        px = current_theme().px
         return QSize(px(self._least[0]), px(self._least[1]))
 
     def minimumSizeHint(self) -> QSize:
@@ -143,7 +143,7 @@ class CycleChart(Themed):
     @property
     def frame(self) -> Frame:
         """The room inside the axes, in px of the widget."""
-        return frame_of(self._look.theme, self.width(), self.height(), self.described)
+        return frame_of(current_theme(), self.width(), self.height(), self.described)
 
     def at(self, percent: float, angle_deg: float) -> QPointF:
         """The place of a point of the chart in px of the widget."""
@@ -153,7 +153,7 @@ class CycleChart(Themed):
     def layout_of_words(self) -> Layout:
         """Where brackets, labels and boxes of hidden curves find room, px of the widget."""
         if self._layout is None:
-            self._layout = layout_on_screen(self._look.theme, self.frame, self.described)
+            self._layout = layout_on_screen(current_theme(), self.frame, self.described)
         return self._layout
 
     def redraw(self) -> None:
@@ -162,7 +162,7 @@ class CycleChart(Themed):
         self.update()
 
     def paintEvent(self, _event: QPaintEvent) -> None:
-        ratio, theme = self.devicePixelRatioF(), self._look.theme
+        ratio, theme = self.devicePixelRatioF(), current_theme()
         if self._picture is None or self._picture.size() != self.size() * ratio:
             self._picture, self._layout = QPixmap(self.size() * ratio), None
             self._picture.setDevicePixelRatio(ratio)
@@ -188,6 +188,6 @@ class CycleChart(Themed):
             frame, at = self.frame, event.position()
             self.picked.emit(min(max(frame.percent_at(at.x()), 0.0), 100.0), frame.angle_at(at.y()))
 
-    def _on_look_changed(self) -> None:
+    def _apply_theme(self) -> None:
         self.updateGeometry()
         self.redraw()

@@ -10,7 +10,7 @@ from app.charts.marks import CurveLabel, Deviation, Gap
 from app.plots.cycle_chart import CycleChart
 from app.plots.cycle_frame import CycleFrame
 from app.summary.comparison import Comparison
-from app.theme.notifier import ThemeNotifier
+from app.theme.current import px
 from app.widgets.themed import Themed
 from app.wording.translation import tr
 from core.body import Joint, JointKind, Side
@@ -27,10 +27,9 @@ class CycleCharts(Themed):
 
     picked = Signal(object, float, float)  # JointKind; percent of the stride, degrees
 
-    def __init__(self, look: ThemeNotifier, reference: ReferenceCurves) -> None:
+    def __init__(self, reference: ReferenceCurves) -> None:
         super().__init__()
-        self._look = look
-        self.hip, self.knee, self.ankle = (CycleFrame(look, CycleChart(look, kind), kind) for kind in JointKind)
+        self.hip, self.knee, self.ankle = (CycleFrame(CycleChart(kind), kind) for kind in JointKind)
         self._frames = (self.hip, self.knee, self.ankle)
         self.hip.hide()
         self._box = QBoxLayout(QBoxLayout.Direction.TopToBottom, self)
@@ -39,7 +38,7 @@ class CycleCharts(Themed):
             self._box.addWidget(frame, 1)
             frame.chart.picked.connect(self._on_picked)
         self.set_band(reference)
-        self._on_look_changed()
+        self._apply_theme()
 
     @property
     def frames(self) -> tuple[CycleFrame, ...]:
@@ -133,5 +132,5 @@ class CycleCharts(Themed):
         kind = next(frame.kind for frame in self._frames if frame.chart is self.sender())
         self.picked.emit(kind, percent, angle_deg)
 
-    def _on_look_changed(self) -> None:
-        self._box.setSpacing(self._look.theme.px(12))
+    def _apply_theme(self) -> None:
+        self._box.setSpacing(px(12))

@@ -29,8 +29,8 @@ from app.summary.walk_figures import (
     why_in_figures,
     why_in_words,
 )
+from app.theme.current import current_theme
 from app.theme.icons import Icon
-from app.theme.notifier import ThemeNotifier
 from app.widgets.card import Card
 from app.widgets.chip import leg_name
 from app.widgets.icons import IconMark
@@ -54,23 +54,23 @@ DOUBTS = {
 class CycleFrame(Card):
     """A chart with its title, the key to its curves, whose the reference is, and what must be known to read it."""
 
-    def __init__(self, look: ThemeNotifier, chart: CycleChart, kind: JointKind) -> None:
+    def __init__(self, chart: CycleChart, kind: JointKind) -> None:
         self.kind = kind
         self.chart = chart
-        self.key = ChartKey(look)
-        self.info = InfoButton(look, tr("Reference"))
-        self._mark = IconMark(look, Icon.DIFFERENCE, size=18)
-        self._note = Text(look, size=12, weight=MEDIUM, wraps=True)
-        self.beside = Text(look, size=12, tone="ink2", wraps=True)
+        self.key = ChartKey()
+        self.info = InfoButton(tr("Reference"))
+        self._mark = IconMark(Icon.DIFFERENCE, size=18)
+        self._note = Text(size=12, weight=MEDIUM, wraps=True)
+        self.beside = Text(size=12, tone="ink2", wraps=True)
         self._walk: tuple[Mapping[Side, SideCycle], Mapping[Side, JointVerdicts], bool] = ({}, {}, False)
         self._reference: Sequence[str] = ()
         self._thin = ""
         self.not_reported: dict[Side, str] = {}  # why, as a sentence
         self.heights_deg: dict[Side, float] = {}
         self._head, self._notes_row = QHBoxLayout(), QHBoxLayout()
-        super().__init__(look, padding=12, spacing=2)
+        super().__init__(padding=12, spacing=2)
         self.setSizePolicy(QSizePolicy.Policy.Expanding, QSizePolicy.Policy.Expanding)
-        self._head.addWidget(Text(look, title_in_words(kind), size=16, weight=SEMIBOLD))
+        self._head.addWidget(Text(title_in_words(kind), size=16, weight=SEMIBOLD))
         self._head.addWidget(self.key, 1)
         self._head.addWidget(self.info)
         self._notes_row.addWidget(self._mark, 0, Qt.AlignmentFlag.AlignTop)
@@ -258,10 +258,10 @@ class CycleFrame(Card):
             notes.append(range_in_words(self.chart.range_deg))
         return notes
 
-    def _on_look_changed(self) -> None:
+    def _apply_theme(self) -> None:
         """The chart reaches the right edge, where there is room for what is turned."""
-        super()._on_look_changed()
-        px = self._look.theme.px
+        super()._apply_theme()
+        px = current_theme().px
         self.column.setContentsMargins(px(12), px(6), px(4), px(2))
         for row in (self._head, self._notes_row):
             row.setContentsMargins(px(4), 0, px(8), 0)

@@ -9,9 +9,9 @@ from PySide6.QtGui import QAccessible, QColor, QFont, QFontMetrics, QPainter, QP
 from PySide6.QtWidgets import QSizePolicy
 
 from app.charts.on_screen import DOT, paint_letter
+from app.theme.current import current_theme
 from app.theme.icons import Icon, paint_icon
 from app.theme.leg_chip import CHIP, paint_chip
-from app.theme.notifier import ThemeNotifier
 from app.widgets.painted_text import CENTRE, PaintedText
 from app.widgets.text import SEMIBOLD
 from app.widgets.themed import Themed
@@ -63,9 +63,8 @@ class DifferencePlot(Themed):
 
     accessible_role = QAccessible.Role.Chart
 
-    def __init__(self, look: ThemeNotifier) -> None:
+    def __init__(self) -> None:
         super().__init__()
-        self._look = look
         self.groups: tuple[DifferenceGroup, ...] = ()
         self.setSizePolicy(QSizePolicy.Policy.Expanding, QSizePolicy.Policy.Fixed)
 
@@ -73,7 +72,7 @@ class DifferencePlot(Themed):
         self.groups = tuple(groups)
         self.setAccessibleName(name)
         self.setAccessibleDescription(in_words)
-        self._on_look_changed()
+        self._apply_theme()
 
     @property
     def reach(self) -> float:
@@ -83,7 +82,7 @@ class DifferencePlot(Themed):
         return 1.1 * max([LEAST_REACH, *filter(math.isfinite, values)])
 
     def sizeHint(self) -> QSize:
-        px = self._look.theme.px
+        px = current_theme().px
         height = sum(px(TITLE) + len(group.rows) * px(ROW) + px(GAP) for group in self.groups) + px(AXIS)
         title = max((QFontMetrics(self._title_font()).horizontalAdvance(g.title) for g in self.groups), default=0)
         return QSize(max(title, self._words_right() + px(LEAST_PLOT + 2 * DOT + MARK)), height)
@@ -97,7 +96,7 @@ class DifferencePlot(Themed):
         return (left + right) / 2 + value / self.reach * (right - left) / 2
 
     def painted_texts(self) -> list[PaintedText]:
-        theme = self._look.theme
+        theme = current_theme()
         texts = []
         for group, top in zip(self.groups, self._tops(), strict=True):
             box = QRectF(0, top, self.width(), theme.px(TITLE))
@@ -115,7 +114,7 @@ class DifferencePlot(Themed):
         return texts
 
     def paintEvent(self, _event: QPaintEvent) -> None:
-        theme = self._look.theme
+        theme = current_theme()
         c, px = theme.colours, theme.px
         painter = QPainter(self)
         painter.setRenderHint(QPainter.RenderHint.Antialiasing)
@@ -130,7 +129,7 @@ class DifferencePlot(Themed):
             text.paint(painter, c)
 
     def _paint_row(self, painter: QPainter, row: DifferenceRow, middle: float) -> None:
-        theme = self._look.theme
+        theme = current_theme()
         c, px = theme.colours, theme.px
         if row.side is not None:
             chip = px(CHIP)
@@ -153,7 +152,7 @@ class DifferencePlot(Themed):
             paint_icon(painter, Icon.DIFFERENCE, QRectF(self.width() - side, middle - side / 2, side, side), c.ink)
 
     def _paint_axis(self, painter: QPainter) -> None:
-        theme = self._look.theme
+        theme = current_theme()
         y = self.height() - theme.px(AXIS)
         left, right = self._plot()
         painter.setPen(theme.pen(theme.colours.control, 1))
@@ -162,7 +161,7 @@ class DifferencePlot(Themed):
             painter.drawLine(QPointF(self.x_of(value), y), QPointF(self.x_of(value), y + theme.px(TICK)))
 
     def _tops(self) -> list[int]:
-        px, top = self._look.theme.px, 0
+        px, top = current_theme().px, 0
         tops = []
         for group in self.groups:
             tops.append(top)
@@ -176,12 +175,12 @@ class DifferencePlot(Themed):
         return [k * step for k in range(-count, count + 1)] if self.groups else []
 
     def _plot(self) -> tuple[float, float]:
-        px = self._look.theme.px
+        px = current_theme().px
         return self._words_right() + px(DOT), self.width() - px(DOT + MARK + 2)
 
     def _words_right(self) -> int:
         """Where the words of the rows end, so that all bars begin at the same place."""
-        px, rows = self._look.theme.px, [row for group in self.groups for row in group.rows]
+        px, rows = current_theme().px, [row for group in self.groups for row in group.rows]
         needs = [
             QFontMetrics(self._row_font(row)).horizontalAdvance(row.words) + (px(CHIP + 8) if row.side else 0)
             for row in rows
@@ -189,12 +188,12 @@ class DifferencePlot(Themed):
         return max(needs, default=0) + px(8)
 
     def _title_font(self) -> QFont:
-        return self._look.theme.font(14, SEMIBOLD)
+        return current_theme().font(14, SEMIBOLD)
 
     def _row_font(self, row: DifferenceRow) -> QFont:
-        return self._look.theme.font(14, SEMIBOLD if row.exceeds else QFont.Weight.Normal)
+        return current_theme().font(14, SEMIBOLD if row.exceeds else QFont.Weight.Normal)
 
-    def _on_look_changed(self) -> None:
+    def _apply_theme(self) -> None:
         self.setFixedHeight(self.sizeHint().height())
         self.setMinimumWidth(self.sizeHint().width())
         self.update()

@@ -8,7 +8,7 @@ from PySide6.QtCore import QEvent, QPointF, QRectF, QSize, Qt
 from PySide6.QtGui import QAccessible, QColor, QFontMetrics, QHelpEvent, QPainter, QPaintEvent
 from PySide6.QtWidgets import QSizePolicy, QToolTip
 
-from app.theme.notifier import ThemeNotifier
+from app.theme.current import current_theme, px
 from app.widgets.painted_text import CENTRE, LEFT, RIGHT, PaintedText
 from app.widgets.text import MEDIUM
 from app.widgets.themed import Themed
@@ -39,20 +39,19 @@ class GroupPlot(Themed):
 
     accessible_role = QAccessible.Role.Chart
 
-    def __init__(self, look: ThemeNotifier) -> None:
+    def __init__(self) -> None:
         super().__init__()
-        self._look = look
         self.lines: tuple[GroupLine, ...] = ()
         self._unit = ""
         self.setSizePolicy(QSizePolicy.Policy.Expanding, QSizePolicy.Policy.Fixed)
-        self._on_look_changed()
+        self._apply_theme()
 
     def show_groups(self, lines: Sequence[GroupLine], unit: str, name: str, in_words: str) -> None:
         """Draw these; a reader of screens gets `name` and `in_words`."""
         self.lines, self._unit = tuple(lines), unit
         self.setAccessibleName(name)
         self.setAccessibleDescription(in_words)
-        self._on_look_changed()
+        self._apply_theme()
 
     @property
     def axis(self) -> tuple[float, float, float]:
@@ -85,18 +84,18 @@ class GroupPlot(Themed):
         return left + (value - low) / (high - low) * (right - left)
 
     def sizeHint(self) -> QSize:
-        px = self._look.theme.px
+        px = current_theme().px
         width = self._label_width() + px(LEAST_PLOT) + self._count_width() + 2 * px(GAP)
         return QSize(width, len(self.lines) * px(ROW) + px(AXIS))
 
     def minimumSizeHint(self) -> QSize:
         return QSize(
-            self._look.theme.px(LEAST_PLOT) + self._count_width() + 2 * self._look.theme.px(GAP),
+            px(LEAST_PLOT) + self._count_width() + 2 * px(GAP),
             self.sizeHint().height(),
         )
 
     def painted_texts(self) -> list[PaintedText]:
-        theme = self._look.theme
+        theme = current_theme()
         px, texts, font = theme.px, [], theme.font(14, MEDIUM)
         label, count = self._label_width(), self._count_width()
         metrics = QFontMetrics(font)
@@ -118,7 +117,7 @@ class GroupPlot(Themed):
     def paintEvent(self, _event: QPaintEvent) -> None:
         if not self.lines:
             return
-        theme = self._look.theme
+        theme = current_theme()
         c, px = theme.colours, theme.px
         painter = QPainter(self)
         painter.setRenderHint(QPainter.RenderHint.Antialiasing)
@@ -139,7 +138,7 @@ class GroupPlot(Themed):
     def event(self, event: QEvent) -> bool:
         """Show the whole of a name that is cut, under the mouse."""
         if isinstance(event, QHelpEvent) and event.type() is QEvent.Type.ToolTip:
-            row = int(event.pos().y() // self._look.theme.px(ROW))
+            row = int(event.pos().y() // px(ROW))
             is_label = event.pos().x() <= self._label_width() and 0 <= row < len(self.lines)
             QToolTip.showText(event.globalPos(), self.lines[row].label if is_label else "", self)
             return True
@@ -147,7 +146,7 @@ class GroupPlot(Themed):
 
     def _paint_line(self, painter: QPainter, line: GroupLine, y: float) -> None:
         """A filled dot has an interval; without one, of too few sessions, it is hollow."""
-        theme = self._look.theme
+        theme = current_theme()
         c, cap = theme.colours, theme.px(CAP)
         painter.setPen(theme.pen(c.ink, 1.75))
         if math.isfinite(line.half):
@@ -169,21 +168,21 @@ class GroupPlot(Themed):
         return figure_text(value, f".{decimals}f").replace("-", MINUS)
 
     def _plot(self) -> tuple[float, float]:
-        inset = self._look.theme.px(GAP)
+        inset = px(GAP)
         return self._label_width() + inset, max(
             self.width() - self._count_width() - inset, self._label_width() + 2 * inset
         )
 
     def _label_width(self) -> int:
-        metrics = QFontMetrics(self._look.theme.font(14, MEDIUM))
+        metrics = QFontMetrics(current_theme().font(14, MEDIUM))
         widest = max((metrics.horizontalAdvance(line.label) for line in self.lines), default=0)
         return min(widest + 1, int(self.width() * MOST_LABEL_SHARE))
 
     def _count_width(self) -> int:
-        metrics = QFontMetrics(self._look.theme.font(14))
+        metrics = QFontMetrics(current_theme().font(14))
         return max((metrics.horizontalAdvance(line.count) for line in self.lines), default=0) + 1
 
-    def _on_look_changed(self) -> None:
+    def _apply_theme(self) -> None:
         self.setFixedHeight(self.sizeHint().height())
         self.setMinimumWidth(self.minimumSizeHint().width())
         self.update()

@@ -18,8 +18,8 @@ from app.charts.axes import (
 )
 from app.plots.angle_chart import AngleChart, Curve
 from app.plots.phase_lanes import PhaseFrame
+from app.theme.current import px
 from app.theme.icons import Icon
-from app.theme.notifier import ThemeNotifier
 from app.widgets.card import Card
 from app.widgets.chip import SideKey
 from app.widgets.icons import IconMark
@@ -48,20 +48,18 @@ class JointCharts(Themed):
 
     view_changed = Signal(bool, str)
 
-    def __init__(self, look: ThemeNotifier) -> None:
+    def __init__(self) -> None:
         super().__init__()
-        self._look = look
         self._time_s: FloatArray = np.zeros(0)
         self._cursor_s: float | None = None
         self._name = ""
         self.setFocusPolicy(Qt.FocusPolicy.StrongFocus)
         self.hip, self.knee, self.ankle = (
-            ChartFrame(look, AngleChart(look, *USUAL_DEG[kind], has_times=kind is JointKind.ANKLE), kind)
-            for kind in JointKind
+            ChartFrame(AngleChart(*USUAL_DEG[kind], has_times=kind is JointKind.ANKLE), kind) for kind in JointKind
         )
         self.frames = (self.hip, self.knee, self.ankle)
         self.hip.hide()
-        self.phases = PhaseFrame(look)
+        self.phases = PhaseFrame()
         self._event_rows: IntArray = np.zeros(0, dtype=np.int64)
         self._column = QVBoxLayout(self)
         self._column.setContentsMargins(0, 0, 0, 0)
@@ -76,7 +74,7 @@ class JointCharts(Themed):
         for frame in (self.hip, self.ankle):
             frame.chart.link_time(self.knee.chart)
         self.knee.chart.view_moved.connect(self._on_view_moved)
-        self._on_look_changed()
+        self._apply_theme()
 
     @property
     def visible_s(self) -> tuple[float, float]:
@@ -120,7 +118,7 @@ class JointCharts(Themed):
         self.hip.setVisible(has_hips)
         for frame in self.frames:
             frame.set_of_three(has_hips)
-        self._on_look_changed()
+        self._apply_theme()
         self.hip.set_moment_shown(has_hips)  # once is enough, on top
         self.knee.set_moment_shown(not has_hips)
         what = (
@@ -242,26 +240,26 @@ class JointCharts(Themed):
         times = {name: figure_text(time_s, ".1f").replace("-", MINUS) for name, time_s in shown.items()}
         self.view_changed.emit(self.is_whole, stated.format_map(times))
 
-    def _on_look_changed(self) -> None:
-        self._column.setSpacing(self._look.theme.px(12 if self.hip.isHidden() else 6))
+    def _apply_theme(self) -> None:
+        self._column.setSpacing(px(12 if self.hip.isHidden() else 6))
 
 
 class ChartFrame(Card):
     """A chart with its title, its sign in words, and what is at the reading line."""
 
-    def __init__(self, look: ThemeNotifier, chart: AngleChart, kind: JointKind) -> None:
+    def __init__(self, chart: AngleChart, kind: JointKind) -> None:
         self.kind = kind
         self.chart = chart
         self._is_narrow = self._is_wide = self._is_of_three = False
-        self._title = Text(look, title_in_words(kind), size=16, weight=SEMIBOLD)
-        self._sign = Text(look, sign_in_words(kind), size=12, tone="ink2")
-        self._simulated = Text(look, tr("SIMULATED"), size=12, weight=SEMIBOLD)
-        self._moment = Text(look, size=14, tone="ink2")
-        self._keys = {side: SideKey(look, side) for side in Side}
-        self._values = {side: Text(look, size=15, weight=SEMIBOLD, tone=f"{side}_text") for side in Side}
-        self._wide_mark = IconMark(look, Icon.DIFFERENCE, size=18)
-        self._wide = Text(look, size=12, weight=MEDIUM)
-        super().__init__(look, spacing=4)
+        self._title = Text(title_in_words(kind), size=16, weight=SEMIBOLD)
+        self._sign = Text(sign_in_words(kind), size=12, tone="ink2")
+        self._simulated = Text(tr("SIMULATED"), size=12, weight=SEMIBOLD)
+        self._moment = Text(size=14, tone="ink2")
+        self._keys = {side: SideKey(side) for side in Side}
+        self._values = {side: Text(size=15, weight=SEMIBOLD, tone=f"{side}_text") for side in Side}
+        self._wide_mark = IconMark(Icon.DIFFERENCE, size=18)
+        self._wide = Text(size=12, weight=MEDIUM)
+        super().__init__(spacing=4)
         self.setSizePolicy(QSizePolicy.Policy.Expanding, QSizePolicy.Policy.Expanding)
         head = QGridLayout()
         head.setHorizontalSpacing(8)
@@ -285,7 +283,7 @@ class ChartFrame(Card):
         self.column.addWidget(chart, 1)
         self.set_moment_shown(kind is JointKind.KNEE)
         self._set_widened()
-        self._on_look_changed()
+        self._apply_theme()
 
     def set_room(self, *, is_narrow: bool, is_wide: bool) -> None:
         """Put the readings under the title where they do not fit beside it and the words of a widened axis."""
@@ -296,7 +294,7 @@ class ChartFrame(Card):
         """Let it be lower, where three charts share the room of two."""
         self._is_of_three = is_of_three
         self.chart.set_of_three(is_of_three)
-        self._on_look_changed()
+        self._apply_theme()
 
     def set_moment_shown(self, is_shown: bool) -> None:
         self._moment.setVisible(is_shown)
@@ -363,12 +361,12 @@ class ChartFrame(Card):
         self._wide_mark.setVisible(self.chart.is_widened)
         self._place()
 
-    def _on_look_changed(self) -> None:
-        super()._on_look_changed()
+    def _apply_theme(self) -> None:
+        super()._apply_theme()
         if self._is_of_three:
-            side, narrow = self._look.theme.px(16), self._look.theme.px(6)
+            side, narrow = px(16), px(6)
             self.column.setContentsMargins(side, narrow, side, narrow)
-            self.column.setSpacing(self._look.theme.px(2))
+            self.column.setSpacing(px(2))
         self._reserve_room()
 
 

@@ -12,7 +12,7 @@ from PySide6.QtWidgets import QSizePolicy
 from app.summary.course_lanes import CourseLane, CourseVisit, LaneLine, LanePoint
 from app.summary.course_words import day_of
 from app.summary.goals import goal_mark
-from app.theme.notifier import ThemeNotifier
+from app.theme.current import current_theme, px
 from app.theme.theme import Theme
 from app.widgets.painted_text import CENTRE, LEFT, RIGHT, PaintedText
 from app.widgets.themed import Themed
@@ -49,9 +49,8 @@ class DatedPlot(Themed):
     pointed = Signal(int)
     opened = Signal(int)
 
-    def __init__(self, look: ThemeNotifier) -> None:
+    def __init__(self) -> None:
         super().__init__()
-        self._look = look
         self.visits: tuple[CourseVisit, ...] = ()
         self._number: int | None = None
         self._places: list[float] = []
@@ -61,7 +60,7 @@ class DatedPlot(Themed):
     @property
     def plot(self) -> QRectF:
         """Where values lie."""
-        px = self._look.theme.px
+        px = current_theme().px
         return QRectF(0, px(OVER), self.width(), self.height() - px(OVER) - px(UNDER))
 
     def point_at(self, number: int | None) -> None:
@@ -72,13 +71,13 @@ class DatedPlot(Themed):
 
     def x_of(self, number: int) -> float:
         """The place of a visit: by its day, and beside one that is too near to be distinguished from it."""
-        seen = (self.visits, self.width(), self._look.theme.scale)
+        seen = (self.visits, self.width(), current_theme().scale)
         if self._places_of != seen:
             self._places_of, self._places = seen, self._found_places()
         return self._places[number]
 
     def _found_places(self) -> list[float]:
-        plot, px = self.plot, self._look.theme.px
+        plot, px = self.plot, current_theme().px
         days = np.array([visit.day.toordinal() for visit in self.visits], float)
         room, span = plot.width() - 2 * px(INSET), max(days[-1] - days[0], 1.0)
         steps = np.arange(len(days)) * min(px(APART), room / max(len(days) - 1, 1))
@@ -100,11 +99,11 @@ class DatedPlot(Themed):
     def paint_pointer(self, painter: QPainter) -> None:
         """A line at the visit that is pointed at."""
         if self._number is not None:
-            painter.setPen(self._look.theme.pen(self._look.theme.colours.control, 1))
+            painter.setPen(current_theme().pen(current_theme().colours.control, 1))
             x = self.x_of(self._number)
             painter.drawLine(QPointF(x, 0), QPointF(x, self.height()))
 
-    def _on_look_changed(self) -> None:
+    def _apply_theme(self) -> None:
         self.updateGeometry()
         self.update()
 
@@ -112,8 +111,8 @@ class DatedPlot(Themed):
 class LanePlot(DatedPlot):
     """The values of a lane, over its goals and, between the legs, where healthy people are."""
 
-    def __init__(self, look: ThemeNotifier) -> None:
-        super().__init__(look)
+    def __init__(self) -> None:
+        super().__init__()
         self.lane: CourseLane | None = None
         self.setSizePolicy(QSizePolicy.Policy.Expanding, QSizePolicy.Policy.Fixed)
 
@@ -122,7 +121,7 @@ class LanePlot(DatedPlot):
         self.update()
 
     def sizeHint(self) -> QSize:
-        return QSize(self._look.theme.px(200), self._look.theme.px(LEAST_HEIGHT))
+        return QSize(px(200), px(LEAST_HEIGHT))
 
     def minimumSizeHint(self) -> QSize:
         return self.sizeHint()
@@ -136,7 +135,7 @@ class LanePlot(DatedPlot):
         """The goals' words over their lines, under those too near the top, at the end that is freer."""
         if self.lane is None:
             return []
-        theme, texts = self._look.theme, []
+        theme, texts = current_theme(), []
         for goal in self.lane.goals:
             line, y = theme.px(GOAL_LINE), self.y_of(goal.value)
             top = y - line if y >= line else y
@@ -148,7 +147,7 @@ class LanePlot(DatedPlot):
     def paintEvent(self, _event: QPaintEvent) -> None:
         if self.lane is None:
             return
-        theme, plot = self._look.theme, self.plot
+        theme, plot = current_theme(), self.plot
         painter = QPainter(self)
         painter.setRenderHint(QPainter.RenderHint.Antialiasing)
         if self.lane.healthy is not None:
@@ -173,7 +172,7 @@ class LanePlot(DatedPlot):
 
     def _paint_line(self, painter: QPainter, line: LaneLine) -> None:
         """Adjacent points are joined; what lies beyond a visit that cannot be read is not, and that has a tick."""
-        theme = self._look.theme
+        theme = current_theme()
         colour = QColor(theme.colours.ink) if line.side is None else theme.curve(line.side)
         painter.setPen(theme.side_pen(line.side, 2) if line.side is not None else theme.pen(colour, 2))
         for one, other in pairwise(line.points):
@@ -199,8 +198,8 @@ class LanePlot(DatedPlot):
 class DateAxis(DatedPlot):
     """The day of every visit; those that would touch are left out, the first and the last stay."""
 
-    def __init__(self, look: ThemeNotifier) -> None:
-        super().__init__(look)
+    def __init__(self) -> None:
+        super().__init__()
         self.setSizePolicy(QSizePolicy.Policy.Expanding, QSizePolicy.Policy.Fixed)
 
     def show_visits(self, visits: Sequence[CourseVisit]) -> None:
@@ -208,15 +207,15 @@ class DateAxis(DatedPlot):
         self.update()
 
     def sizeHint(self) -> QSize:
-        return QSize(self._look.theme.px(200), self._look.theme.px(DATES))
+        return QSize(px(200), px(DATES))
 
     def minimumSizeHint(self) -> QSize:
         return self.sizeHint()
 
     def labels(self) -> dict[int, PaintedText]:
         """The dates that find room, by the number of their visit."""
-        font = self._look.theme.font(12)
-        metrics, gap, last = QFontMetrics(font), self._look.theme.px(8), len(self.visits) - 1
+        font = current_theme().font(12)
+        metrics, gap, last = QFontMetrics(font), px(8), len(self.visits) - 1
         kept: dict[int, PaintedText] = {}
         for number in sorted(range(len(self.visits)), key=lambda k: (k not in (0, last), k != last, k)):
             words = day_of(number, self.visits)
@@ -233,7 +232,7 @@ class DateAxis(DatedPlot):
     def paintEvent(self, _event: QPaintEvent) -> None:
         painter = QPainter(self)
         for text in self.painted_texts():
-            text.paint(painter, self._look.theme.colours)
+            text.paint(painter, current_theme().colours)
 
 
 def _goal_pen(theme: Theme) -> QPen:

@@ -14,8 +14,8 @@ from PySide6.QtWidgets import QGridLayout, QHBoxLayout, QSizePolicy, QWidget
 
 from app.charts.axes import AXIS_WIDTH, RIGHT_MARGIN
 from app.charts.marks import stretches
+from app.theme.current import current_theme, px
 from app.theme.leg_chip import CHIP, paint_chip
-from app.theme.notifier import ThemeNotifier
 from app.theme.theme import Theme
 from app.widgets.card import Card
 from app.widgets.chip import Chip
@@ -84,20 +84,20 @@ class Lane:
 class PhaseFrame(Card):
     """Both lanes with their legend, and what is shown at the reading line."""
 
-    def __init__(self, look: ThemeNotifier) -> None:
-        self.lanes = PhaseLanes(look)
-        self._simulated = Text(look, tr("SIMULATED"), size=12, weight=SEMIBOLD)
-        self._chips = {side: Chip(look, side) for side in Side}
-        self._readings = {side: Text(look, size=14, weight=MEDIUM, tone=f"{side}_text") for side in Side}
+    def __init__(self) -> None:
+        self.lanes = PhaseLanes()
+        self._simulated = Text(tr("SIMULATED"), size=12, weight=SEMIBOLD)
+        self._chips = {side: Chip(side) for side in Side}
+        self._readings = {side: Text(size=14, weight=MEDIUM, tone=f"{side}_text") for side in Side}
         self._title, self._legend, self._reading = QHBoxLayout(), QHBoxLayout(), QHBoxLayout()
         self._head = QGridLayout()
-        super().__init__(look, spacing=6)
+        super().__init__(spacing=6)
         self.setSizePolicy(QSizePolicy.Policy.Expanding, QSizePolicy.Policy.Fixed)
         for phase, word in LEGEND:
-            self._legend.addWidget(Swatch(look, phase))
-            self._legend.addWidget(Text(look, tr(word), size=12, tone="ink2"))
+            self._legend.addWidget(Swatch(phase))
+            self._legend.addWidget(Text(tr(word), size=12, tone="ink2"))
         self._legend.addStretch(1)
-        self._title.addWidget(Text(look, tr("Gait phases"), size=14, weight=SEMIBOLD))
+        self._title.addWidget(Text(tr("Gait phases"), size=14, weight=SEMIBOLD))
         self._title.addWidget(self._simulated)
         self._reading.addStretch(1)
         for side in Side:
@@ -180,9 +180,9 @@ class PhaseFrame(Card):
             )
             label.setMinimumWidth(widest if side in self.lanes.lanes else 0)
 
-    def _on_look_changed(self) -> None:
-        super()._on_look_changed()
-        px = self._look.theme.px
+    def _apply_theme(self) -> None:
+        super()._apply_theme()
+        px = current_theme().px
         for part in (self._title, self._legend):
             part.setSpacing(px(8))
         self._reading.setSpacing(px(8))
@@ -200,9 +200,8 @@ class PhaseLanes(QWidget):
     zoomed = Signal(float)  # share of the time in sight to keep
     dragged = Signal(float)  # share of the time in sight to go on by
 
-    def __init__(self, look: ThemeNotifier) -> None:
+    def __init__(self) -> None:
         super().__init__()
-        self._look = look
         self.lanes: Mapping[Side, Lane] = {}
         self._visible_s = (0.0, 1.0)
         self._cursor_s: float | None = None
@@ -223,7 +222,7 @@ class PhaseLanes(QWidget):
         self.update()
 
     def sizeHint(self) -> QSize:
-        px, count = self._look.theme.px, max(len(self.lanes), 1)
+        px, count = current_theme().px, max(len(self.lanes), 1)
         return QSize(px(320), count * px(LANE) + (count - 1) * px(BETWEEN))
 
     def minimumSizeHint(self) -> QSize:
@@ -231,18 +230,18 @@ class PhaseLanes(QWidget):
 
     def area(self, side: Side) -> QRectF:
         """The lane of a leg in px of the widget."""
-        px = self._look.theme.px
+        px = current_theme().px
         top = list(self.lanes).index(side) * (px(LANE) + px(BETWEEN))
         return QRectF(px(AXIS_WIDTH), top, self.width() - px(AXIS_WIDTH) - px(RIGHT_MARGIN), px(LANE))
 
     def x_of(self, time_s: FloatArray) -> FloatArray:
         first, last = self._visible_s
-        px = self._look.theme.px
+        px = current_theme().px
         width = self.width() - px(AXIS_WIDTH) - px(RIGHT_MARGIN)
         return px(AXIS_WIDTH) + width * (time_s - first) / (last - first)
 
     def paintEvent(self, _event: QPaintEvent) -> None:
-        theme = self._look.theme
+        theme = current_theme()
         painter = QPainter(self)
         painter.setRenderHint(QPainter.RenderHint.Antialiasing)
         for side, lane in self.lanes.items():
@@ -265,7 +264,7 @@ class PhaseLanes(QWidget):
         self._held_x = None
 
     def mouseMoveEvent(self, event: QMouseEvent) -> None:
-        x, px = event.position().x(), self._look.theme.px
+        x, px = event.position().x(), current_theme().px
         width = self.width() - px(AXIS_WIDTH) - px(RIGHT_MARGIN)
         if self._held_x is not None:
             self.dragged.emit((self._held_x - x) / width)
@@ -284,19 +283,19 @@ class PhaseLanes(QWidget):
         left, right = self.x_of(lane.start_s[shown]), self.x_of(lane.end_s[shown])
         phases = [PHASES[k] for k in lane.run_phase[shown]]
         known = [phase is not Phase.UNKNOWN for phase in phases]
-        if any(known) and float(np.mean((right - left)[known])) < LEAST_PHASE_PX * self._look.theme.scale:
+        if any(known) and float(np.mean((right - left)[known])) < LEAST_PHASE_PX * current_theme().scale:
             self._paint_too_narrow(painter, left, right, known, area)
             return
-        gap = GAP_PX * self._look.theme.scale / 2
+        gap = GAP_PX * current_theme().scale / 2
         for phase, x0, x1 in zip(phases, left.tolist(), right.tolist(), strict=True):
             box = QRectF(x0 + gap, area.top(), max(x1 - x0 - 2 * gap, 1.0), area.height())
-            paint_phase(painter, phase, box, full, pale, self._look.theme)
+            paint_phase(painter, phase, box, full, pale, current_theme())
 
     def _paint_too_narrow(
         self, painter: QPainter, left: FloatArray, right: FloatArray, known: list[bool], area: QRectF
     ) -> None:
         """Where the phases are known, in one piece each, with what to do."""
-        theme = self._look.theme
+        theme = current_theme()
         painter.setFont(theme.font(12))
         for start, last in stretches(known):
             box = QRectF(left[start], area.top(), right[last] - left[start], area.height())
@@ -314,16 +313,16 @@ class PhaseLanes(QWidget):
 class Swatch(QWidget):
     """How one phase looks, in grey."""
 
-    def __init__(self, look: ThemeNotifier, phase: Phase) -> None:
+    def __init__(self, phase: Phase) -> None:
         super().__init__()
-        self._look, self._phase = look, phase
+        self._phase = phase
         self.setSizePolicy(QSizePolicy.Policy.Fixed, QSizePolicy.Policy.Fixed)
 
     def sizeHint(self) -> QSize:
-        return QSize(self._look.theme.px(22), self._look.theme.px(12))
+        return QSize(px(22), px(12))
 
     def paintEvent(self, _event: QPaintEvent) -> None:
-        theme = self._look.theme
+        theme = current_theme()
         painter = QPainter(self)
         painter.setRenderHint(QPainter.RenderHint.Antialiasing)
         c = theme.colours

@@ -10,7 +10,7 @@ from PySide6.QtGui import QAccessible, QColor, QFont, QPainter, QPaintEvent, QPe
 from PySide6.QtWidgets import QSizePolicy
 
 from app.summary.diagnostics import parts_deg_s
-from app.theme.notifier import ThemeNotifier
+from app.theme.current import current_theme
 from app.widgets.painted_text import CENTRE, PaintedText
 from app.widgets.text import MEDIUM
 from app.widgets.themed import Themed
@@ -32,9 +32,8 @@ class ProjectedRatesPlot(Themed):
 
     accessible_role = QAccessible.Role.Chart
 
-    def __init__(self, look: ThemeNotifier) -> None:
+    def __init__(self) -> None:
         super().__init__()
-        self._look = look
         self._side = Side.LEFT
         self._shown: ProjectedRates | None = None
         self.setSizePolicy(QSizePolicy.Policy.Expanding, QSizePolicy.Policy.Fixed)
@@ -44,7 +43,7 @@ class ProjectedRatesPlot(Themed):
         self._shown, self._side = shown, side
         self.setAccessibleName(tr("Off-axis rotation"))
         self.setAccessibleDescription(". ".join(self._titles()) if shown is not None else "")
-        self._on_look_changed()
+        self._apply_theme()
 
     @property
     def reach_deg_s(self) -> int:
@@ -63,13 +62,13 @@ class ProjectedRatesPlot(Themed):
 
     def near_pen(self) -> QPen:
         """The pen of the nearer sensor's curve."""
-        return self._look.theme.side_pen(self._side, CURVE_PX)
+        return current_theme().side_pen(self._side, CURVE_PX)
 
     def far_pen(self) -> QPen:
-        return self._look.theme.pen(self._look.theme.colours.ink, OTHER_PX)
+        return current_theme().pen(current_theme().colours.ink, OTHER_PX)
 
     def sizeHint(self) -> QSize:
-        px = self._look.theme.px
+        px = current_theme().px
         width = px(2 * LEAST_PANEL + BETWEEN)
         return QSize(width, self._height_for(width))
 
@@ -81,13 +80,13 @@ class ProjectedRatesPlot(Themed):
         self.setFixedHeight(self._height_for(event.size().width()))
 
     def _height_for(self, width: int) -> int:
-        px = self._look.theme.px
+        px = current_theme().px
         return min((width - px(BETWEEN)) // 2, px(MOST_PANEL)) + px(TITLE + SCALE)
 
     def painted_texts(self) -> list[PaintedText]:
         if self._shown is None:
             return []
-        theme = self._look.theme
+        theme = current_theme()
         texts = []
         for (panel, title), tone in zip(zip(self._panels(), self._titles(), strict=True), ("ink", "ink2"), strict=True):
             box = QRectF(panel.left(), 0, panel.width(), theme.px(TITLE - 4))
@@ -100,7 +99,7 @@ class ProjectedRatesPlot(Themed):
     def paintEvent(self, _event: QPaintEvent) -> None:
         if self._shown is None:
             return
-        theme = self._look.theme
+        theme = current_theme()
         c = theme.colours
         painter = QPainter(self)
         painter.setRenderHint(QPainter.RenderHint.Antialiasing)
@@ -130,7 +129,7 @@ class ProjectedRatesPlot(Themed):
         return pg.functions.arrayToQPolygonF(panel.center().x() + scale * x, panel.center().y() - scale * y)
 
     def _panels(self) -> tuple[QRectF, QRectF]:
-        px = self._look.theme.px
+        px = current_theme().px
         side = min((self.width() - px(BETWEEN)) / 2, self.height() - px(TITLE + SCALE)) - 1
         return QRectF(0.5, px(TITLE), side, side), QRectF(side + px(BETWEEN) + 0.5, px(TITLE), side, side)
 
@@ -143,9 +142,9 @@ class ProjectedRatesPlot(Themed):
         )
 
     def _font(self, weight: QFont.Weight) -> QFont:
-        return self._look.theme.font(14, weight)
+        return current_theme().font(14, weight)
 
-    def _on_look_changed(self) -> None:
+    def _apply_theme(self) -> None:
         self.setMinimumWidth(self.sizeHint().width())
         self.setFixedHeight(self._height_for(max(self.width(), self.minimumWidth())))
         self.update()

@@ -11,8 +11,8 @@ from PySide6.QtWidgets import QHBoxLayout, QSizePolicy
 
 from app.summary.drawn_legs import HALF_WIDTHS_M
 from app.summary.mean_legs import MeanLegs, ThinBend, bent_by
+from app.theme.current import current_theme, px
 from app.theme.leg_chip import paint_chip
-from app.theme.notifier import ThemeNotifier
 from app.widgets.card import Card
 from app.widgets.limb import limb_outline
 from app.widgets.painted_text import LEFT, PaintedText
@@ -45,17 +45,17 @@ class StrideLegs(Card):
 
     moved = Signal(float)
 
-    def __init__(self, look: ThemeNotifier) -> None:
-        super().__init__(look, padding=12, spacing=4)
+    def __init__(self) -> None:
+        super().__init__(padding=12, spacing=4)
         self.percent = 0.0
         self.setFocusPolicy(Qt.FocusPolicy.StrongFocus)
-        self._where = Text(look, size=12, tone="ink2")
+        self._where = Text(size=12, tone="ink2")
         head = QHBoxLayout()
-        head.addWidget(Text(look, tr("Legs"), size=16, weight=SEMIBOLD))
+        head.addWidget(Text(tr("Legs"), size=16, weight=SEMIBOLD))
         head.addStretch(1)
         head.addWidget(self._where)
-        self.picture = _Picture(look)
-        self.note = Text(look, tr(NO_LEGS), size=12, tone="ink2", wraps=True)
+        self.picture = _Picture()
+        self.note = Text(tr(NO_LEGS), size=12, tone="ink2", wraps=True)
         self.column.addLayout(head)
         self.column.addWidget(self.note)
         self.column.addWidget(self.picture, 1)
@@ -148,9 +148,8 @@ class StrideLegs(Card):
 class _Picture(Themed):
     """Left filled, right outlined and dashed on top; the thin line's shank and foot in a line alone."""
 
-    def __init__(self, look: ThemeNotifier) -> None:
+    def __init__(self) -> None:
         super().__init__()
-        self._look = look
         self.legs: MeanLegs | None = None
         self.knee_deg: Mapping[Side, FloatArray] = {}
         self.thin: Mapping[Side, ThinBend] = {}
@@ -159,8 +158,8 @@ class _Picture(Themed):
         self.setSizePolicy(QSizePolicy.Policy.Expanding, QSizePolicy.Policy.Expanding)
 
     def sizeHint(self) -> QSize:
-        px = self._look.theme.px
-        words = QFontMetrics(self._look.theme.font(SMALL)).horizontalAdvance(tr("not reported"))
+        px = current_theme().px
+        words = QFontMetrics(current_theme().font(SMALL)).horizontalAdvance(tr("not reported"))
         return QSize(max(px(LEAST_PICTURE[0]), px(CHIP + CHIP_GAP) + words + 1), px(LEAST_PICTURE[1]))
 
     def minimumSizeHint(self) -> QSize:
@@ -182,14 +181,12 @@ class _Picture(Themed):
             return
         painter = QPainter(self)
         painter.setRenderHint(QPainter.RenderHint.Antialiasing)
-        rows = self._look.theme.px(ROW) * len(self.sides)
+        rows = px(ROW) * len(self.sides)
         self._paint_legs(painter, self.legs, QRectF(0, 0, self.width(), self.height() - rows))
         for side, text in self._texts().items():
-            top = text.box.top() + self._look.theme.px((ROW - CHIP) / 2)
-            paint_chip(
-                painter, QRectF(0, top, self._look.theme.px(CHIP), self._look.theme.px(CHIP)), side, self._look.theme
-            )
-            text.paint(painter, self._look.theme.colours)
+            top = text.box.top() + px((ROW - CHIP) / 2)
+            paint_chip(painter, QRectF(0, top, px(CHIP), px(CHIP)), side, current_theme())
+            text.paint(painter, current_theme().colours)
 
     def painted_texts(self) -> list[PaintedText]:
         return list(self._texts().values())
@@ -198,18 +195,18 @@ class _Picture(Themed):
         """What is beneath the legs: each measured knee at the cursor."""
         if self.legs is None:
             return {}
-        px, readings = self._look.theme.px, self.readings()
+        px, readings = current_theme().px, self.readings()
         left, first = px(CHIP) + px(CHIP_GAP), self.height() - px(ROW) * len(self.sides)
         found = {}
         for number, side in enumerate(self.sides):
             words = readings.get(side, tr("not reported"))
-            font = self._look.theme.font(13, MEDIUM) if side in readings else self._look.theme.font(SMALL)
+            font = current_theme().font(13, MEDIUM) if side in readings else current_theme().font(SMALL)
             box = QRectF(left, first + number * px(ROW), self.width() - left, px(ROW))
             found[side] = PaintedText(words, box, font, "ink" if side in readings else "ink2", LEFT)
         return found
 
     def _paint_legs(self, painter: QPainter, legs: MeanLegs, room: QRectF) -> None:
-        theme, px = self._look.theme, self._look.theme.px
+        theme, px = current_theme(), current_theme().px
         poses = {side: legs.pose_m(side, self.percent) for side in legs.points_m}
         points = np.concatenate([points_m.reshape(-1, 2) for points_m in legs.points_m.values()])
         above = 0.0 if legs.tilt_rad is None else PELVIS_M + PELVIS_HALF_M
@@ -244,14 +241,14 @@ class _Picture(Themed):
             float(np.interp(self.percent, np.arange(len(one)), one)) for one in (bend.knee_deg, bend.ankle_deg)
         )
         then = bent_by(pose_m, knee, 0.0 if math.isnan(ankle) else ankle)
-        painter.setPen(self._look.theme.pen(self._look.theme.text(side), 1.25))
+        painter.setPen(current_theme().pen(current_theme().text(side), 1.25))
         ends = [at(point) for point in (then[:3] if math.isnan(ankle) else then) if np.isfinite(point).all()]
         for first, last in pairwise(ends):
             painter.drawLine(first, last)
 
     def _paint_pelvis(self, painter: QPainter, hip: QPointF, tilt_rad: float, scale: float) -> None:
         """From the hips up, leaning as it is tilted from standing; behind the legs, for it is no leg's."""
-        theme = self._look.theme
+        theme = current_theme()
         up = scale * PELVIS_M
         top = QPointF(hip.x() + up * math.sin(tilt_rad), hip.y() - up * math.cos(tilt_rad))
         painter.setPen(theme.pen(theme.colours.control, 2))
@@ -259,7 +256,7 @@ class _Picture(Themed):
         painter.drawPolygon(limb_outline(hip, top, scale * PELVIS_HALF_M, scale * PELVIS_HALF_M))
 
     def _paint_leg(self, painter: QPainter, side: Side, points: list[QPointF], scale: float) -> None:
-        theme = self._look.theme
+        theme = current_theme()
         painter.setPen(theme.side_pen(side, 1.5))
         painter.setBrush(theme.pale(side) if side is Side.LEFT else Qt.BrushStyle.NoBrush)
         for k, (first, last) in enumerate(HALF_WIDTHS_M):
@@ -270,6 +267,6 @@ class _Picture(Themed):
             if math.isfinite(joint.x()):
                 painter.drawEllipse(joint, theme.px(3), theme.px(3))
 
-    def _on_look_changed(self) -> None:
+    def _apply_theme(self) -> None:
         self.updateGeometry()
         self.update()

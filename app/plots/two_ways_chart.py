@@ -11,7 +11,7 @@ from PySide6.QtWidgets import QSizePolicy
 from app.charts.axes import AXIS_WIDTH, KNEE_DEG, RIGHT_MARGIN, USUAL_DEG, angle_in_words, range_for
 from app.plots.angle_chart import DENSE_FROM, runs
 from app.plots.thinning import thin
-from app.theme.notifier import ThemeNotifier
+from app.theme.current import current_theme
 from app.widgets.painted_text import CENTRE, RIGHT, PaintedText
 from app.widgets.themed import Themed
 from app.wording.translation import figure_text, tr
@@ -33,9 +33,8 @@ class TwoWaysChart(Themed):
 
     accessible_role = QAccessible.Role.Chart
 
-    def __init__(self, look: ThemeNotifier) -> None:
+    def __init__(self) -> None:
         super().__init__()
-        self._look = look
         self._side = Side.LEFT
         self._fixed = KNEE_DEG
         self.time_s: FloatArray = np.zeros(0)
@@ -79,19 +78,19 @@ class TwoWaysChart(Themed):
         return float(np.mean((seen < self.range_deg[0]) | (seen > self.range_deg[1]))) if len(seen) else 0.0
 
     def sizeHint(self) -> QSize:
-        px = self._look.theme.px
+        px = current_theme().px
         return QSize(px(LEAST_SIZE[0]), px(LEAST_SIZE[1]))
 
     def minimumSizeHint(self) -> QSize:
         return self.sizeHint()
 
     def plot_area(self) -> QRectF:
-        px = self._look.theme.px
+        px = current_theme().px
         left = px(AXIS_WIDTH)
         return QRectF(left, px(TOP), self.width() - left - px(RIGHT_MARGIN), self.height() - px(TOP + BELOW))
 
     def painted_texts(self) -> list[PaintedText]:
-        theme, area = self._look.theme, self.plot_area()
+        theme, area = current_theme(), self.plot_area()
         px, font = theme.px, theme.font(12)
         texts = []
         for angle in self._angles():
@@ -109,12 +108,12 @@ class TwoWaysChart(Themed):
         if self._picture is None or self._picture.size() != self.size() * ratio:
             self._picture = QPixmap(self.size() * ratio)
             self._picture.setDevicePixelRatio(ratio)
-            self._picture.fill(QColor(self._look.theme.colours.surface))
+            self._picture.fill(QColor(current_theme().colours.surface))
             self._paint(QPainter(self._picture))
         QPainter(self).drawPixmap(0, 0, self._picture)
 
     def _paint(self, painter: QPainter) -> None:
-        theme, area = self._look.theme, self.plot_area()
+        theme, area = current_theme(), self.plot_area()
         painter.setRenderHint(QPainter.RenderHint.Antialiasing)
         self._paint_axes(painter, area)
         painter.save()
@@ -143,17 +142,17 @@ class TwoWaysChart(Themed):
 
     def forces_pen(self) -> QPen:
         """The pen of the accelerometers' angle."""
-        return self._look.theme.pen(self._look.theme.colours.control, FORCES_PX)
+        return current_theme().pen(current_theme().colours.control, FORCES_PX)
 
     def rates_pen(self) -> QPen:
         """The pen of the gyroscopes' angle."""
-        return self._look.theme.pen(self._look.theme.colours.ink, RATES_PX)
+        return current_theme().pen(current_theme().colours.ink, RATES_PX)
 
     def fused_pen(self) -> QPen:
-        return self._look.theme.side_pen(self._side, FUSED_PX)
+        return current_theme().side_pen(self._side, FUSED_PX)
 
     def _paint_axes(self, painter: QPainter, area: QRectF) -> None:
-        theme = self._look.theme
+        theme = current_theme()
         tick = theme.px(TICK)
         painter.setPen(theme.pen(theme.colours.control, 1))
         painter.drawLine(area.topLeft(), area.bottomLeft())
@@ -196,7 +195,7 @@ class TwoWaysChart(Themed):
         self._picture = None
         self.update()
 
-    def _on_look_changed(self) -> None:
+    def _apply_theme(self) -> None:
         self.updateGeometry()
         self._redraw()
 

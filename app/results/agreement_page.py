@@ -5,8 +5,8 @@ from collections.abc import Sequence
 from PySide6.QtCore import Signal
 from PySide6.QtWidgets import QFrame, QHBoxLayout, QStackedWidget, QVBoxLayout, QWidget
 
+from app.theme.current import current_theme
 from app.theme.icons import Icon
-from app.theme.notifier import ThemeNotifier
 from app.widgets.button import Button, ButtonKind
 from app.widgets.reading_area import ReadingArea
 from app.widgets.sentence_page import SentencePage
@@ -39,15 +39,14 @@ class AgreementPage(Themed):
     reference_requested = Signal()
     save_requested = Signal()
 
-    def __init__(self, look: ThemeNotifier) -> None:
+    def __init__(self) -> None:
         super().__init__()
-        self._look = look
-        self.back = Button(look, tr("Back to the results"), ButtonKind.SECONDARY, Icon.BACK)
-        self.choose = Button(look, tr("Choose reference file"), ButtonKind.SECONDARY, Icon.FOLDER)
-        self.save = Button(look, tr("Save PDF and CSV"), ButtonKind.SECONDARY, Icon.FOLDER)
-        self.note = Text(look, tone="ink2", wraps=True)
-        self.waiting = SentencePage(look)
-        self.sheets = Sheets(look)
+        self.back = Button(tr("Back to the results"), ButtonKind.SECONDARY, Icon.BACK)
+        self.choose = Button(tr("Choose reference file"), ButtonKind.SECONDARY, Icon.FOLDER)
+        self.save = Button(tr("Save PDF and CSV"), ButtonKind.SECONDARY, Icon.FOLDER)
+        self.note = Text(tone="ink2", wraps=True)
+        self.waiting = SentencePage()
+        self.sheets = Sheets()
         self.reading = ReadingArea()
         self.reading.setFrameShape(QFrame.Shape.NoFrame)
         self.reading.setWidgetResizable(True)
@@ -69,7 +68,7 @@ class AgreementPage(Themed):
         self.waiting.pressed.connect(self.reference_requested)
         self.save.clicked.connect(self.save_requested)
         self.show_nothing()
-        self._on_look_changed()
+        self._apply_theme()
 
     @property
     def tab_order(self) -> list[QWidget]:
@@ -115,8 +114,8 @@ class AgreementPage(Themed):
         self.waiting.show_sentence(what, then, button)
         self._stack.setCurrentWidget(self.waiting)
 
-    def _on_look_changed(self) -> None:
-        px = self._look.theme.px
+    def _apply_theme(self) -> None:
+        px = current_theme().px
         self._column.setContentsMargins(px(24), px(16), px(24), px(12))
         self._column.setSpacing(px(12))
         self._head.setSpacing(px(12))

@@ -27,8 +27,8 @@ from app.summary.comparison import Comparison, Contrast, SideRow, compare_sides,
 from app.summary.conditions import Part, left_out_of_parts
 from app.summary.reference_bands import NOBODY, bands_of, reference_curves, sides_with_band
 from app.summary.visits import ComparedVisits, condition_in_words
+from app.theme.current import current_theme
 from app.theme.icons import Icon
-from app.theme.notifier import ThemeNotifier
 from app.widgets.chips import Chips
 from app.widgets.choice import Choice
 from app.widgets.heard_order import hear_as_laid_out
@@ -73,9 +73,8 @@ class ComparePage(Themed):
 
     visits_requested = Signal()
 
-    def __init__(self, look: ThemeNotifier) -> None:
+    def __init__(self) -> None:
         super().__init__()
-        self._look = look
         self._conditions: tuple[Part, ...] = ()
         self._visits: tuple[ComparedVisits, ...] | None = None
         self._every: tuple[Part, ...] = ()  # each condition of each visit
@@ -90,26 +89,26 @@ class ComparePage(Themed):
         self._has_view, self._is_reading = True, False
         self.comparison: Comparison | None = None
         self.side_rows: tuple[SideRow, ...] = ()
-        self.kinds = Choice(look, tr("Compare"))
+        self.kinds = Choice(tr("Compare"))
         self.kinds.let_shrink(*KINDS)  # a condition that was typed is part of its lines
-        self.bases = Choice(look, tr("Starting point"))
+        self.bases = Choice(tr("Starting point"))
         self.view = Segmented(
-            look, tr("View"), [(CURVES, tr("Curves"), ""), (PLOT, tr("Differences"), ""), (TABLE, tr("Table"), "")]
+            tr("View"), [(CURVES, tr("Curves"), ""), (PLOT, tr("Differences"), ""), (TABLE, tr("Table"), "")]
         )
-        self.chips = Chips(look, tr("Compared items"), [("", " ")])
-        self.nothing = Text(look, size=16, wraps=True)
+        self.chips = Chips(tr("Compared items"), [("", " ")])
+        self.nothing = Text(size=16, wraps=True)
         self.frames: dict[tuple[Side, JointKind], ComparedFrame] = {}
         for kind in JointKind:
             for side in Side:
-                self.frames[side, kind] = ComparedFrame(look, ComparedChart(look, kind), side, kind)
-        self.side_charts = CycleCharts(look, reference_curves())
-        self._mark = IconMark(look, Icon.DIFFERENCE, size=20)
-        self.conclusion = Text(look, size=14, wraps=True)
-        self.error = Text(look, size=12, tone="ink2", wraps=True)
-        self.card = ComparedCard(look)
+                self.frames[side, kind] = ComparedFrame(ComparedChart(kind), side, kind)
+        self.side_charts = CycleCharts(reference_curves())
+        self._mark = IconMark(Icon.DIFFERENCE, size=20)
+        self.conclusion = Text(size=14, wraps=True)
+        self.error = Text(size=12, tone="ink2", wraps=True)
+        self.card = ComparedCard()
         self._build()
         self._connect()
-        self._on_look_changed()
+        self._apply_theme()
 
     # what is shown
 
@@ -306,7 +305,7 @@ class ComparePage(Themed):
         return self._every if self.kind is Contrast.CHOSEN else self._conditions
 
     def _make_chips(self, parts: Sequence[Part]) -> None:
-        chips = Chips(self._look, tr("Compared items"), self._words_of(parts) or [("", " ")])
+        chips = Chips(tr("Compared items"), self._words_of(parts) or [("", " ")])
         ends = [*parts[:1], *parts[-1:]]  # of many, the oldest and the latest to begin with
         chips.choose([part.letter for part in (ends if self.kind is Contrast.CHOSEN else parts)])
         chips.turned.connect(self._on_turned)
@@ -469,8 +468,8 @@ class ComparePage(Themed):
         self.conclusion.setText(" ".join([*stated, by_hand] if by_hand else stated))
         self._mark.setVisible(is_marked)
 
-    def _on_look_changed(self) -> None:
-        px = self._look.theme.px
+    def _apply_theme(self) -> None:
+        px = current_theme().px
         for layout in (self._page, self._columns, self._left, self._head):
             layout.setSpacing(px(12))
         self._grid.setSpacing(px(12))

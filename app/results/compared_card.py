@@ -9,7 +9,7 @@ from app.plots.difference_plot import DifferencePlot
 from app.results.compared_plot import comparison_groups, side_groups
 from app.results.compared_table import comparison_table, has_brief_table, side_table
 from app.summary.comparison import Comparison, Contrast, SideRow
-from app.theme.notifier import ThemeNotifier
+from app.theme.current import current_theme, px
 from app.widgets.card import Card
 from app.widgets.table import CellTable
 from app.widgets.text import SEMIBOLD, Text
@@ -27,12 +27,12 @@ WIDEST = 16_777_215  # Qt's own
 class ComparedCard(Card):
     """Between visits the table is brief where there is no room for all measures, until all are asked for."""
 
-    def __init__(self, look: ThemeNotifier) -> None:
-        self.title = Text(look, size=16, weight=SEMIBOLD)
-        self.all_measures = Toggle(look, tr("All measures"), "", is_on=False)
+    def __init__(self) -> None:
+        self.title = Text(size=16, weight=SEMIBOLD)
+        self.all_measures = Toggle(tr("All measures"), "", is_on=False)
         self.all_measures.set_face(height=TOGGLE)
-        self.plot = DifferencePlot(look)
-        self.table = CellTable(look, tr("Differences"))
+        self.plot = DifferencePlot()
+        self.table = CellTable(tr("Differences"))
         self._found: Comparison | None = None
         self._is_compact = self._is_spacious = False
         content = QWidget()
@@ -46,7 +46,7 @@ class ComparedCard(Card):
         self._content.addWidget(self.table)
         self._content.addStretch(1)
         self.area = scrolling(content)
-        super().__init__(look, padding=PADDING)
+        super().__init__(padding=PADDING)
         self.setSizePolicy(QSizePolicy.Policy.Expanding, QSizePolicy.Policy.Expanding)
         self.column.addWidget(self.area, 1)
         self.all_measures.toggled.connect(self._show_table)
@@ -83,7 +83,7 @@ class ComparedCard(Card):
 
     def fit(self, *, is_alone: bool) -> None:
         """Leave the curves beside it the larger part."""
-        px = self._look.theme.px
+        px = current_theme().px
         least = LEAST_IF_SPACIOUS if self._is_spacious else LEAST
         shown = [widget for widget in (self.plot, self.table) if not widget.isHidden()]
         needed = max([px(least), *(widget.minimumWidth() + px(2 * PADDING + SCROLL_BAR) for widget in shown)])
@@ -105,9 +105,9 @@ class ComparedCard(Card):
         found = self._found
         return found is not None and found.kind is Contrast.VISITS and not self._is_spacious and has_brief_table(found)
 
-    def _on_look_changed(self) -> None:
-        super()._on_look_changed()
-        self._content.setSpacing(self._look.theme.px(8))
+    def _apply_theme(self) -> None:
+        super()._apply_theme()
+        self._content.setSpacing(px(8))
 
 
 def scrolling(content: QWidget) -> QScrollArea:

@@ -6,8 +6,8 @@ from dataclasses import dataclass
 from PySide6.QtCore import Qt, Signal
 from PySide6.QtWidgets import QBoxLayout, QHBoxLayout, QVBoxLayout, QWidget
 
+from app.theme.current import current_theme
 from app.theme.icons import Icon
-from app.theme.notifier import ThemeNotifier
 from app.widgets.button import Button, ButtonKind
 from app.widgets.card import Card
 from app.widgets.chip import Chip
@@ -59,27 +59,24 @@ class CorrectPage(Themed):
     sides_swapped = Signal()
     closed = Signal()
 
-    def __init__(self, look: ThemeNotifier) -> None:
+    def __init__(self) -> None:
         super().__init__()
-        self._look = look
         self.walk_rows: dict[str, _WalkRow] = {}
         self.joint_rows: dict[Joint, _JointRow] = {}
-        self.back = Button(look, tr("Back to the results"), ButtonKind.SECONDARY, Icon.BACK)
-        self.note = Text(
-            look, tr("Each correction is recorded with its user and can be undone."), tone="ink2", wraps=True
-        )
-        self.walks = Card(look)
-        self.walks.column.addWidget(Text(look, tr("Walks"), size=16, weight=SEMIBOLD))
-        self.joints = Card(look)
-        self.joints.column.addWidget(Text(look, tr("Joints"), size=16, weight=SEMIBOLD))
-        self.sides = Card(look)
-        self.sides.column.addWidget(Text(look, tr("Sides"), size=16, weight=SEMIBOLD))
-        self.swap = Button(look, tr("Swap left and right"), ButtonKind.SECONDARY, Icon.REPEAT)
-        self.swap_note = Text(look, size=14, tone="ink2", wraps=True)
+        self.back = Button(tr("Back to the results"), ButtonKind.SECONDARY, Icon.BACK)
+        self.note = Text(tr("Each correction is recorded with its user and can be undone."), tone="ink2", wraps=True)
+        self.walks = Card()
+        self.walks.column.addWidget(Text(tr("Walks"), size=16, weight=SEMIBOLD))
+        self.joints = Card()
+        self.joints.column.addWidget(Text(tr("Joints"), size=16, weight=SEMIBOLD))
+        self.sides = Card()
+        self.sides.column.addWidget(Text(tr("Sides"), size=16, weight=SEMIBOLD))
+        self.swap = Button(tr("Swap left and right"), ButtonKind.SECONDARY, Icon.REPEAT)
+        self.swap_note = Text(size=14, tone="ink2", wraps=True)
         self._build()
         self.back.clicked.connect(self.closed)
         self.swap.clicked.connect(self.sides_swapped)
-        self._on_look_changed()
+        self._apply_theme()
 
     @property
     def tab_order(self) -> list[QWidget]:
@@ -94,7 +91,7 @@ class CorrectPage(Themed):
             row.deleteLater()
         for line in lines:
             if line.key not in self.walk_rows:
-                row = self.walk_rows[line.key] = _WalkRow(self._look, line)
+                row = self.walk_rows[line.key] = _WalkRow(line)
                 row.condition.committed.connect(self._on_condition_committed)
                 row.kept.toggled.connect(self._on_kept_toggled)
                 self.walks.column.insertWidget(self.walks.column.count() - 1, row)
@@ -103,7 +100,7 @@ class CorrectPage(Themed):
     def show_joints(self, lines: Sequence[JointLine]) -> None:
         for line in lines:
             if line.joint not in self.joint_rows:
-                row = self.joint_rows[line.joint] = _JointRow(self._look, line.joint)
+                row = self.joint_rows[line.joint] = _JointRow(line.joint)
                 row.turned.toggled.connect(self._on_sign_toggled)
                 self.joints.column.insertWidget(self.joints.column.count() - 1, row)
             self.joint_rows[line.joint].show_line(line)
@@ -166,21 +163,21 @@ class CorrectPage(Themed):
             if row.turned is toggle:
                 self.sign_turned.emit(str(joint), is_turned)
 
-    def _on_look_changed(self) -> None:
-        px = self._look.theme.px
+    def _apply_theme(self) -> None:
+        px = current_theme().px
         self._page.setContentsMargins(px(16), px(16), px(16), px(12))
         self._page.setSpacing(px(12))
         self._columns.setSpacing(px(12))
 
 
 class _WalkRow(QWidget):
-    def __init__(self, look: ThemeNotifier, line: WalkLine) -> None:
+    def __init__(self, line: WalkLine) -> None:
         super().__init__()
         self._line = line
-        self._name = Text(look, size=15, weight=SEMIBOLD, wraps=True)
-        self._note = Text(look, size=12, tone="ink2", wraps=True)
-        self.condition = Field(look, "", has_label=False, placeholder=tr("condition"))
-        self.kept = Toggle(look, tr("Included"), "", is_on=line.is_kept)
+        self._name = Text(size=15, weight=SEMIBOLD, wraps=True)
+        self._note = Text(size=12, tone="ink2", wraps=True)
+        self.condition = Field("", has_label=False, placeholder=tr("condition"))
+        self.kept = Toggle(tr("Included"), "", is_on=line.is_kept)
         words = QVBoxLayout()
         words.setSpacing(0)
         words.addWidget(self._name)
@@ -208,16 +205,16 @@ class _WalkRow(QWidget):
 
 
 class _JointRow(QWidget):
-    def __init__(self, look: ThemeNotifier, joint: Joint) -> None:
+    def __init__(self, joint: Joint) -> None:
         super().__init__()
-        self.turned = Toggle(look, tr("Reverse the sign of this joint"), "", is_on=False)
+        self.turned = Toggle(tr("Reverse the sign of this joint"), "", is_on=False)
         name = capitalised(name_of(joint))
         self.turned.setAccessibleName(tr("{joint}: reverse the sign of this joint").format(joint=name))
-        self._note = Text(look, size=12, tone="ink2", wraps=True)
+        self._note = Text(size=12, tone="ink2", wraps=True)
         head = QHBoxLayout()
         head.setSpacing(8)
-        head.addWidget(Chip(look, joint.side))
-        head.addWidget(Text(look, tr("Knee") if joint.is_knee else tr("Ankle"), size=15, weight=SEMIBOLD))
+        head.addWidget(Chip(joint.side))
+        head.addWidget(Text(tr("Knee") if joint.is_knee else tr("Ankle"), size=15, weight=SEMIBOLD))
         head.addWidget(self._note, 1)
         column = QVBoxLayout(self)
         column.setContentsMargins(0, 0, 0, 0)

@@ -20,7 +20,6 @@ from app.summary.walk_figures import (
     strides_in_words,
     time_distance_figures,
 )
-from app.theme.notifier import ThemeNotifier
 from app.widgets.card import Card
 from app.widgets.figures_table import CARE_MARK, figure_columns, figure_rows
 from app.widgets.table import CellTable
@@ -51,19 +50,18 @@ HIP_BAND = later("At the hip, the reference is shifted to the level of the curve
 class CyclePage(QWidget):
     """The charts, and whose band it is; `peaks`, `time_distance` and `hips` are cards that the page places."""
 
-    def __init__(self, look: ThemeNotifier) -> None:
+    def __init__(self) -> None:
         super().__init__()
-        self._look = look
         self.band_words = ""
-        self.charts = CycleCharts(look, reference_curves())
-        self.by_hand = Text(look, size=12, weight=MEDIUM, wraps=True)
+        self.charts = CycleCharts(reference_curves())
+        self.by_hand = Text(size=12, weight=MEDIUM, wraps=True)
         column = QVBoxLayout(self)
         column.setContentsMargins(0, 0, 0, 0)
         column.addWidget(self.charts, 1)
         column.addWidget(self.by_hand)
-        self.peaks = FiguresCard(look, tr("Peaks and ranges"), tr("mean ± SD (°)"))
-        self.time_distance = FiguresCard(look, tr("Time and distance"), tr("mean ± SD"))
-        self.hips = FiguresCard(look, tr("Hip and pelvis"), tr("mean ± SD (°)"))
+        self.peaks = FiguresCard(tr("Peaks and ranges"), tr("mean ± SD (°)"))
+        self.time_distance = FiguresCard(tr("Time and distance"), tr("mean ± SD"))
+        self.hips = FiguresCard(tr("Hip and pelvis"), tr("mean ± SD (°)"))
         for card in (self.peaks, self.time_distance, self.hips):
             card.column.addStretch(1)
 
@@ -164,15 +162,15 @@ def _only_for(sides_of_band: frozenset[Side], part: Part) -> str:
 class FiguresCard(Card):
     """A table under its title, with what must be known to read it."""
 
-    def __init__(self, look: ThemeNotifier, title: str, what: str) -> None:
-        super().__init__(look, padding=12)
+    def __init__(self, title: str, what: str) -> None:
+        super().__init__(padding=12)
         head = QHBoxLayout()
         head.setSpacing(8)
-        head.addWidget(Text(look, title, size=16, weight=SEMIBOLD))
-        head.addWidget(Text(look, what, size=12, tone="ink2"))
+        head.addWidget(Text(title, size=16, weight=SEMIBOLD))
+        head.addWidget(Text(what, size=12, tone="ink2"))
         head.addStretch(1)
-        self.table = CellTable(look, title)
-        self.note = Text(look, size=12, tone="ink2", wraps=True)
+        self.table = CellTable(title)
+        self.note = Text(size=12, tone="ink2", wraps=True)
         self.column.addLayout(head)
         self.column.addWidget(self.table)
         self.column.addWidget(self.note)

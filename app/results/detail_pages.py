@@ -11,7 +11,6 @@ from typing import TYPE_CHECKING
 from PySide6.QtCore import QObject, Signal
 from PySide6.QtWidgets import QStackedWidget
 
-from app.theme.notifier import ThemeNotifier
 from app.workers.background import Background
 
 if TYPE_CHECKING:  # their imports take a second
@@ -45,14 +44,13 @@ class DetailPages(QObject):
 
     def __init__(
         self,
-        look: ThemeNotifier,
         stack: QStackedWidget,
         looking: Background,
         comparing: Background,
         parent: QObject,
     ) -> None:
         super().__init__(parent)
-        self._look, self._stack = look, stack
+        self._stack = stack
         self._looking, self._comparing = looking, comparing
         self.found: FoundPage | None = None
         self.agreement: AgreementPage | None = None
@@ -73,7 +71,7 @@ class DetailPages(QObject):
             from app.results.diagnostics_controller import DiagnosticsController
             from app.results.found_page import FoundPage
 
-            self.found = FoundPage(self._look)
+            self.found = FoundPage()
             self.found.set_room(*self._room)
             self._stack.addWidget(self.found)
             self._how_found = DiagnosticsController(self.found, self._looking, self)
@@ -89,7 +87,7 @@ class DetailPages(QObject):
             from app.results.agreement_controller import AgreementController
             from app.results.agreement_page import AgreementPage
 
-            self.agreement = AgreementPage(self._look)
+            self.agreement = AgreementPage()
             self._stack.addWidget(self.agreement)
             self._compared = AgreementController(self.agreement, self._comparing, self)
             self._compared.writing.connect(partial(self._on_writing, AGREEMENT))

@@ -8,8 +8,8 @@ from app.summary.goals import goal_mark
 from app.summary.interval_words import interval_in_figures
 from app.summary.numbers_in_words import NOTHING, fixed, judged_in_words, signed
 from app.summary.what_differs import LegsRow, half_of_strip, what_differs, without_family
+from app.theme.current import current_theme
 from app.theme.icons import Icon
-from app.theme.notifier import ThemeNotifier
 from app.widgets.card import Card
 from app.widgets.figures_table import CARE_MARK
 from app.widgets.table import CellTable, TableColumn, TableRow
@@ -32,13 +32,13 @@ LEAST, MOST = 3, 8  # rows
 class DiffersCard(Card):
     """As many rows as there is room for, but at least three; those beyond healthy people's difference first."""
 
-    def __init__(self, look: ThemeNotifier) -> None:
+    def __init__(self) -> None:
         self._side = SIDE
-        super().__init__(look, padding=SIDE)
+        super().__init__(padding=SIDE)
         self._columns: Sequence[TableColumn] = ()
         self.rows: Sequence[TableRow] = ()
         self._most = LEAST
-        self.table = CellTable(look, tr("Largest differences"), row=ROW, head=HEAD)
+        self.table = CellTable(tr("Largest differences"), row=ROW, head=HEAD)
         self.column.addWidget(self.table)
 
     def show_facts(self, facts: Facts) -> None:
@@ -54,7 +54,7 @@ class DiffersCard(Card):
     def set_room(self, height: float, *, is_compact: bool) -> None:
         """Show what fits into so many px of the design; nearer to the edge where the page is narrow."""
         self._side = COMPACT_SIDE if is_compact else SIDE
-        self._on_look_changed()
+        self._apply_theme()
         most = min(max(int((height - HEAD - EDGES) // ROW), LEAST), MOST)
         if most != self._most:
             self._most = most
@@ -64,8 +64,8 @@ class DiffersCard(Card):
         if self._columns:
             self.table.show_rows(self._columns, self.rows[: self._most])
 
-    def _on_look_changed(self) -> None:
-        px = self._look.theme.px
+    def _apply_theme(self) -> None:
+        px = current_theme().px
         self.column.setContentsMargins(px(self._side), px(EDGES / 3), px(self._side), px(EDGES * 2 / 3))
 
 

@@ -23,8 +23,8 @@ from app.plots.cost_map import CostMap
 from app.plots.projected_rates_plot import ProjectedRatesPlot
 from app.plots.two_ways_chart import TwoWaysChart
 from app.summary.diagnostics import MARGIN_BEYOND, FoundFigure, figures_of
+from app.theme.current import current_theme, px
 from app.theme.icons import SEVERITY_ICONS, Icon
-from app.theme.notifier import ThemeNotifier
 from app.widgets.button import Button, ButtonKind
 from app.widgets.card import Card
 from app.widgets.chip import Chip
@@ -68,27 +68,27 @@ class FoundPage(Themed):
     joint_chosen = Signal(str)
     save_requested = Signal()
 
-    def __init__(self, look: ThemeNotifier) -> None:
+    def __init__(self) -> None:
         super().__init__()
-        self._look, self._width = look, 0.0
-        self.back = Button(look, tr("Back to the results"), ButtonKind.SECONDARY, Icon.BACK)
+        self._width = 0.0
+        self.back = Button(tr("Back to the results"), ButtonKind.SECONDARY, Icon.BACK)
         names = [(str(joint), capitalised(name_of(joint)), "") for joint in _IN_ORDER]
-        self.joints = Segmented(look, tr("Joint"), names)
-        self.save = Button(look, tr("Save values as CSV"), ButtonKind.SECONDARY, Icon.FOLDER)
-        self.note = Text(look, tone="ink2", wraps=True)
-        self.waiting = SentencePage(look)
-        self.axis = _AxisCard(look)
-        self.pairing = _PairingCard(look)
-        self.angle = _AngleCard(look)
-        self.figures = _FiguresCard(look)
-        self.noticed = Card(look)
+        self.joints = Segmented(tr("Joint"), names)
+        self.save = Button(tr("Save values as CSV"), ButtonKind.SECONDARY, Icon.FOLDER)
+        self.note = Text(tone="ink2", wraps=True)
+        self.waiting = SentencePage()
+        self.axis = _AxisCard()
+        self.pairing = _PairingCard()
+        self.angle = _AngleCard()
+        self.figures = _FiguresCard()
+        self.noticed = Card()
         self.cards = ReadingArea()
         self._stack = QStackedWidget()
         self._build()
         self.back.clicked.connect(self.closed)
         self.joints.chosen.connect(self.joint_chosen)
         self.save.clicked.connect(self.save_requested)
-        self._on_look_changed()
+        self._apply_theme()
 
     @property
     def tab_order(self) -> list[QWidget]:
@@ -178,7 +178,7 @@ class FoundPage(Themed):
 
     def _place_head(self) -> None:
         """Put the joints between both buttons, or under them where that is too wide."""
-        px = self._look.theme.px
+        px = current_theme().px
         for widget in (self.back, self.joints, self.save):
             self._head.removeWidget(widget)
         needed = sum(widget.sizeHint().width() for widget in (self.back, self.joints, self.save))
@@ -194,14 +194,14 @@ class FoundPage(Themed):
     def _show_findings(self, findings: Sequence[Finding]) -> None:
         _empty(self.noticed)
         column = self.noticed.column
-        column.addWidget(Text(self._look, tr("Findings for this joint"), size=16, weight=SEMIBOLD))
+        column.addWidget(Text(tr("Findings for this joint"), size=16, weight=SEMIBOLD))
         for finding in sorted(findings, key=lambda one: ORDER.index(one.severity)):
             icon = SEVERITY_ICONS[finding.severity]
-            column.addWidget(FindingRow(self._look, icon, finding.severity, sentence(finding)))
+            column.addWidget(FindingRow(icon, finding.severity, sentence(finding)))
         self.noticed.setVisible(bool(findings))
 
-    def _on_look_changed(self) -> None:
-        px = self._look.theme.px
+    def _apply_theme(self) -> None:
+        px = current_theme().px
         self._page.setContentsMargins(px(16), px(16), px(16), px(12))
         self._page.setSpacing(px(12))
         for layout in (self._head, self._pictures, self._cards):
@@ -216,16 +216,15 @@ _IN_ORDER = (Joint.LEFT_KNEE, Joint.RIGHT_KNEE, Joint.LEFT_ANKLE, Joint.RIGHT_AN
 class _Head(QHBoxLayout):
     """A picture's title, the figure of the paper that it is, the leg, and whether it is simulated."""
 
-    def __init__(self, look: ThemeNotifier, title: str, figure: str) -> None:
+    def __init__(self, title: str, figure: str) -> None:
         super().__init__()
-        self._look = look
-        self._chips = {side: Chip(look, side) for side in Side}
-        self._simulated = Text(look, tr(SIMULATED), size=12, weight=SEMIBOLD)
+        self._chips = {side: Chip(side) for side in Side}
+        self._simulated = Text(tr(SIMULATED), size=12, weight=SEMIBOLD)
         self.setSpacing(8)
         for chip in self._chips.values():
             self.addWidget(chip)
-        self.addWidget(Text(look, title, size=16, weight=SEMIBOLD, wraps=True), 1)
-        self.addWidget(Text(look, figure, size=12, tone="ink2"))
+        self.addWidget(Text(title, size=16, weight=SEMIBOLD, wraps=True), 1)
+        self.addWidget(Text(figure, size=12, tone="ink2"))
         self.addWidget(self._simulated)
 
     def show_joint(self, side: Side, is_simulated: bool) -> None:
@@ -237,12 +236,12 @@ class _Head(QHBoxLayout):
 class _AxisCard(Card):
     """Figure 3: the cost over the sphere, for both sensors."""
 
-    def __init__(self, look: ThemeNotifier) -> None:
-        super().__init__(look)
-        self.head = _Head(look, tr("Direction of the joint axis"), tr("Figure 3"))
-        self.maps = (CostMap(look), CostMap(look))
-        self._names = [Text(look, size=14, weight=MEDIUM) for _ in self.maps]
-        self._verdict = Text(look, weight=MEDIUM, wraps=True)
+    def __init__(self) -> None:
+        super().__init__()
+        self.head = _Head(tr("Direction of the joint axis"), tr("Figure 3"))
+        self.maps = (CostMap(), CostMap())
+        self._names = [Text(size=14, weight=MEDIUM) for _ in self.maps]
+        self._verdict = Text(weight=MEDIUM, wraps=True)
         words = tr(
             "Each map shows all directions that the axis could have in one sensor. Full colour: a hinge "
             "with that axis would move as this joint did (equation 6). An axis has two ends, so there are "
@@ -259,9 +258,9 @@ class _AxisCard(Card):
             column.addWidget(chart)
             self._row.addLayout(column, 1)
         self.column.addLayout(self.head)
-        self.column.addWidget(Text(look, words, tone="ink2", wraps=True))
+        self.column.addWidget(Text(words, tone="ink2", wraps=True))
         self.column.addLayout(self._row)
-        self.column.addWidget(Text(look, marks, size=12, tone="ink2", wraps=True))
+        self.column.addWidget(Text(marks, size=12, tone="ink2", wraps=True))
         self.column.addWidget(self._verdict)
         self.column.addStretch(1)
 
@@ -296,19 +295,19 @@ def _why_apart(found: JointDiagnostics) -> str:
 class _PairingCard(Card):
     """Figure 4: the projected rates, as paired and with one axis reversed."""
 
-    def __init__(self, look: ThemeNotifier) -> None:
-        super().__init__(look)
-        self.head = _Head(look, tr("Same direction of both axes"), tr("Figure 4"))
-        self.plot = ProjectedRatesPlot(look)
-        self._keys = LineKeys(look)
-        self._verdict = Text(look, weight=MEDIUM, wraps=True)
+    def __init__(self) -> None:
+        super().__init__()
+        self.head = _Head(tr("Same direction of both axes"), tr("Figure 4"))
+        self.plot = ProjectedRatesPlot()
+        self._keys = LineKeys()
+        self._verdict = Text(weight=MEDIUM, wraps=True)
         words = tr(
             "In this second, the joint hardly bends, so both segments rotate alike across the axis. One "
             "curve is rotated to fit the other. If both axes point the same way, the curves overlap. If "
             "not, they are mirror images."
         )
         self.column.addLayout(self.head)
-        self.column.addWidget(Text(look, words, tone="ink2", wraps=True))
+        self.column.addWidget(Text(words, tone="ink2", wraps=True))
         self.column.addWidget(self._keys)
         self.column.addWidget(self.plot)
         self.column.addWidget(self._verdict)
@@ -355,23 +354,23 @@ def _decided(found: JointDiagnostics, figures: dict[str, FoundFigure]) -> str:
 class _AngleCard(Card):
     """Figure 6: the gyroscopes' angle, the accelerometers', and both together."""
 
-    def __init__(self, look: ThemeNotifier) -> None:
-        super().__init__(look)
-        self.head = _Head(look, tr("Joint angle by two methods"), tr("Figure 6"))
+    def __init__(self) -> None:
+        super().__init__()
+        self.head = _Head(tr("Joint angle by two methods"), tr("Figure 6"))
         self.stretch = Segmented(
-            look, tr("Time segment"), [(WHOLE, tr("Whole recording"), ""), (TEN_SECONDS, tr("Ten seconds"), "")]
+            tr("Time segment"), [(WHOLE, tr("Whole recording"), ""), (TEN_SECONDS, tr("Ten seconds"), "")]
         )
-        self.chart = TwoWaysChart(look)
-        self._keys = LineKeys(look)
-        self._cut = Text(look, size=12, tone="ink2", wraps=True)
-        self._verdict = Text(look, weight=MEDIUM, wraps=True)
+        self.chart = TwoWaysChart()
+        self._keys = LineKeys()
+        self._cut = Text(size=12, tone="ink2", wraps=True)
+        self._verdict = Text(weight=MEDIUM, wraps=True)
         words = tr(
             "The angle from gyroscopes alone (equation 11) is smooth but drifts. From accelerometers "
             "alone (equation 14), it does not drift but scatters. Combined (equation 15), it does "
             "neither. The combined angle is the published one, shown with the result under Whole walk."
         )
         self.column.addLayout(self.head)
-        self.column.addWidget(Text(look, words, tone="ink2", wraps=True))
+        self.column.addWidget(Text(words, tone="ink2", wraps=True))
         self.column.addWidget(self.stretch, 0, Qt.AlignmentFlag.AlignLeft)
         self.column.addWidget(self._keys)
         self.column.addWidget(self.chart, 1)
@@ -419,12 +418,12 @@ def _drifted(found: JointDiagnostics, figures: dict[str, FoundFigure]) -> str:
 class _FiguresCard(Card):
     """All figures of the joint as a list of names and values."""
 
-    def __init__(self, look: ThemeNotifier) -> None:
+    def __init__(self) -> None:
         self._grid = QGridLayout()
-        super().__init__(look)
+        super().__init__()
         self._figures: Sequence[FoundFigure] = ()
         self._columns = 2
-        self.column.addWidget(Text(look, tr("In numbers"), size=16, weight=SEMIBOLD))
+        self.column.addWidget(Text(tr("In numbers"), size=16, weight=SEMIBOLD))
         self.column.addLayout(self._grid)
         self._texts: list[Text] = []
 
@@ -446,8 +445,8 @@ class _FiguresCard(Card):
         rows = -(-len(self._figures) // self._columns)
         for k, figure in enumerate(self._figures):
             column, row = divmod(k, max(rows, 1))
-            name = Text(self._look, figure.name, tone="ink2", wraps=True)
-            value = Text(self._look, figure.in_words, size=15, weight=SEMIBOLD)
+            name = Text(figure.name, tone="ink2", wraps=True)
+            value = Text(figure.in_words, size=15, weight=SEMIBOLD)
             value.setAccessibleName(f"{figure.name}: {figure.in_words}")
             self._grid.addWidget(name, row, 3 * column)
             self._grid.addWidget(value, row, 3 * column + 1, Qt.AlignmentFlag.AlignRight)
@@ -455,14 +454,12 @@ class _FiguresCard(Card):
         for column in range(6):
             is_name = column % 3 == 0 and column < 3 * self._columns
             self._grid.setColumnStretch(column, 1 if is_name else 0)
-            self._grid.setColumnMinimumWidth(
-                column, self._look.theme.px(24) if column == 2 < 3 * self._columns - 1 else 0
-            )
+            self._grid.setColumnMinimumWidth(column, px(24) if column == 2 < 3 * self._columns - 1 else 0)
 
-    def _on_look_changed(self) -> None:
-        super()._on_look_changed()
-        self._grid.setHorizontalSpacing(self._look.theme.px(12))
-        self._grid.setVerticalSpacing(self._look.theme.px(4))
+    def _apply_theme(self) -> None:
+        super()._apply_theme()
+        self._grid.setHorizontalSpacing(px(12))
+        self._grid.setVerticalSpacing(px(4))
 
 
 def _empty(card: Card) -> None:

@@ -5,7 +5,7 @@ from collections.abc import Sequence
 from PySide6.QtGui import QAccessible, QAccessibleAnnouncementEvent, QFontMetrics, QResizeEvent
 from PySide6.QtWidgets import QSizePolicy, QVBoxLayout
 
-from app.theme.notifier import ThemeNotifier
+from app.theme.current import current_theme, px
 from app.widgets.text import SEMIBOLD, Text
 from app.widgets.themed import Themed
 
@@ -19,18 +19,17 @@ class HeadlineText(Themed):
 
     accessible_role = QAccessible.Role.Note
 
-    def __init__(self, look: ThemeNotifier) -> None:
+    def __init__(self) -> None:
         super().__init__()
-        self._look = look
         self._beside: Sequence[str] = ()
-        self.first = Text(look, size=SIZES[0], weight=SEMIBOLD, wraps=True)
-        self.second = Text(look, size=SECOND, tone="ink2", wraps=True)
+        self.first = Text(size=SIZES[0], weight=SEMIBOLD, wraps=True)
+        self.second = Text(size=SECOND, tone="ink2", wraps=True)
         self.setSizePolicy(QSizePolicy.Policy.Expanding, QSizePolicy.Policy.Preferred)
         self._column = QVBoxLayout(self)
         self._column.setContentsMargins(0, 0, 0, 0)
         for text in (self.first, self.second):
             self._column.addWidget(text)
-        self._on_look_changed()
+        self._apply_theme()
 
     @property
     def text(self) -> str:
@@ -59,7 +58,7 @@ class HeadlineText(Themed):
         self._fit()
 
     def _fit(self) -> None:
-        theme, width = self._look.theme, self.width() - self._look.theme.px(SPARE)
+        theme, width = current_theme(), self.width() - px(SPARE)
         for size in SIZES:
             self.first.set_size(size)
             if QFontMetrics(theme.font(size, SEMIBOLD)).horizontalAdvance(self.first.text()) <= width:
@@ -70,6 +69,6 @@ class HeadlineText(Themed):
             count -= 1
         self.second.setText(" ".join(self._beside[:count]))
 
-    def _on_look_changed(self) -> None:
-        self._column.setSpacing(self._look.theme.px(4))
+    def _apply_theme(self) -> None:
+        self._column.setSpacing(px(4))
         self._fit()

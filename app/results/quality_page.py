@@ -10,8 +10,8 @@ from PySide6.QtWidgets import QFrame, QGridLayout, QHBoxLayout, QScrollArea, QSi
 
 from app.results.compared_card import scrolling
 from app.summary.data_quality import DataQuality, QualityLine
+from app.theme.current import current_theme
 from app.theme.icons import VERDICT_ICONS, Icon, paint_icon
-from app.theme.notifier import ThemeNotifier
 from app.widgets.body_figure import SENSOR, BodyFigure, SensorMark
 from app.widgets.body_shapes import body_shapes
 from app.widgets.button import Button, ButtonKind
@@ -44,26 +44,25 @@ class QualityPage(Themed):
 
     repeat_requested = Signal(object)  # Side
 
-    def __init__(self, look: ThemeNotifier) -> None:
+    def __init__(self) -> None:
         super().__init__()
-        self._look = look
         self.lines: tuple[QualityLine, ...] = ()
         self._can_repeat = False
         self._line_cards: list[LineCard] = []
-        self.first = Text(look, size=SENTENCE_PX, weight=SEMIBOLD, wraps=True)
-        self.then = Text(look, tone="ink2", wraps=True)
-        self.in_order = Text(look, wraps=True)
-        self.engineering = Toggle(look, tr("Engineering details"), tr("E"), is_on=False)
-        self.how_found = Button(look, tr("Show calibration"), ButtonKind.SECONDARY, Icon.SEARCH, height=52)
-        self.agreement = Button(look, tr("Compare with optical system"), ButtonKind.SECONDARY, Icon.SEARCH, height=52)
-        self.facts = CellTable(look, tr("Joint calibration"), head=36)
-        self.hip_facts = CellTable(look, tr("Hip calibration"), head=36)
-        self.findings = FindingsList(look)
-        self.figure = JointsFigure(look)
-        self.strides = Text(look, size=12, tone="ink2", wraps=True)
+        self.first = Text(size=SENTENCE_PX, weight=SEMIBOLD, wraps=True)
+        self.then = Text(tone="ink2", wraps=True)
+        self.in_order = Text(wraps=True)
+        self.engineering = Toggle(tr("Engineering details"), tr("E"), is_on=False)
+        self.how_found = Button(tr("Show calibration"), ButtonKind.SECONDARY, Icon.SEARCH, height=52)
+        self.agreement = Button(tr("Compare with optical system"), ButtonKind.SECONDARY, Icon.SEARCH, height=52)
+        self.facts = CellTable(tr("Joint calibration"), head=36)
+        self.hip_facts = CellTable(tr("Hip calibration"), head=36)
+        self.findings = FindingsList()
+        self.figure = JointsFigure()
+        self.strides = Text(size=12, tone="ink2", wraps=True)
         self._build()
         self.engineering.toggled.connect(self._show_parts)
-        self._on_look_changed()
+        self._apply_theme()
         self._show_parts()
 
     @property
@@ -125,7 +124,7 @@ class QualityPage(Themed):
 
     def set_room(self, width: int, *, is_compact: bool, is_narrow: bool) -> None:
         """Leave the figure out where it has no room, and let the doors stand below each other in `width` px."""
-        px = self._look.theme.px
+        px = current_theme().px
         self._figure_card.setVisible(not is_compact)
         beside = 0 if is_compact else px(FIGURE_WIDTH) + self._columns.spacing()
         doors = (self.engineering, self.how_found, self.agreement)
@@ -145,13 +144,13 @@ class QualityPage(Themed):
         self._scroll.setWidget(self._cards)
         for part in (self._cards, self._scroll.viewport()):
             part.setAutoFillBackground(False)
-        self._order_card = Card(self._look)
+        self._order_card = Card()
         order = QHBoxLayout()
         order.setSpacing(12)
-        order.addWidget(IconMark(self._look, Icon.READ), 0, Qt.AlignmentFlag.AlignTop)
+        order.addWidget(IconMark(Icon.READ), 0, Qt.AlignmentFlag.AlignTop)
         order.addWidget(self.in_order, 1)
         self._order_card.column.addLayout(order)
-        self._figures_card = Card(self._look, padding=12)
+        self._figures_card = Card(padding=12)
         tables = QWidget()
         found = QVBoxLayout(tables)
         found.setContentsMargins(0, 0, 0, 0)
@@ -159,7 +158,7 @@ class QualityPage(Themed):
             found.addWidget(table)
         found.addStretch(1)
         self._figures_card.column.addWidget(scrolling(tables), 2)
-        self._figures_card.column.addWidget(Text(self._look, tr("All findings"), size=16, weight=SEMIBOLD))
+        self._figures_card.column.addWidget(Text(tr("All findings"), size=16, weight=SEMIBOLD))
         self._figures_card.column.addWidget(self.findings, 1)
         self._doors = QGridLayout()
         self._place_doors(3)
@@ -168,8 +167,8 @@ class QualityPage(Themed):
         self._left.addWidget(self._figures_card, 1)
         self._left.addWidget(self._order_card)
         self._left.addLayout(self._doors)
-        self._figure_card = Card(self._look)
-        self._figure_card.column.addWidget(Text(self._look, tr("Joints and sensors"), size=16, weight=SEMIBOLD))
+        self._figure_card = Card()
+        self._figure_card.column.addWidget(Text(tr("Joints and sensors"), size=16, weight=SEMIBOLD))
         self._figure_card.column.addWidget(self.figure, 1)
         self._figure_card.column.addWidget(self.strides)
         self._columns = QHBoxLayout()
@@ -196,7 +195,7 @@ class QualityPage(Themed):
             self._list.removeWidget(card)
             card.hide()
             card.deleteLater()
-        self._line_cards = [LineCard(self._look, line, can_repeat=self._can_repeat) for line in self.lines]
+        self._line_cards = [LineCard(line, can_repeat=self._can_repeat) for line in self.lines]
         for number, card in enumerate(self._line_cards):
             if card.repeat is not None:
                 card.repeat.clicked.connect(partial(self.repeat_requested.emit, card.side))
@@ -210,8 +209,8 @@ class QualityPage(Themed):
         self._scroll.setVisible(is_folded)
         self._figures_card.setVisible(not is_folded)
 
-    def _on_look_changed(self) -> None:
-        px = self._look.theme.px
+    def _apply_theme(self) -> None:
+        px = current_theme().px
         self._page.setSpacing(px(12))
         self._words.setSpacing(px(4))
         self._columns.setSpacing(px(16))
@@ -226,9 +225,9 @@ class QualityPage(Themed):
 class LineCard(Themed):
     """One thing that speaks against a figure: yellow where it keeps one from being reported."""
 
-    def __init__(self, look: ThemeNotifier, line: QualityLine, *, can_repeat: bool) -> None:
+    def __init__(self, line: QualityLine, *, can_repeat: bool) -> None:
         super().__init__()
-        self._look, self._line = look, line
+        self._line = line
         is_grave = line.is_grave
         tone, quiet = ("caution_ink", "caution_ink") if is_grave else ("ink", "ink2")
         title = f"{line.where}: {verdict_word(line.verdict)}" if line.where else verdict_alone(line.verdict)
@@ -236,23 +235,23 @@ class LineCard(Themed):
         self.repeat: Button | None = None
         words = QVBoxLayout()
         words.setSpacing(2)
-        words.addWidget(Text(look, title, size=16, weight=SEMIBOLD, tone=tone, wraps=True))
-        words.addWidget(Text(look, line.why, tone=quiet, wraps=True))
+        words.addWidget(Text(title, size=16, weight=SEMIBOLD, tone=tone, wraps=True))
+        words.addWidget(Text(line.why, tone=quiet, wraps=True))
         if line.to_do:
             to_do = QHBoxLayout()
             to_do.setSpacing(12)
-            to_do.addWidget(Text(look, tr("To do"), weight=SEMIBOLD, tone=tone), 0, Qt.AlignmentFlag.AlignTop)
-            to_do.addWidget(Text(look, line.to_do, tone=tone, wraps=True), 1)
+            to_do.addWidget(Text(tr("To do"), weight=SEMIBOLD, tone=tone), 0, Qt.AlignmentFlag.AlignTop)
+            to_do.addWidget(Text(line.to_do, tone=tone, wraps=True), 1)
             words.addLayout(to_do)
         self._row = QHBoxLayout(self)
-        self._row.addWidget(IconMark(look, VERDICT_ICONS[line.verdict], tone=tone), 0, Qt.AlignmentFlag.AlignTop)
+        self._row.addWidget(IconMark(VERDICT_ICONS[line.verdict], tone=tone), 0, Qt.AlignmentFlag.AlignTop)
         self._row.addLayout(words, 1)
         if can_repeat and line.side is not None:
             word = tr("Repeat left leg") if line.side is Side.LEFT else tr("Repeat right leg")
-            self.repeat = Button(look, word, ButtonKind.SECONDARY, Icon.REPEAT, height=44)
+            self.repeat = Button(word, ButtonKind.SECONDARY, Icon.REPEAT, height=44)
             self._row.addWidget(self.repeat, 0, Qt.AlignmentFlag.AlignBottom)
         self.setSizePolicy(QSizePolicy.Policy.Preferred, QSizePolicy.Policy.Preferred)
-        self._on_look_changed()
+        self._apply_theme()
 
     @property
     def side(self) -> Side | None:
@@ -260,13 +259,13 @@ class LineCard(Themed):
         return self._line.side
 
     def paintEvent(self, _event: QPaintEvent) -> None:
-        c, box = self._look.theme.colours, QRectF(self.rect()).adjusted(0.5, 0.5, -0.5, -0.5)
+        c, box = current_theme().colours, QRectF(self.rect()).adjusted(0.5, 0.5, -0.5, -0.5)
         is_grave = self._line.is_grave
         fill, edge = (c.caution, c.caution_edge) if is_grave else (c.surface, c.control)
-        self._look.theme.paint_box(QPainter(self), box, fill, edge, 1)
+        current_theme().paint_box(QPainter(self), box, fill, edge, 1)
 
-    def _on_look_changed(self) -> None:
-        px = self._look.theme.px
+    def _apply_theme(self) -> None:
+        px = current_theme().px
         self._row.setContentsMargins(px(16), px(12), px(16), px(12))
         self._row.setSpacing(px(12))
 
@@ -274,8 +273,8 @@ class LineCard(Themed):
 class JointsFigure(BodyFigure):
     """The legs with their sensors, and beside each joint that was measured what may be read of it."""
 
-    def __init__(self, look: ThemeNotifier) -> None:
-        super().__init__(look, legs_only=True)
+    def __init__(self) -> None:
+        super().__init__(legs_only=True)
         self._joints: dict[Joint, Verdict] = {}
         self._has_pelvis = False
 
@@ -296,7 +295,7 @@ class JointsFigure(BodyFigure):
 
     def paintEvent(self, event: QPaintEvent) -> None:
         super().paintEvent(event)
-        theme = self._look.theme
+        theme = current_theme()
         c, px = theme.colours, theme.px
         painter = QPainter(self)
         if self._has_pelvis:

@@ -26,8 +26,8 @@ from app.summary.reference_bands import age_and_height
 from app.summary.request import AnalysedVisit, default_walks
 from app.summary.tiles import tiles_of
 from app.summary.visits import ComparedVisits
+from app.theme.current import current_theme, px
 from app.theme.icons import Icon
-from app.theme.notifier import ThemeNotifier
 from app.widgets.button import Button, ButtonKind
 from app.widgets.choice import Choice
 from app.widgets.detail_button import DetailButton
@@ -73,10 +73,9 @@ class ResultPage(Themed):
 
     reported = Signal()
 
-    def __init__(self, look: ThemeNotifier, parts: ResultParts | None = None) -> None:
+    def __init__(self, parts: ResultParts | None = None) -> None:
         super().__init__()
-        parts = parts or ResultParts(look)
-        self._look = look
+        parts = parts or ResultParts()
         self._visit: AnalysedVisit | None = None
         self._facts: Facts | None = None  # of the walk on the screen
         self._headline: Headline | None = None
@@ -95,7 +94,6 @@ class ResultPage(Themed):
         self._behind = Behind.NOTHING
         self._required = ANSWER  # of a walk; kept while recordings without it are looked at
         self.view = Segmented(
-            look,
             tr("View"),
             [
                 (ANSWER, tr("Summary"), ""),
@@ -104,19 +102,19 @@ class ResultPage(Themed):
                 (STRIDES, tr("Strides"), ""),
             ],
         )
-        self.to_answer = Button(look, tr("Summary"), ButtonKind.SECONDARY, Icon.BACK, tr("Esc"))
-        self.recordings = Choice(look, tr("Recording"))
-        self.thin = ThinLineChoice(look)
+        self.to_answer = Button(tr("Summary"), ButtonKind.SECONDARY, Icon.BACK, tr("Esc"))
+        self.recordings = Choice(tr("Recording"))
+        self.thin = ThinLineChoice()
         self.recordings.let_shrink(*RECORDINGS)  # conditions are typed
-        self.part = Segmented(look, tr("Part"), [(CURVES, tr("Curves"), ""), (TABLE, tr("Table"), "")])
-        self.headline = HeadlineText(look)
-        self.tiles = TileRow(look)
-        self.differs = DiffersCard(look)
-        self.door = DetailButton(look, tr("Q"))
-        self.repeat = Button(look, tr("Repeat free motion"), ButtonKind.SECONDARY, Icon.REPEAT, height=BOTTOM)
+        self.part = Segmented(tr("Part"), [(CURVES, tr("Curves"), ""), (TABLE, tr("Table"), "")])
+        self.headline = HeadlineText()
+        self.tiles = TileRow()
+        self.differs = DiffersCard()
+        self.door = DetailButton(tr("Q"))
+        self.repeat = Button(tr("Repeat free motion"), ButtonKind.SECONDARY, Icon.REPEAT, height=BOTTOM)
         self.repeat.hide()
-        self.all_figures = Toggle(look, tr("All values"), tr("F"), is_on=False)
-        self.show_legs = Toggle(look, tr("Legs"), tr("G"), is_on=True)
+        self.all_figures = Toggle(tr("All values"), tr("F"), is_on=False)
+        self.show_legs = Toggle(tr("Legs"), tr("G"), is_on=True)
         self.cycles = parts.cycles
         self.legs = parts.legs
         self.strides = parts.strides
@@ -191,7 +189,7 @@ class ResultPage(Themed):
         if room != self._room or self._is_placed_otherwise():
             self._room = room
             self._place()
-        self.legs.setFixedWidth(max(self._look.theme.px(max(LEGS, LEGS_SHARE * width)), self.legs.least_width))
+        self.legs.setFixedWidth(max(px(max(LEGS, LEGS_SHARE * width)), self.legs.least_width))
         self._fit_parts()
         self._fit_table()
 
@@ -271,7 +269,7 @@ class ResultPage(Themed):
         self._choices = QWidget()
         choices = QHBoxLayout(self._choices)
         choices.setContentsMargins(0, 0, 0, 0)
-        self.thin_name = Text(self._look, tr("Thin line"), size=12, tone="ink2")
+        self.thin_name = Text(tr("Thin line"), size=12, tone="ink2")
         for widget in (self.part, self.recordings, self.thin_name, self.thin, self.show_legs, self._against):
             choices.addWidget(widget)
         self._figures = QWidget()
@@ -360,7 +358,7 @@ class ResultPage(Themed):
         self.tiles.set_brief(self._room.is_compact)
         self._fit_table()
         hear_as_laid_out(self)
-        self._on_look_changed()
+        self._apply_theme()
         self._offer()
 
     def _fit_parts(self) -> None:
@@ -377,7 +375,7 @@ class ResultPage(Themed):
     @property
     def _inner_width(self) -> int:
         """Between the margins of the page, in pixels."""
-        return self._look.theme.px(self._width - 2 * self._side)
+        return px(self._width - 2 * self._side)
 
     @property
     def _side(self) -> int:
@@ -394,7 +392,7 @@ class ResultPage(Themed):
     def _do_tools_fit(self) -> bool:
         """Whether views, recordings and methods fit into one row."""
         tools = (self.view, self.recordings, self.whole.methods)
-        return self._inner_width >= sum(one.sizeHint().width() for one in tools) + self._look.theme.px(3 * GAP)
+        return self._inner_width >= sum(one.sizeHint().width() for one in tools) + px(3 * GAP)
 
     def _do_choices_fit(self) -> bool:
         """Whether the views fit into one row with what is chosen in the one that is shown."""
@@ -403,19 +401,19 @@ class ResultPage(Themed):
         of_answer = self._least_of_choices()
         of_comparison = self.compare.kinds.sizeHint().width() + self.compare.bases.sizeHint().width()
         of_view = of_comparison if self.view.choice == COMPARE else of_answer
-        needed = self.view.sizeHint().width() + of_view + self._look.theme.px(3 * GAP)
+        needed = self.view.sizeHint().width() + of_view + px(3 * GAP)
         return self._inner_width >= needed
 
     def _least_of_choices(self) -> int:
         """What the choices of a summary need at least, with the gaps between them."""
         other = self.part if self._room.is_compact else self.thin
         shown = (other, self.recordings, self.show_legs)
-        return sum(map(_least_width, shown)) + self._look.theme.px((len(shown) - 1) * GAP)
+        return sum(map(_least_width, shown)) + px((len(shown) - 1) * GAP)
 
     def _has_room_for_name(self) -> bool:
         """Whether the thin line's name has room before its choice, with nothing cut."""
         shown = (self.view, self.recordings, self.thin_name, self.thin, self.show_legs)
-        needed = sum(one.sizeHint().width() for one in shown) + self._look.theme.px(len(shown) * GAP)
+        needed = sum(one.sizeHint().width() for one in shown) + px(len(shown) * GAP)
         return self._inner_width >= needed
 
     def _offer(self) -> None:
@@ -642,8 +640,8 @@ class ResultPage(Themed):
         else:
             self._show_thin()
 
-    def _on_look_changed(self) -> None:
-        px, is_compact = self._look.theme.px, self._room.is_compact
+    def _apply_theme(self) -> None:
+        px, is_compact = current_theme().px, self._room.is_compact
         side = px(self._side)
         self._page.setContentsMargins(side, px(12), side, px(8))
         self._page.setSpacing(px(10))

@@ -9,7 +9,6 @@ from app.results.cycle_page import CyclePage
 from app.results.quality_page import QualityPage
 from app.results.strides_page import StridesPage
 from app.results.whole_page import WholePage
-from app.theme.notifier import ThemeNotifier
 from app.widgets import grid
 
 COMPACT_BELOW = (940, 608)  # the charts and the rows beneath them need so much
@@ -49,32 +48,29 @@ class PageRoom:
 class ResultParts:
     """The parts of a result page that take long to be made: one at a time before they are needed, or else then."""
 
-    def __init__(self, look: ThemeNotifier) -> None:
-        self._look = look
-
     @cached_property
     def cycles(self) -> CyclePage:
-        return CyclePage(self._look)
+        return CyclePage()
 
     @cached_property
     def strides(self) -> StridesPage:
-        return StridesPage(self._look)
+        return StridesPage()
 
     @cached_property
     def compare(self) -> ComparePage:
-        return ComparePage(self._look)
+        return ComparePage()
 
     @cached_property
     def whole(self) -> WholePage:
-        return WholePage(self._look)
+        return WholePage()
 
     @cached_property
     def legs(self) -> StrideLegs:
-        return StrideLegs(self._look)
+        return StrideLegs()
 
     @cached_property
     def quality(self) -> QualityPage:
-        return QualityPage(self._look)
+        return QualityPage()
 
     def make_next(self) -> bool:
         """Make one part; whether there was one left to be made."""

@@ -8,7 +8,6 @@ from PySide6.QtWidgets import QHBoxLayout, QWidget
 
 from app.summary.conditions import by_hand_in_words
 from app.theme.icons import Icon
-from app.theme.notifier import ThemeNotifier
 from app.widgets.button import Button, ButtonKind
 from app.widgets.card import Card
 from app.widgets.stride_list import StrideLine, StrideList
@@ -29,20 +28,20 @@ class StridesPage(Card):
     all_required = Signal(str)
     chosen = Signal(object)  # curves in degrees by joint, of the stride in force
 
-    def __init__(self, look: ThemeNotifier) -> None:
-        super().__init__(look, padding=12)
+    def __init__(self) -> None:
+        super().__init__(padding=12)
         self._recording: RecordingAnalysis | None = None
-        self.list = StrideList(look, tr("Strides"))
-        self.turn = Button(look, "", ButtonKind.SECONDARY, key=tr("Space"), height=44)
-        self.all = Button(look, tr("Include all again"), ButtonKind.QUIET, Icon.REPEAT, height=44)
-        self.legend = Text(look, tr("Grey: mean of the same side."), size=12, tone="ink2")
-        self.note = Text(look, size=12, tone="ink2", wraps=True)
+        self.list = StrideList(tr("Strides"))
+        self.turn = Button("", ButtonKind.SECONDARY, key=tr("Space"), height=44)
+        self.all = Button(tr("Include all again"), ButtonKind.QUIET, Icon.REPEAT, height=44)
+        self.legend = Text(tr("Grey: mean of the same side."), size=12, tone="ink2")
+        self.note = Text(size=12, tone="ink2", wraps=True)
         self._buttons = QHBoxLayout()
         self._buttons.addWidget(self.turn)
         self._buttons.addWidget(self.all)
         self._buttons.addStretch(1)
         head = QHBoxLayout()
-        head.addWidget(Text(look, tr("Strides"), size=16, weight=SEMIBOLD))
+        head.addWidget(Text(tr("Strides"), size=16, weight=SEMIBOLD))
         head.addStretch(1)
         head.addWidget(self.legend)
         self.column.addLayout(head)

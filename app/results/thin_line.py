@@ -13,7 +13,6 @@ from app.summary.headline import Headline, Rule
 from app.summary.request import AnalysedVisit
 from app.summary.trend_lines import walked_visits
 from app.summary.visits import ComparedVisits
-from app.theme.notifier import ThemeNotifier
 from app.widgets.choice import Choice
 from app.wording.dates import day_in_words
 from app.wording.translation import tr
@@ -36,8 +35,8 @@ class ThinLine(Enum):
 class ThinLineChoice(Choice):
     """The choice, and the comparison that its curves come from."""
 
-    def __init__(self, look: ThemeNotifier) -> None:
-        super().__init__(look, tr("Thin line"))
+    def __init__(self) -> None:
+        super().__init__(tr("Thin line"))
         self.let_shrink(NARROWEST, WIDEST)  # conditions are typed
         self._visit: AnalysedVisit | None = None
         self._walks: Mapping[str, Part] = {}  # of this session, each alone

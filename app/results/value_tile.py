@@ -8,8 +8,8 @@ from PySide6.QtGui import QAccessible, QColor, QFontMetrics, QPainter, QPaintEve
 from PySide6.QtWidgets import QHBoxLayout, QSizePolicy
 
 from app.summary.tiles import Tile, TileValue
+from app.theme.current import current_theme, px
 from app.theme.leg_chip import paint_chip
-from app.theme.notifier import ThemeNotifier
 from app.theme.theme import CARD_RADIUS
 from app.widgets.painted_text import LEFT, RIGHT, PaintedText
 from app.widgets.text import MEDIUM, REGULAR, SEMIBOLD
@@ -31,16 +31,15 @@ ARROW = (9, 8)
 class TileRow(Themed):
     """All four beside each other, equally wide."""
 
-    def __init__(self, look: ThemeNotifier) -> None:
+    def __init__(self) -> None:
         super().__init__()
-        self._look = look
-        self.tiles = [ValueTile(look) for _ in range(4)]
+        self.tiles = [ValueTile() for _ in range(4)]
         self._row = QHBoxLayout(self)
         self._row.setContentsMargins(0, 0, 0, 0)
         for tile in self.tiles:
             self._row.addWidget(tile, 1)
         self.setSizePolicy(QSizePolicy.Policy.Expanding, QSizePolicy.Policy.Fixed)
-        self._on_look_changed()
+        self._apply_theme()
 
     def show_tiles(self, tiles: Sequence[Tile]) -> None:
         for widget, tile in zip(self.tiles, tiles, strict=True):
@@ -50,8 +49,8 @@ class TileRow(Themed):
         for tile in self.tiles:
             tile.set_brief(is_brief)
 
-    def _on_look_changed(self) -> None:
-        self._row.setSpacing(self._look.theme.px(12))
+    def _apply_theme(self) -> None:
+        self._row.setSpacing(px(12))
 
 
 class ValueTile(Themed):
@@ -59,9 +58,9 @@ class ValueTile(Themed):
 
     accessible_role = QAccessible.Role.StaticText
 
-    def __init__(self, look: ThemeNotifier) -> None:
+    def __init__(self) -> None:
         super().__init__()
-        self._look, self._is_brief = look, False
+        self._is_brief = False
         self.tile: Tile | None = None
         self.setSizePolicy(QSizePolicy.Policy.Expanding, QSizePolicy.Policy.Fixed)
 
@@ -77,7 +76,7 @@ class ValueTile(Themed):
         self.update()
 
     def sizeHint(self) -> QSize:
-        px = self._look.theme.px
+        px = current_theme().px
         return QSize(px(LEAST), px(BRIEF_HEIGHT if self._is_brief else HEIGHT))
 
     def minimumSizeHint(self) -> QSize:
@@ -96,7 +95,7 @@ class ValueTile(Themed):
         ]
 
     def paintEvent(self, _event: QPaintEvent) -> None:
-        theme, tile = self._look.theme, self.tile
+        theme, tile = current_theme(), self.tile
         painter = QPainter(self)
         painter.setRenderHint(QPainter.RenderHint.Antialiasing)
         box = QRectF(self.rect()).adjusted(0.5, 0.5, -0.5, -0.5)
@@ -115,7 +114,7 @@ class ValueTile(Themed):
             self._paint_bar(painter, tile, bar)
 
     def _name(self, tile: Tile) -> PaintedText:
-        theme, px = self._look.theme, self._look.theme.px
+        theme, px = current_theme(), current_theme().px
         font = theme.font(NAME - self._is_brief, MEDIUM)
         box = QRectF(px(SIDE), px(7 if self._is_brief else 9), self.width() - 2 * px(SIDE), px(20))
         metrics = QFontMetrics(font)
@@ -125,7 +124,7 @@ class ValueTile(Themed):
 
     def value_texts(self, tile: Tile) -> list[tuple[PaintedText, Side | None]]:
         """Each value, with the side whose chip follows it; the unit is text of its own."""
-        theme, px = self._look.theme, self._look.theme.px
+        theme, px = current_theme(), current_theme().px
         top, height, left = px(26 if self._is_brief else 31), px(34), float(px(SIDE))
         is_two = len(tile.values) > 1
         size = VALUE - (4 if self._is_brief else 0) - (4 if is_two else 0)
@@ -148,7 +147,7 @@ class ValueTile(Themed):
 
     def change_texts(self, tile: Tile) -> list[PaintedText]:
         """What has changed: whole where it fits, else without what its arrow states."""
-        theme, px, change = self._look.theme, self._look.theme.px, tile.change
+        theme, px, change = current_theme(), current_theme().px, tile.change
         font = theme.font(SMALL, MEDIUM)
         metrics = QFontMetrics(font)
         arrow = px(ARROW[0]) + px(5) if change.rises is not None else 0
@@ -172,7 +171,7 @@ class ValueTile(Themed):
         """Up or down before the change; filled beyond error, outlined within it."""
         if tile.change.rises is None or not (texts := self.change_texts(tile)):
             return
-        theme, px = self._look.theme, self._look.theme.px
+        theme, px = current_theme(), current_theme().px
         width, height = px(ARROW[0]), px(ARROW[1])
         left = texts[0].box.left() - width - px(5)
         middle = texts[0].box.center().y()
@@ -186,7 +185,7 @@ class ValueTile(Themed):
 
     def bar_of(self, tile: Tile) -> QRectF | None:
         """Where the scale is; None where there is no room, or nothing to show on it."""
-        px = self._look.theme.px
+        px = current_theme().px
         if self._is_brief or not any(math.isfinite(one.value) for one in tile.values):
             return None
         ends = [
@@ -200,7 +199,7 @@ class ValueTile(Themed):
         """The first goal over its tick, or alone at the right where there is no scale."""
         if not tile.goal or self._is_brief:
             return []
-        theme, px, bar = self._look.theme, self._look.theme.px, self.bar_of(tile)
+        theme, px, bar = current_theme(), current_theme().px, self.bar_of(tile)
         font = theme.font(SMALL, REGULAR)
         width = QFontMetrics(font).horizontalAdvance(tile.goal) + 1
         right = self.width() - px(SIDE)
@@ -213,7 +212,7 @@ class ValueTile(Themed):
         return [PaintedText(tile.goal, QRectF(left, px(27), width, px(16)), font, "ink2")]
 
     def _paint_bar(self, painter: QPainter, tile: Tile, bar: QRectF) -> None:
-        theme, px = self._look.theme, self._look.theme.px
+        theme, px = current_theme(), current_theme().px
         c, middle = theme.colours, bar.center().y()
         theme.paint_box(painter, bar, c.track, radius=2)
         if tile.zone is not None:
@@ -229,7 +228,7 @@ class ValueTile(Themed):
 
     def _paint_value(self, painter: QPainter, tile: Tile, one: TileValue, bar: QRectF) -> None:
         """The last visit as a ring, this one as a dot, in the leg's colour where it is of a leg."""
-        theme, px, middle = self._look.theme, self._look.theme.px, bar.center().y()
+        theme, px, middle = current_theme(), current_theme().px, bar.center().y()
         ink = theme.curve(one.side) if one.side is not None else QColor(theme.colours.ink)
         if math.isfinite(one.last):
             painter.setPen(theme.pen(ink, 1.5))
@@ -244,6 +243,6 @@ class ValueTile(Themed):
         low, high = tile.scale
         return bar.left() + bar.width() * min(max((value - low) / (high - low), 0.0), 1.0)
 
-    def _on_look_changed(self) -> None:
+    def _apply_theme(self) -> None:
         self.updateGeometry()
         self.update()

@@ -6,8 +6,8 @@ from PySide6.QtWidgets import QGridLayout, QVBoxLayout, QWidget
 
 from app.plots.angle_chart import Curve
 from app.plots.joint_charts import JointCharts
+from app.theme.current import current_theme
 from app.theme.icons import Icon
-from app.theme.notifier import ThemeNotifier
 from app.widgets.button import Button, ButtonKind
 from app.widgets.heard_order import hear_as_laid_out
 from app.widgets.segmented import Segmented
@@ -38,13 +38,11 @@ EVENT_KEYS = later("Keys [ and ] step through initial contacts and toe-offs. Pre
 class WholePage(Themed):
     """The curves, and what must be known to read them; the page around may take `methods` into a row of its own."""
 
-    def __init__(self, look: ThemeNotifier) -> None:
+    def __init__(self) -> None:
         super().__init__()
-        self._look = look
         self._recording: RecordingAnalysis | None = None
-        self.charts = JointCharts(look)
+        self.charts = JointCharts()
         self.methods = Segmented(
-            look,
             tr("Method"),
             [
                 (RESULT, tr("Result"), tr("relative orientation")),
@@ -53,9 +51,9 @@ class WholePage(Themed):
                 (BOTH, tr("Both"), tr("result and published")),
             ],
         )
-        self.shown = Text(look, size=14, tone="ink2")
-        self.to_whole = Button(look, tr("Whole recording"), ButtonKind.QUIET, Icon.WHOLE, tr("Home"), height=44)
-        self.hint = Text(look, size=12, tone="ink2", wraps=True)
+        self.shown = Text(size=14, tone="ink2")
+        self.to_whole = Button(tr("Whole recording"), ButtonKind.QUIET, Icon.WHOLE, tr("Home"), height=44)
+        self.hint = Text(size=12, tone="ink2", wraps=True)
         self._notes = QWidget()
         notes = QVBoxLayout(self._notes)
         notes.setContentsMargins(0, 0, 0, 0)
@@ -74,7 +72,7 @@ class WholePage(Themed):
         self.methods.chosen.connect(self._show_curves)
         self.charts.view_changed.connect(self._on_view_changed)
         self.to_whole.clicked.connect(self.charts.show_whole)
-        self._on_look_changed()
+        self._apply_theme()
 
     @property
     def tab_order(self) -> list[QWidget]:
@@ -131,8 +129,8 @@ class WholePage(Themed):
             self.charts.setFocus()
         self.to_whole.setVisible(not is_whole)
 
-    def _on_look_changed(self) -> None:
-        px = self._look.theme.px
+    def _apply_theme(self) -> None:
+        px = current_theme().px
         self._column.setSpacing(px(12))
         self._foot.setHorizontalSpacing(px(16))
         self._foot.setVerticalSpacing(px(8))

@@ -21,8 +21,8 @@ from PySide6.QtGui import (
 )
 from PySide6.QtWidgets import QSizePolicy, QWidget
 
+from app.theme.current import current_theme, px
 from app.theme.icons import Icon, paint_icon
-from app.theme.notifier import ThemeNotifier
 from app.widgets.button import HEIGHT, Button, ButtonKind
 from app.widgets.grid import LEAST, NARROW_BELOW, side_margin
 from app.widgets.painted_text import PaintedText
@@ -99,20 +99,19 @@ class ActionBar(Themed):
     sound_pressed = Signal()
     recording_changed = Signal(bool)
 
-    def __init__(self, look: ThemeNotifier) -> None:
+    def __init__(self) -> None:
         super().__init__()
-        self._look = look
         self._state = BarState()
         self.setSizePolicy(QSizePolicy.Policy.Expanding, QSizePolicy.Policy.Fixed)
         self.setAccessibleName(tr("Actions"))
-        self._clock = _Clock(look, self)
-        self.back = VerbButton(look, self)
+        self._clock = _Clock(self)
+        self.back = VerbButton(self)
         self._quiet: list[VerbButton] = []
-        self._title = Text(look, size=15, weight=SEMIBOLD, wraps=True, parent=self)
-        self._note = Text(look, size=14, tone="ink2", wraps=True, parent=self)
-        self.sound = VerbButton(look, self)
+        self._title = Text(size=15, weight=SEMIBOLD, wraps=True, parent=self)
+        self._note = Text(size=14, tone="ink2", wraps=True, parent=self)
+        self.sound = VerbButton(self)
         self._others: list[VerbButton] = []
-        self.primary = VerbButton(look, self, is_primary=True)
+        self.primary = VerbButton(self, is_primary=True)
         self.back.clicked.connect(self.back_pressed)
         self.primary.clicked.connect(self._on_clicked)
         self.sound.clicked.connect(self.sound_pressed)
@@ -179,7 +178,7 @@ class ActionBar(Themed):
             self._arrange()
 
     def paintEvent(self, _event: QPaintEvent) -> None:
-        theme = self._look.theme
+        theme = current_theme()
         c = theme.colours
         is_inverse = self._state.recording is not None
         painter = QPainter(self)
@@ -222,7 +221,7 @@ class ActionBar(Themed):
 
     def _keep_enough(self, buttons: list["VerbButton"], count: int) -> None:
         while len(buttons) < count:
-            button = VerbButton(self._look, self)
+            button = VerbButton(self)
             button.clicked.connect(self._on_clicked)
             buttons.append(button)
             for before, after in pairwise(self.buttons):
@@ -232,7 +231,7 @@ class ActionBar(Themed):
                 part.raise_()  # in reading order: Qt lists the parts as they are stacked
 
     def _colour(self) -> None:
-        c = self._look.theme.colours
+        c = current_theme().colours
         is_inverse = self._state.recording is not None
         for text, colour in (
             (self._title, c.inv_ink if is_inverse else c.ink),
@@ -245,8 +244,8 @@ class ActionBar(Themed):
 
     def _arrange(self) -> None:
         """Put all in one row, or the words above the verbs, or the verbs in as many rows as they need."""
-        px = self._look.theme.px
-        margin = side_margin(self.width(), self._look.theme)
+        px = current_theme().px
+        margin = side_margin(self.width(), current_theme())
         gap = px(16 if self.width() >= px(NARROW_BELOW) else 8)
         room = max(self.width(), px(LEAST)) - 2 * margin
         for button in self.buttons:
@@ -283,7 +282,7 @@ class ActionBar(Themed):
 
     def _fits(self, width: int) -> bool:
         """Return whether the words may stand beside the verbs: not squeezed, and no higher than the bar."""
-        px = self._look.theme.px
+        px = current_theme().px
         texts = [text for text in (self._title, self._note) if text.text()]
         widest = max((text.fontMetrics().horizontalAdvance(text.text()) for text in texts), default=0)
         return width >= min(widest, px(NOTE_AT_LEAST)) and self._words_height(width) <= px(BAR - 8)
@@ -294,7 +293,7 @@ class ActionBar(Themed):
 
     def _narrowed(self, box: QRect) -> QRect:
         """Give lines of a length that is read at a glance: two short ones rather than a long one."""
-        px = self._look.theme.px
+        px = current_theme().px
         if self._state.recording is not None:
             return box
         for widest in (NOTE_WIDTH, 2 * NOTE_WIDTH):
@@ -318,7 +317,7 @@ class ActionBar(Themed):
         assert isinstance(button, VerbButton)
         self.pressed.emit(button.verb)
 
-    def _on_look_changed(self) -> None:
+    def _apply_theme(self) -> None:
         self._colour()
         self._arrange()
 
@@ -335,8 +334,8 @@ class VerbButton(Button):
         What it does, nothing while it is hidden; its key holds though there may be no room for the cap.
     """
 
-    def __init__(self, look: ThemeNotifier, parent: QWidget, is_primary: bool = False) -> None:
-        super().__init__(look, "", parent=parent)
+    def __init__(self, parent: QWidget, is_primary: bool = False) -> None:
+        super().__init__("", parent=parent)
         self._is_primary = is_primary
         self.verb = _NOTHING
         self.hide()
@@ -375,16 +374,16 @@ class VerbButton(Button):
     def sizeHint(self) -> QSize:
         size = super().sizeHint()
         if self._is_primary:
-            size.setWidth(max(size.width(), self._look.theme.px(PRIMARY_WIDTH)))
+            size.setWidth(max(size.width(), px(PRIMARY_WIDTH)))
         return size
 
 
 class _Clock(QWidget):
     """The dot of a recording and its time. The dot does not blink."""
 
-    def __init__(self, look: ThemeNotifier, parent: QWidget) -> None:
+    def __init__(self, parent: QWidget) -> None:
         super().__init__(parent)
-        self._look, self._time = look, "00:00"
+        self._time = "00:00"
         self.setSizePolicy(QSizePolicy.Policy.Fixed, QSizePolicy.Policy.Fixed)
 
     def show_elapsed(self, elapsed_s: float) -> None:
@@ -396,16 +395,16 @@ class _Clock(QWidget):
 
     def painted_texts(self) -> list[PaintedText]:
         """Give the time in its box."""
-        font = self._look.theme.font(40, SEMIBOLD)
+        font = current_theme().font(40, SEMIBOLD)
         return [PaintedText(self._time, QRectF(self.rect()).adjusted(self._text_left(), 0, 0, 0), font, "inv_ink")]
 
     def sizeHint(self) -> QSize:
-        theme = self._look.theme
+        theme = current_theme()
         widest = QFontMetrics(theme.font(40, SEMIBOLD)).horizontalAdvance("000:00")
         return QSize(self._text_left() + widest, theme.px(HEIGHT))
 
     def paintEvent(self, _event: QPaintEvent) -> None:
-        theme = self._look.theme
+        theme = current_theme()
         painter = QPainter(self)
         side = theme.px(DOT * 24 / 14)  # the icon's dot is 14 of its 24
         dot = QRectF(theme.px(12) - side / 2, (self.height() - side) / 2, side, side)
@@ -414,7 +413,7 @@ class _Clock(QWidget):
             text.paint(painter, theme.colours)
 
     def _text_left(self) -> int:
-        return self._look.theme.px(36)
+        return px(36)
 
 
 def _without_time(state: BarState) -> BarState:

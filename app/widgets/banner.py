@@ -4,8 +4,8 @@ from PySide6.QtCore import QPointF, QRectF, Signal
 from PySide6.QtGui import QAccessible, QAccessibleAnnouncementEvent, QColor, QPainter, QPaintEvent
 from PySide6.QtWidgets import QHBoxLayout, QSizePolicy, QVBoxLayout
 
+from app.theme.current import current_theme
 from app.theme.icons import Icon, paint_icon
-from app.theme.notifier import ThemeNotifier
 from app.widgets.button import Button, ButtonKind
 from app.widgets.text import SEMIBOLD, Text
 from app.widgets.themed import Themed
@@ -24,14 +24,13 @@ class Banner(Themed):
     dismissed = Signal()
     acted = Signal()  # the way on that was offered
 
-    def __init__(self, look: ThemeNotifier) -> None:
+    def __init__(self) -> None:
         super().__init__()
-        self._look = look
         self.setSizePolicy(QSizePolicy.Policy.Preferred, QSizePolicy.Policy.Fixed)
-        self._what = Text(look, size=16, weight=SEMIBOLD, tone="caution_ink", wraps=True)
-        self._next = Text(look, size=14, tone="caution_ink", wraps=True)
-        self.act = Button(look, "", ButtonKind.SECONDARY, height=44)
-        self.dismiss = Button(look, tr("Dismiss"), ButtonKind.QUIET, height=44)
+        self._what = Text(size=16, weight=SEMIBOLD, tone="caution_ink", wraps=True)
+        self._next = Text(size=14, tone="caution_ink", wraps=True)
+        self.act = Button("", ButtonKind.SECONDARY, height=44)
+        self.dismiss = Button(tr("Dismiss"), ButtonKind.QUIET, height=44)
         words = QVBoxLayout()
         words.setSpacing(0)
         words.addStretch(1)
@@ -44,7 +43,7 @@ class Banner(Themed):
         self._row.addWidget(self.dismiss)
         self.act.clicked.connect(self.acted)
         self.dismiss.clicked.connect(self._on_dismiss_clicked)
-        self._on_look_changed()
+        self._apply_theme()
         self.hide()
 
     @property
@@ -63,7 +62,7 @@ class Banner(Themed):
         QAccessible.updateAccessibility(QAccessibleAnnouncementEvent(self, self.text))
 
     def paintEvent(self, _event: QPaintEvent) -> None:
-        theme = self._look.theme
+        theme = current_theme()
         c, px = theme.colours, theme.px
         painter = QPainter(self)
         box = QRectF(self.rect()).adjusted(0.5, px(ABOVE) + 0.5, -0.5, -0.5)
@@ -80,8 +79,8 @@ class Banner(Themed):
         self.hide()
         self.dismissed.emit()
 
-    def _on_look_changed(self) -> None:
-        px = self._look.theme.px
+    def _apply_theme(self) -> None:
+        px = current_theme().px
         self._row.setContentsMargins(px(16 + MARK + 12), px(ABOVE + 8), px(8), px(8))
         self._row.setSpacing(px(16))
         self.setMinimumHeight(px(HEIGHT + ABOVE))

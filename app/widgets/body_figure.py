@@ -11,7 +11,7 @@ from PySide6.QtCore import QPointF, QRectF, QSize, Qt
 from PySide6.QtGui import QAccessible, QColor, QFontMetrics, QPainter, QPainterPath, QPaintEvent, QPolygonF, QTransform
 from PySide6.QtWidgets import QSizePolicy, QWidget
 
-from app.theme.notifier import ThemeNotifier
+from app.theme.current import current_theme
 from app.theme.theme import Theme
 from app.widgets.body_shapes import BARE_LEGS, LEGS, WHOLE, body_shapes
 from app.widgets.text import SEMIBOLD
@@ -86,9 +86,9 @@ class BodyFigure(QWidget):
 
     accessible_role = QAccessible.Role.Graphic
 
-    def __init__(self, look: ThemeNotifier, legs_only: bool = False) -> None:
+    def __init__(self, legs_only: bool = False) -> None:
         super().__init__()
-        self._look, self._is_legs_only = look, legs_only
+        self._is_legs_only = legs_only
         self._is_from_behind = False
         self._beside = 0
         self._worn: dict[Site, SensorMark] = {}
@@ -156,18 +156,18 @@ class BodyFigure(QWidget):
         return self._placed().map(body_shapes().points[joint])
 
     def sizeHint(self) -> QSize:
-        px = self._look.theme.px
+        px = current_theme().px
         return QSize(px(200), px(440)) if self._is_legs_only else QSize(px(300), px(520))
 
     def minimumSizeHint(self) -> QSize:
-        theme = self._look.theme
+        theme = current_theme()
         sentence = QFontMetrics(theme.font(14)).horizontalAdvance(self._sentence())
         if self._is_legs_only:
             return QSize(max(sentence, theme.px(170)), theme.px(180))
         return QSize(max(sentence, theme.px(250)), theme.px(300))
 
     def paintEvent(self, _event: QPaintEvent) -> None:
-        theme = self._look.theme
+        theme = current_theme()
         painter = QPainter(self)
         painter.setRenderHint(QPainter.RenderHint.Antialiasing)
         place = self._placed()
@@ -190,7 +190,7 @@ class BodyFigure(QWidget):
         painter.drawText(foot, Qt.AlignmentFlag.AlignCenter, self._sentence())
 
     def _room(self) -> QRectF:
-        px = self._look.theme.px
+        px = current_theme().px
         room = QRectF(0, px(4), self.width(), self.height() - px(4 + SENTENCE_ROOM))
         if self._beside:
             part = LEGS if self._is_legs_only else WHOLE
@@ -207,7 +207,7 @@ class BodyFigure(QWidget):
 
     def _paint_letters(self, painter: QPainter, place: QTransform) -> None:
         """R and L beside the person they belong to, as large as the room is; inside the widget whatever its width."""
-        theme = self._look.theme
+        theme = current_theme()
         at = LEG_LETTER_AT if self._is_legs_only else LETTER_AT
         if self._is_legs_only and self._beside:
             at = QPointF(at.x(), ABOVE_TILES)

@@ -8,7 +8,6 @@ from PySide6.QtGui import QKeyEvent
 from PySide6.QtWidgets import QPushButton, QSizePolicy, QStyle, QStyleOptionButton, QWidget
 
 from app.theme.icons import Icon
-from app.theme.notifier import ThemeNotifier
 from app.theme.style import ButtonFace
 from app.theme.style import ButtonKind as ButtonKind
 from app.wording.translation import tr
@@ -22,7 +21,6 @@ class Button(QPushButton):
 
     def __init__(
         self,
-        look: ThemeNotifier,
         text: str,
         kind: ButtonKind = ButtonKind.SECONDARY,
         icon: Icon | None = None,
@@ -31,7 +29,7 @@ class Button(QPushButton):
         parent: QWidget | None = None,
     ) -> None:
         super().__init__(text, parent)
-        self._look, self.face = look, ButtonFace(kind, height, icon, key)
+        self.face = ButtonFace(kind, height, icon, key)
         self.setAccessibleName(text)
         self.setAccessibleDescription(tr("Key {key}").format(key=key) if key else "")
         self.setAutoDefault(False)

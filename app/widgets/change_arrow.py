@@ -5,7 +5,7 @@ from PySide6.QtGui import QColor, QPainter, QPaintEvent, QPolygonF
 from PySide6.QtWidgets import QSizePolicy, QWidget
 
 from app.summary.progress_words import Arrow
-from app.theme.notifier import ThemeNotifier
+from app.theme.current import current_theme, px
 from app.theme.theme import Theme
 
 ARROW = 10  # px, wide and high
@@ -28,14 +28,14 @@ def paint_change_arrow(painter: QPainter, box: QRectF, arrow: Arrow, theme: Them
 class ChangeArrow(QWidget):
     """The arrow beside words that state the change, so a screen reader passes over it."""
 
-    def __init__(self, look: ThemeNotifier, arrow: Arrow) -> None:
+    def __init__(self, arrow: Arrow) -> None:
         super().__init__()
-        self._look, self.arrow = look, arrow
+        self.arrow = arrow
         self.setSizePolicy(QSizePolicy.Policy.Fixed, QSizePolicy.Policy.Fixed)
 
     def sizeHint(self) -> QSize:
-        side = self._look.theme.px(ARROW + 2)
+        side = px(ARROW + 2)
         return QSize(side, side)
 
     def paintEvent(self, _event: QPaintEvent) -> None:
-        paint_change_arrow(QPainter(self), QRectF(self.rect()), self.arrow, self._look.theme)
+        paint_change_arrow(QPainter(self), QRectF(self.rect()), self.arrow, current_theme())

@@ -4,8 +4,8 @@ from PySide6.QtCore import QRectF, QSize
 from PySide6.QtGui import QAccessible, QPainter, QPaintEvent
 from PySide6.QtWidgets import QSizePolicy, QWidget
 
+from app.theme.current import current_theme, px
 from app.theme.leg_chip import CHIP, paint_chip
-from app.theme.notifier import ThemeNotifier
 from app.wording.translation import tr
 from core.body import Side
 
@@ -17,9 +17,9 @@ class Chip(QWidget):
 
     accessible_role = QAccessible.Role.Graphic
 
-    def __init__(self, look: ThemeNotifier, side: Side) -> None:
+    def __init__(self, side: Side) -> None:
         super().__init__()
-        self._look, self._side = look, side
+        self._side = side
         self.setSizePolicy(QSizePolicy.Policy.Fixed, QSizePolicy.Policy.Fixed)
         self.setAccessibleName(leg_name(side))
 
@@ -34,11 +34,11 @@ class Chip(QWidget):
             self.update()
 
     def sizeHint(self) -> QSize:
-        chip = self._look.theme.px(CHIP)
+        chip = px(CHIP)
         return QSize(chip, chip)
 
     def paintEvent(self, _event: QPaintEvent) -> None:
-        paint_chip(QPainter(self), QRectF(self.rect()), self._side, self._look.theme)
+        paint_chip(QPainter(self), QRectF(self.rect()), self._side, current_theme())
 
 
 class SideKey(QWidget):
@@ -46,18 +46,18 @@ class SideKey(QWidget):
 
     accessible_role = QAccessible.Role.Graphic
 
-    def __init__(self, look: ThemeNotifier, side: Side) -> None:
+    def __init__(self, side: Side) -> None:
         super().__init__()
-        self._look, self._side = look, side
+        self._side = side
         self.setSizePolicy(QSizePolicy.Policy.Fixed, QSizePolicy.Policy.Fixed)
         self.setAccessibleName(leg_name(side))
 
     def sizeHint(self) -> QSize:
-        px = self._look.theme.px
+        px = current_theme().px
         return QSize(px(CHIP) + px(8) + px(LINE), px(CHIP))
 
     def paintEvent(self, _event: QPaintEvent) -> None:
-        theme = self._look.theme
+        theme = current_theme()
         painter = QPainter(self)
         painter.setRenderHint(QPainter.RenderHint.Antialiasing)
         chip = theme.px(CHIP)

@@ -6,7 +6,7 @@ from PySide6.QtCore import QRect, QSize, Qt, Signal
 from PySide6.QtGui import QAccessible, QKeyEvent, QResizeEvent
 from PySide6.QtWidgets import QAbstractButton, QSizePolicy
 
-from app.theme.notifier import ThemeNotifier
+from app.theme.current import current_theme, px
 from app.widgets.button import Button, ButtonKind
 from app.widgets.themed import Themed
 
@@ -28,11 +28,9 @@ class Chips(Themed):
 
     turned = Signal()  # by the user
 
-    def __init__(
-        self, look: ThemeNotifier, name: str, options: Iterable[tuple[str, str]], rivals: tuple[str, str] | None = None
-    ) -> None:
+    def __init__(self, name: str, options: Iterable[tuple[str, str]], rivals: tuple[str, str] | None = None) -> None:
         super().__init__()
-        self._look, self._rivals = look, rivals
+        self._rivals = rivals
         self._chips: dict[str, _Chip] = {}
         self.setAccessibleName(name)
         self.setSizePolicy(QSizePolicy.Policy.Expanding, QSizePolicy.Policy.Fixed)
@@ -40,7 +38,7 @@ class Chips(Themed):
             self._add(key, word)
         self._let_tab_reach(self.buttons[0])
 
-    def _on_look_changed(self) -> None:
+    def _apply_theme(self) -> None:
         self._arrange()
 
     @property
@@ -66,7 +64,7 @@ class Chips(Themed):
         return QSize(width, self._height_for(width))
 
     def minimumSizeHint(self) -> QSize:
-        return QSize(max(chip.sizeHint().width() for chip in self._chips.values()), self._look.theme.px(HEIGHT))
+        return QSize(max(chip.sizeHint().width() for chip in self._chips.values()), px(HEIGHT))
 
     def resizeEvent(self, event: QResizeEvent) -> None:
         super().resizeEvent(event)
@@ -80,7 +78,7 @@ class Chips(Themed):
         to.setFocus(Qt.FocusReason.TabFocusReason)
 
     def _add(self, key: str, word: str) -> None:
-        chip = _Chip(self._look, word, self)
+        chip = _Chip(word, self)
         chip.clicked.connect(self._on_clicked)
         chip.show()
         self._chips[key] = chip
@@ -92,7 +90,7 @@ class Chips(Themed):
 
     def _flow(self, width: int) -> list[QRect]:
         """Where each chip lies in lines of `width`."""
-        px = self._look.theme.px
+        px = current_theme().px
         return flow([chip.sizeHint().width() for chip in self._chips.values()], width, px(GAP), px(HEIGHT))
 
     def _height_for(self, width: int) -> int:
@@ -129,8 +127,8 @@ def flow(required: Iterable[int], width: int, gap: int, height: int) -> list[QRe
 
 
 class _Chip(Button):
-    def __init__(self, look: ThemeNotifier, word: str, group: Chips) -> None:
-        super().__init__(look, word, ButtonKind.CHIP, height=HEIGHT, parent=group)
+    def __init__(self, word: str, group: Chips) -> None:
+        super().__init__(word, ButtonKind.CHIP, height=HEIGHT, parent=group)
         self._group = group
         self.setCheckable(True)
 

@@ -6,13 +6,12 @@ from PySide6.QtCore import QEvent, QPoint, QSize, Qt
 from PySide6.QtGui import QWheelEvent
 from PySide6.QtWidgets import QComboBox, QSizePolicy
 
-from app.theme.notifier import ThemeNotifier
+from app.theme.current import px
 
 
 class Choice(QComboBox):
-    def __init__(self, look: ThemeNotifier, name: str) -> None:
+    def __init__(self, name: str) -> None:
         super().__init__()
-        self._look = look
         self._least: float | None = None
         self._most = 0.0
         self._height: float | None = None
@@ -48,14 +47,14 @@ class Choice(QComboBox):
     def sizeHint(self) -> QSize:
         required = super().sizeHint()
         if self._height is not None:
-            required.setHeight(self._look.theme.px(self._height))
-        return required if self._least is None else required.boundedTo(QSize(self._look.theme.px(self._most), 99_999))
+            required.setHeight(px(self._height))
+        return required if self._least is None else required.boundedTo(QSize(px(self._most), 99_999))
 
     def minimumSizeHint(self) -> QSize:
         hint = self.sizeHint()
         if self._least is None:
             return hint
-        least = self._look.theme.px(self._least)
+        least = px(self._least)
         height = min(hint.height(), self.maximumHeight())  # where it was made lower
         return QSize(min(self._width_for(self.currentText()), least), height)
 

@@ -6,8 +6,8 @@ from PySide6.QtCore import QRectF, QSize, Qt
 from PySide6.QtGui import QFontMetrics, QPainter, QPaintEvent
 from PySide6.QtWidgets import QSizePolicy
 
+from app.theme.current import current_theme, px
 from app.theme.icons import VERDICT_ICONS, Icon, paint_icon
-from app.theme.notifier import ThemeNotifier
 from app.widgets.painted_button import PaintedButton
 from app.widgets.painted_text import LEFT, RIGHT, PaintedText
 from app.widgets.text import SEMIBOLD
@@ -35,8 +35,8 @@ class DetailText:
 class DetailButton(PaintedButton):
     """What does not fit is cut short on the screen, and read out whole."""
 
-    def __init__(self, look: ThemeNotifier, key: str) -> None:
-        super().__init__(look)
+    def __init__(self, key: str) -> None:
+        super().__init__()
         self._key, self._shown = key, DetailText(Verdict.READ, "")
         self.setFocusPolicy(Qt.FocusPolicy.StrongFocus)
         self.setSizePolicy(QSizePolicy.Policy.Expanding, QSizePolicy.Policy.Fixed)
@@ -57,7 +57,7 @@ class DetailButton(PaintedButton):
         return self._shown.details or tr("Details")
 
     def sizeHint(self) -> QSize:
-        px = self._look.theme.px
+        px = current_theme().px
         return QSize(px(LEAST_WIDTH), px(HEIGHT))
 
     def minimumSizeHint(self) -> QSize:
@@ -65,7 +65,7 @@ class DetailButton(PaintedButton):
 
     def texts(self) -> list[PaintedText]:
         """What is painted, and where."""
-        theme, height = self._look.theme, self.height()
+        theme, height = current_theme(), self.height()
         px, tone = theme.px, self._tone
         bold, plain = theme.font(14, SEMIBOLD), theme.font(14)
         right = self._cap().left() - px(10)
@@ -83,7 +83,7 @@ class DetailButton(PaintedButton):
         return found
 
     def paintEvent(self, _event: QPaintEvent) -> None:
-        theme = self._look.theme
+        theme = current_theme()
         c, px = theme.colours, theme.px
         painter = QPainter(self)
         box = QRectF(self.rect()).adjusted(0.5, 0.5, -0.5, -0.5)
@@ -104,9 +104,9 @@ class DetailButton(PaintedButton):
         return "caution_ink" if self._shown.is_caution else "ink"
 
     def _chevron(self) -> QRectF:
-        icon = self._look.theme.px(ICON)
-        return QRectF(self.width() - self._look.theme.px(PADDING) - icon, self.height() / 2 - icon / 2, icon, icon)
+        icon = px(ICON)
+        return QRectF(self.width() - px(PADDING) - icon, self.height() / 2 - icon / 2, icon, icon)
 
     def _cap(self) -> QRectF:
-        cap, right = self._look.theme.px(CAP), self._chevron().left() - self._look.theme.px(8)
+        cap, right = px(CAP), self._chevron().left() - px(8)
         return QRectF(right - cap, self.height() / 2 - cap / 2, cap, cap)

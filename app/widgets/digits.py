@@ -4,7 +4,7 @@ from PySide6.QtCore import QRectF, QSize, Qt
 from PySide6.QtGui import QColor, QFontMetricsF, QPainter, QPaintEvent
 from PySide6.QtWidgets import QSizePolicy, QWidget
 
-from app.theme.notifier import ThemeNotifier
+from app.theme.current import current_theme, px
 from app.widgets.text import SEMIBOLD
 from app.widgets.themed import Themed
 
@@ -14,9 +14,9 @@ UNIT_SHARE = 0.3  # of the figure's size
 class Digits(Themed):
     """`widest` is the longest text that is to come, for which the size is made to fit; `size` in px is the most."""
 
-    def __init__(self, look: ThemeNotifier, size: float, widest: str, unit: str = "", parent: QWidget | None = None):
+    def __init__(self, size: float, widest: str, unit: str = "", parent: QWidget | None = None):
         super().__init__(parent)
-        self._look, self._most, self._widest, self._unit, self._text = look, size, widest, unit, ""
+        self._most, self._widest, self._unit, self._text = size, widest, unit, ""
         self.setSizePolicy(QSizePolicy.Policy.Expanding, QSizePolicy.Policy.Expanding)
 
     @property
@@ -31,16 +31,16 @@ class Digits(Themed):
             self.update()
 
     def minimumSizeHint(self) -> QSize:
-        return QSize(self._look.theme.px(120), self._look.theme.px(72))
+        return QSize(px(120), px(72))
 
     def sizeHint(self) -> QSize:
-        px = self._look.theme.px
+        px = current_theme().px
         return QSize(px(self._most * 2), px(self._most))
 
     def cells(self) -> list[tuple[str, QRectF]]:
         """Each sign in its cell, from the left; the same place for the same length of text whatever its digits are."""
         size = self._size()
-        metrics = QFontMetricsF(self._look.theme.font(size, SEMIBOLD))
+        metrics = QFontMetricsF(current_theme().font(size, SEMIBOLD))
         digit = max(metrics.horizontalAdvance(one) for one in "0123456789")
         found, x = [], 0.0
         for sign in self._text:
@@ -50,7 +50,7 @@ class Digits(Themed):
         return found
 
     def paintEvent(self, _event: QPaintEvent) -> None:
-        theme, size = self._look.theme, self._size()
+        theme, size = current_theme(), self._size()
         painter = QPainter(self)
         painter.setPen(QColor(theme.colours.ink))
         painter.setFont(theme.font(size, SEMIBOLD))
@@ -66,12 +66,12 @@ class Digits(Themed):
             painter.setPen(QColor(theme.colours.ink2))
             painter.drawText(QRectF(end + theme.px(12), baseline - small.ascent(), 400, small.height()), 0, self._unit)
 
-    def _on_look_changed(self) -> None:
+    def _apply_theme(self) -> None:
         self.updateGeometry()
 
     def _size(self) -> float:
         """As large as the widest text leaves room for, in logical px."""
-        theme = self._look.theme
+        theme = current_theme()
         metrics = QFontMetricsF(theme.font(100.0, SEMIBOLD))
         digit = max(metrics.horizontalAdvance(one) for one in "0123456789")
         wide = sum(digit if one.isdigit() else metrics.horizontalAdvance(one) for one in self._widest)

@@ -18,9 +18,9 @@ from PySide6.QtGui import (
 )
 from PySide6.QtWidgets import QHBoxLayout, QLineEdit, QSizePolicy, QVBoxLayout
 
+from app.theme.current import current_theme, px
 from app.theme.icons import Icon
 from app.theme.leg_chip import paint_chip
-from app.theme.notifier import ThemeNotifier
 from app.theme.style import IS_WRONG
 from app.widgets.icons import IconMark
 from app.widgets.text import MEDIUM, REGULAR, SEMIBOLD, Text
@@ -59,7 +59,6 @@ class Field(Themed):
 
     def __init__(
         self,
-        look: ThemeNotifier,
         label: str,
         *,
         unit: str = "",
@@ -73,15 +72,15 @@ class Field(Themed):
         states_wrong: bool = True,
     ) -> None:
         super().__init__()
-        self._look, self._label, self._side, self._is_optional = look, label, side, is_optional
+        self._label, self._side, self._is_optional = label, side, is_optional
         self._states_wrong = states_wrong
         self._most, self._is_secret, self._is_too_long = most, is_secret, False
         self._is_pending = False  # edited, not yet committed
-        self._caption = Text(look, label, size=14, weight=MEDIUM)
-        self._optional = Text(look, tr("optional"), size=12, tone="ink2")
-        self._box = _Box(look, side, is_code)
-        self._wrong_mark = IconMark(look, Icon.WARNING)
-        self._wrong = Text(look, size=14, wraps=True)
+        self._caption = Text(label, size=14, weight=MEDIUM)
+        self._optional = Text(tr("optional"), size=12, tone="ink2")
+        self._box = _Box(side, is_code)
+        self._wrong_mark = IconMark(Icon.WARNING)
+        self._wrong = Text(size=14, wraps=True)
         self._caption.setBuddy(self._box)
         self._box.setPlaceholderText(placeholder)
         if is_secret:
@@ -106,7 +105,7 @@ class Field(Themed):
         self._box.editingFinished.connect(self._on_editing_finished)
         self.set_unit(unit)
         self.set_wrong("")
-        self._on_look_changed()
+        self._apply_theme()
 
     @property
     def line_edit(self) -> QLineEdit:
@@ -189,8 +188,8 @@ class Field(Themed):
         self._is_pending = False
         self.committed.emit()
 
-    def _on_look_changed(self) -> None:
-        px = self._look.theme.px
+    def _apply_theme(self) -> None:
+        px = current_theme().px
         self._column.setContentsMargins(0, 0, 0, 0)
         self._column.setSpacing(px(6))
         self._above.setSpacing(px(8))
@@ -208,7 +207,6 @@ class NumberField(Field):
 
     def __init__(
         self,
-        look: ThemeNotifier,
         label: str,
         *,
         low: float,
@@ -222,7 +220,6 @@ class NumberField(Field):
         states_wrong: bool = True,
     ) -> None:
         super().__init__(
-            look,
             label,
             unit=unit,
             is_optional=is_optional,
@@ -272,9 +269,9 @@ class NumberField(Field):
 class _Box(QLineEdit):
     """The line itself. It is as large as its frame, so that the ring round the focus goes round the frame."""
 
-    def __init__(self, look: ThemeNotifier, side: Side | None, is_code: bool) -> None:
+    def __init__(self, side: Side | None, is_code: bool) -> None:
         super().__init__()
-        self._look, self._side, self._is_code = look, side, is_code
+        self._side, self._is_code = side, is_code
         self.unit = ""
         self.setAttribute(Qt.WidgetAttribute.WA_Hover)
         self.setSizePolicy(QSizePolicy.Policy.Expanding, QSizePolicy.Policy.Fixed)
@@ -294,7 +291,7 @@ class _Box(QLineEdit):
     def sizeHint(self) -> QSize:
         margins = self.textMargins()
         letters = QFontMetrics(self.font()).horizontalAdvance("0000")
-        return QSize(letters + margins.left() + margins.right(), self._look.theme.px(HEIGHT))
+        return QSize(letters + margins.left() + margins.right(), px(HEIGHT))
 
     def minimumSizeHint(self) -> QSize:
         hint = self.sizeHint()
@@ -311,7 +308,7 @@ class _Box(QLineEdit):
 
     def paintEvent(self, event: QPaintEvent) -> None:
         super().paintEvent(event)
-        theme = self._look.theme
+        theme = current_theme()
         c, px = theme.colours, theme.px
         painter = QPainter(self)
         if self._side is not None:
@@ -328,10 +325,10 @@ class _Box(QLineEdit):
         return bool(self.property(IS_WRONG))
 
     def _unit_font(self) -> QFont:
-        return self._look.theme.font(14 if self._side is None else SIDE_TEXT - 2)
+        return current_theme().font(14 if self._side is None else SIDE_TEXT - 2)
 
     def _apply_theme(self) -> None:
-        theme = self._look.theme
+        theme = current_theme()
         px = theme.px
         self.setFont(
             theme.font(TEXT if self._side is None else SIDE_TEXT, SEMIBOLD if self._is_code else REGULAR, self._is_code)

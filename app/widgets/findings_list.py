@@ -6,8 +6,8 @@ from PySide6.QtCore import QSize, Qt
 from PySide6.QtGui import QAccessible
 from PySide6.QtWidgets import QFrame, QHBoxLayout, QScrollArea, QVBoxLayout, QWidget
 
+from app.theme.current import current_theme, px
 from app.theme.icons import SEVERITY_ICONS, Icon
-from app.theme.notifier import ThemeNotifier
 from app.widgets.icons import IconMark
 from app.widgets.text import SEMIBOLD, Text
 from app.wording.findings import sentence
@@ -28,9 +28,8 @@ USUAL = frozenset({"not_a_hinge"})  # of living joints: a figure of theirs, whic
 class FindingsList(QScrollArea):
     accessible_role = QAccessible.Role.List
 
-    def __init__(self, look: ThemeNotifier) -> None:
+    def __init__(self) -> None:
         super().__init__()
-        self._look = look
         self.setWidgetResizable(True)
         self.setFrameShape(QFrame.Shape.NoFrame)
         self.setFocusPolicy(Qt.FocusPolicy.StrongFocus)  # so that the keys can scroll it
@@ -41,14 +40,12 @@ class FindingsList(QScrollArea):
         findings = [one for one in findings if one.key not in USUAL]
         page = QWidget()
         column = QVBoxLayout(page)
-        column.setContentsMargins(0, 0, self._look.theme.px(8), 0)
-        column.setSpacing(self._look.theme.px(12))
+        column.setContentsMargins(0, 0, px(8), 0)
+        column.setSpacing(px(12))
         for finding in sorted(findings, key=lambda finding: ORDER.index(finding.severity)):
-            column.addWidget(
-                FindingRow(self._look, SEVERITY_ICONS[finding.severity], finding.severity, sentence(finding))
-            )
+            column.addWidget(FindingRow(SEVERITY_ICONS[finding.severity], finding.severity, sentence(finding)))
         if not findings:
-            column.addWidget(FindingRow(self._look, Icon.CHECK, Severity.INFO, tr(NOTHING)))
+            column.addWidget(FindingRow(Icon.CHECK, Severity.INFO, tr(NOTHING)))
         column.addStretch(1)
         self.setWidget(page)
         page.setAutoFillBackground(False)  # which a scroll area turns on: the card behind it has the colour
@@ -56,7 +53,7 @@ class FindingsList(QScrollArea):
         self.setAccessibleDescription(" ".join(sentence(finding) for finding in findings) or tr(NOTHING))
 
     def sizeHint(self) -> QSize:
-        px = self._look.theme.px
+        px = current_theme().px
         return QSize(px(LEAST_SIZE[0]), px(LEAST_SIZE[1]))
 
     def minimumSizeHint(self) -> QSize:
@@ -68,19 +65,19 @@ class FindingRow(QWidget):
 
     accessible_role = QAccessible.Role.ListItem
 
-    def __init__(self, look: ThemeNotifier, icon: Icon, severity: Severity, text: str) -> None:
+    def __init__(self, icon: Icon, severity: Severity, text: str) -> None:
         super().__init__()
         what, then = _in_two(text)
         self.setAccessibleName(f"{tr(SEVERITY_WORDS[severity])}: {text}")
         row = QHBoxLayout(self)
         row.setContentsMargins(0, 0, 0, 0)
-        row.setSpacing(look.theme.px(12))
-        row.addWidget(IconMark(look, icon), 0, Qt.AlignmentFlag.AlignTop)
+        row.setSpacing(px(12))
+        row.addWidget(IconMark(icon), 0, Qt.AlignmentFlag.AlignTop)
         words = QVBoxLayout()
         words.setSpacing(0)
-        words.addWidget(Text(look, what, weight=SEMIBOLD, wraps=True))
+        words.addWidget(Text(what, weight=SEMIBOLD, wraps=True))
         if then:
-            words.addWidget(Text(look, then, tone="ink2", wraps=True))
+            words.addWidget(Text(then, tone="ink2", wraps=True))
         row.addLayout(words, 1)
 
 

@@ -5,7 +5,7 @@ from PySide6.QtGui import QPainter, QPaintEvent, QRegion
 from PySide6.QtWidgets import QAbstractScrollArea, QApplication, QWidget
 from shiboken6 import isValid
 
-from app.theme.notifier import ThemeNotifier
+from app.theme.current import current_theme, px
 from app.theme.theme import CONTROL_RADIUS
 
 DISTANCE = 3
@@ -16,9 +16,9 @@ NO_RING = "has_no_focus_ring"  # property of a region that is read and not worke
 class FocusRing(QWidget):
     """Lies over all of `window` and follows the focus inside it."""
 
-    def __init__(self, look: ThemeNotifier, window: QWidget) -> None:
+    def __init__(self, window: QWidget) -> None:
         super().__init__(window)
-        self._look, self._window = look, window
+        self._window = window
         self._chain: list[QWidget] = []
         self.setAttribute(Qt.WidgetAttribute.WA_TransparentForMouseEvents)
         self.setAttribute(Qt.WidgetAttribute.WA_NoSystemBackground)
@@ -28,7 +28,7 @@ class FocusRing(QWidget):
         self.hide()
 
     def paintEvent(self, _event: QPaintEvent) -> None:
-        theme = self._look.theme
+        theme = current_theme()
         half = WIDTH * theme.scale / 2
         box = QRectF(self.rect()).adjusted(half, half, -half, -half)
         theme.paint_box(QPainter(self), box, None, theme.colours.ink, WIDTH, CONTROL_RADIUS + DISTANCE)
@@ -55,7 +55,7 @@ class FocusRing(QWidget):
         if seen.isEmpty() or self._chain[0].property(NO_RING):
             self.hide()
             return
-        reach = self._look.theme.px(DISTANCE + WIDTH)
+        reach = px(DISTANCE + WIDTH)
         corner = self._chain[0].mapTo(self._window, QPoint(0, 0))
         self.setGeometry(seen.translated(corner).adjusted(-reach, -reach, reach, reach))
         inside = self.rect().adjusted(2 * reach, 2 * reach, -2 * reach, -2 * reach)  # beyond the round corners

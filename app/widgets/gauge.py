@@ -11,9 +11,9 @@ from PySide6.QtCore import QPointF, QRect, QRectF, QSize, Qt
 from PySide6.QtGui import QAccessible, QColor, QFont, QFontMetrics, QPainter, QPaintEvent
 from PySide6.QtWidgets import QSizePolicy, QWidget
 
+from app.theme.current import current_theme, px
 from app.theme.icons import Icon, paint_icon
 from app.theme.leg_chip import paint_chip
-from app.theme.notifier import ThemeNotifier
 from app.theme.theme import CARD_RADIUS
 from app.widgets.text import MEDIUM, REGULAR, SEMIBOLD
 from app.wording.body import joint_name, name_of
@@ -142,9 +142,9 @@ class Gauge(QWidget):
 
     accessible_role = QAccessible.Role.Graphic
 
-    def __init__(self, look: ThemeNotifier, joint: Joint) -> None:
+    def __init__(self, joint: Joint) -> None:
         super().__init__()
-        self._look, self._joint = look, joint
+        self._joint = joint
         self._face = GaugeFace()
         self._is_compact = False
         self.setSizePolicy(QSizePolicy.Policy.Expanding, QSizePolicy.Policy.Expanding)
@@ -170,10 +170,10 @@ class Gauge(QWidget):
         self._refresh()
 
     def sizeHint(self) -> QSize:
-        return (COMPACT_CARD if self._is_compact else CARD) * self._look.theme.scale
+        return (COMPACT_CARD if self._is_compact else CARD) * current_theme().scale
 
     def minimumSizeHint(self) -> QSize:
-        px = self._look.theme.px
+        px = current_theme().px
         return QSize(px(300 if self._is_compact else 330), px(112))
 
     @property
@@ -181,7 +181,7 @@ class Gauge(QWidget):
         """Whether it is compact, or too low for all of its words under each other, as below a banner."""
         if self._is_compact:
             return True
-        px = self._look.theme.px
+        px = current_theme().px
         if self.height() < px(BLOCK + 2 * LEAST_ROUND):
             return True
         width = self._words_box(self._ring()).width()
@@ -189,7 +189,7 @@ class Gauge(QWidget):
         return any(self._lines(one, self._state_font(one, width), width) > px(BLOCK - STATE_FROM) for one in words)
 
     def paintEvent(self, event: QPaintEvent) -> None:
-        theme, face = self._look.theme, self._face
+        theme, face = current_theme(), self._face
         c = theme.colours
         painter = QPainter(self)
         painter.setRenderHint(QPainter.RenderHint.Antialiasing)
@@ -213,7 +213,7 @@ class Gauge(QWidget):
 
     def _ring(self) -> QRectF:
         """The square of the ring on a full card."""
-        px = self._look.theme.px
+        px = current_theme().px
         grow = min(self.width() / px(CARD.width()), self.height() / px(CARD.height()))
         middle = px(MIDDLE) * min(max(grow, 0.8), 1.3)
         room = min(self.height() - 2 * px(MARGIN), 2 * middle - 2 * px(MARGIN))
@@ -223,7 +223,7 @@ class Gauge(QWidget):
 
     def _words_box(self, ring: QRectF) -> QRectF:
         """Where the words of a full card are, beside its ring."""
-        px = self._look.theme.px
+        px = current_theme().px
         words = QRectF(px(PADDING), (self.height() - px(BLOCK - 4)) / 2, self.width() - 2 * px(PADDING), px(BLOCK))
         if self._joint.side is Side.RIGHT:
             words.setRight(min(ring.left() - px(16), words.left() + px(WIDEST)))
@@ -238,7 +238,7 @@ class Gauge(QWidget):
 
     def _state_font(self, words: str, width: float) -> QFont:
         """The largest in which the words have two lines' room; every state in semibold but the quiet ones."""
-        theme = self._look.theme
+        theme = current_theme()
         is_quiet = self._face.state in (GaugeState.OPEN, GaugeState.NEEDS)
         fonts = [theme.font(size, REGULAR if is_quiet else SEMIBOLD) for size in STATE_SIZES]
         room = theme.px(BLOCK - STATE_FROM)
@@ -246,7 +246,7 @@ class Gauge(QWidget):
 
     def _lines(self, words: str, font: QFont, width: float) -> int:
         """How high the words are in their lines, beside the largest mark of a state."""
-        room = QRect(0, 0, round(width) - self._look.theme.px(38), 1000)
+        room = QRect(0, 0, round(width) - px(38), 1000)
         return QFontMetrics(font).boundingRect(room, STATE_FLAGS, words).height()
 
     def _paint_full(self, painter: QPainter, part: QRect) -> None:
@@ -261,7 +261,7 @@ class Gauge(QWidget):
         self._paint_state(painter, words)
 
     def _paint_compact(self, painter: QPainter) -> None:
-        theme, face = self._look.theme, self._face
+        theme, face = current_theme(), self._face
         c, px = theme.colours, theme.px
         room = min(self.height() - px(24), px(118))
         ring = QRectF(px(14), (self.height() - room) / 2, room, room)
@@ -291,7 +291,7 @@ class Gauge(QWidget):
         )
 
     def _paint_absent(self, painter: QPainter) -> None:
-        theme = self._look.theme
+        theme = current_theme()
         px = theme.px
         words = QRectF(self.rect()).adjusted(px(PADDING), px(24), -px(PADDING), -px(10))
         if self.is_brief:
@@ -318,7 +318,7 @@ class Gauge(QWidget):
             box.adjust(step, step, -step, -step)
 
     def _paint_ring(self, painter: QPainter, box: QRectF, width: float, share: float) -> None:
-        theme, side = self._look.theme, self._joint.side
+        theme, side = current_theme(), self._joint.side
         pen = theme.pen(theme.colours.track, 1)
         pen.setWidthF(width)
         pen.setCapStyle(Qt.PenCapStyle.FlatCap)
@@ -335,7 +335,7 @@ class Gauge(QWidget):
         painter.drawArc(box, 90 * 16, -round(share * 360 * 16))
 
     def _paint_value(self, painter: QPainter, ring: QRectF) -> None:
-        theme, middle = self._look.theme, Qt.AlignmentFlag.AlignCenter
+        theme, middle = current_theme(), Qt.AlignmentFlag.AlignCenter
         grow = ring.width() / RING / theme.scale
         size, second_size = min(LARGEST_VALUE, VALUE * grow), max(14.0, 20 * min(grow, 1.2))
         main, second = self._figures()
@@ -353,7 +353,7 @@ class Gauge(QWidget):
         painter.drawText(below, middle, second)
 
     def _paint_name(self, painter: QPainter, words: QRectF) -> float:
-        theme = self._look.theme
+        theme = current_theme()
         chip = theme.px(CHIP)
         paint_chip(painter, QRectF(words.left(), words.top(), chip, chip), self._joint.side, theme)
         painter.setPen(QColor(theme.colours.ink))
@@ -365,7 +365,7 @@ class Gauge(QWidget):
 
     def _paint_rows(self, painter: QPainter, words: QRectF) -> None:
         """What is asked for, and whether it is met: in words, for rings are read by nobody at once."""
-        theme, face = self._look.theme, self._face
+        theme, face = current_theme(), self._face
         c, px = theme.colours, theme.px
         top = words.top() + px(ROWS_FROM)
         for name, measure in ((tr("Axis"), face.axis), (tr("Centre"), face.centre)):
@@ -392,7 +392,7 @@ class Gauge(QWidget):
         painter.drawLine(QPointF(words.left(), rule), QPointF(words.right(), rule))
 
     def _paint_state(self, painter: QPainter, words: QRectF) -> None:
-        theme, face = self._look.theme, self._face
+        theme, face = current_theme(), self._face
         c, px = theme.colours, theme.px
         word, icon = self._state_words, _ICONS[face.state]
         line = words.adjusted(0, px(STATE_FROM), 0, 0)
@@ -414,7 +414,7 @@ class Gauge(QWidget):
         painter.drawText(QRectF(x, line.top(), line.right() - x + 1, line.height()), STATE_FLAGS, word)
 
     def _paint_state_word(self, painter: QPainter, place: QRectF) -> None:
-        theme, state = self._look.theme, self._face.state
+        theme, state = current_theme(), self._face.state
         word, is_open = self._state_words, state in (GaugeState.OPEN, GaugeState.NEEDS)
         is_short = state in (GaugeState.NOW, GaugeState.OPEN)
         painter.setPen(QColor(theme.colours.ink2 if is_open else theme.colours.ink))
@@ -436,9 +436,9 @@ class Gauge(QWidget):
 
     def _fitting(self, text: str, size: float, width: float, weight: QFont.Weight = SEMIBOLD) -> QFont:
         """The font of `size`, or of the largest below in which the text has its room."""
-        font = self._look.theme.font(size, weight)
+        font = current_theme().font(size, weight)
         wide = QFontMetrics(font).horizontalAdvance(text)
-        return font if wide <= width else self._look.theme.font(max(12.0, size * width / wide - 0.5), weight)
+        return font if wide <= width else current_theme().font(max(12.0, size * width / wide - 0.5), weight)
 
     def _name(self) -> None:
         """Left knee, axis 11°, under 1.5° needed, centre 34 mm, under 10 mm needed, move now."""

@@ -4,7 +4,7 @@ from PySide6.QtCore import QPoint, QPointF, QRect, QRectF, QSize, Qt
 from PySide6.QtGui import QColor, QPainter, QPaintEvent, QResizeEvent
 from PySide6.QtWidgets import QSizePolicy, QWidget
 
-from app.theme.notifier import ThemeNotifier
+from app.theme.current import current_theme, px
 from app.theme.theme import CHIP_RADIUS
 from app.widgets.grid import LEAST, side_margin
 from app.widgets.stopwatch import Stopwatch
@@ -25,17 +25,17 @@ class Header(Themed):
     Where all does not fit into one line, what is at the right moves to a second.
     """
 
-    def __init__(self, look: ThemeNotifier, has_mark: bool = True) -> None:
+    def __init__(self, has_mark: bool = True) -> None:
         super().__init__()
-        self._look, self._has_mark, self._is_compact = look, has_mark, False
+        self._has_mark, self._is_compact = has_mark, False
         self.setSizePolicy(QSizePolicy.Policy.Expanding, QSizePolicy.Policy.Fixed)
-        self._mark = ProductMark(look)
-        self._name = Text(look, "Gaitwright", size=18, weight=SEMIBOLD)
-        self.code = Text(look, size=22, weight=SEMIBOLD, is_code=True)
-        self.facts = Text(look, size=14, tone="ink2", wraps=True)
-        self.simulated = Tag(look, tr("SIMULATED"))
-        self.fold = StripButton(look)
-        self.stopwatch = Stopwatch(look)
+        self._mark = ProductMark()
+        self._name = Text("Gaitwright", size=18, weight=SEMIBOLD)
+        self.code = Text(size=22, weight=SEMIBOLD, is_code=True)
+        self.facts = Text(size=14, tone="ink2", wraps=True)
+        self.simulated = Tag(tr("SIMULATED"))
+        self.fold = StripButton()
+        self.stopwatch = Stopwatch()
         self._left: list[QWidget] = [self._mark, self._name, self.code, self.facts, self.simulated]
         self._right: list[QWidget] = [self.fold, self.stopwatch]
         for widget in (*self._left, *self._right):
@@ -46,7 +46,7 @@ class Header(Themed):
         self.fold.resized.connect(self._arrange)
         self._shown: tuple[str, str, bool] | None = None
         self.show_session("", "", is_simulated=False)
-        self._on_look_changed()
+        self._apply_theme()
 
     def show_session(self, code: str, facts: str, is_simulated: bool) -> None:
         """Show the patient's code and what the clinic typed; without a session, the program's name."""
@@ -85,15 +85,15 @@ class Header(Themed):
             self._arrange()
 
     def paintEvent(self, _event: QPaintEvent) -> None:
-        theme = self._look.theme
+        theme = current_theme()
         painter = QPainter(self)
         painter.fillRect(self.rect(), QColor(theme.colours.surface))
         painter.setPen(theme.pen(theme.colours.line, 1))
         painter.drawLine(self.rect().bottomLeft(), self.rect().bottomRight())
 
     def _arrange(self) -> None:
-        px = self._look.theme.px
-        margin, gap = side_margin(self.width(), self._look.theme), px(16)
+        px = current_theme().px
+        margin, gap = side_margin(self.width(), current_theme()), px(16)
         line = px(COMPACT_HEIGHT if self._is_compact else HEIGHT)
         room = max(self.width(), px(LEAST)) - 2 * margin
         left = [widget for widget in self._left if not widget.isHidden()]
@@ -135,24 +135,23 @@ class Header(Themed):
             top += height
         self.setFixedHeight(top + px(4))
 
-    def _on_look_changed(self) -> None:
+    def _apply_theme(self) -> None:
         self._arrange()
 
 
 class ProductMark(QWidget):
     """The program's mark: two legs, left solid, right dashed."""
 
-    def __init__(self, look: ThemeNotifier) -> None:
+    def __init__(self) -> None:
         super().__init__()
-        self._look = look
         self.setSizePolicy(QSizePolicy.Policy.Fixed, QSizePolicy.Policy.Fixed)
 
     def sizeHint(self) -> QSize:
-        side = self._look.theme.px(28)
+        side = px(28)
         return QSize(side, side)
 
     def paintEvent(self, _event: QPaintEvent) -> None:
-        theme = self._look.theme
+        theme = current_theme()
         painter = QPainter(self)
         painter.setRenderHint(QPainter.RenderHint.Antialiasing)
         unit = self.width() / 24
@@ -169,18 +168,18 @@ class ProductMark(QWidget):
 class Tag(Text):
     """A word that must not be overlooked, on yellow."""
 
-    def __init__(self, look: ThemeNotifier, text: str) -> None:
-        super().__init__(look, text, size=13, weight=SEMIBOLD, tone="caution_ink")
+    def __init__(self, text: str) -> None:
+        super().__init__(text, size=13, weight=SEMIBOLD, tone="caution_ink")
         self.setSizePolicy(QSizePolicy.Policy.Fixed, QSizePolicy.Policy.Fixed)
 
     def paintEvent(self, event: QPaintEvent) -> None:
-        c, painter = self._look.theme.colours, QPainter(self)
+        c, painter = current_theme().colours, QPainter(self)
         box = QRectF(self.rect()).adjusted(1, 1, -1, -1)
-        self._look.theme.paint_box(painter, box, c.caution, c.caution_edge, radius=CHIP_RADIUS)
+        current_theme().paint_box(painter, box, c.caution, c.caution_edge, radius=CHIP_RADIUS)
         painter.end()
         super().paintEvent(event)
 
-    def _on_look_changed(self) -> None:
-        super()._on_look_changed()
-        px = self._look.theme.px
+    def _apply_theme(self) -> None:
+        super()._apply_theme()
+        px = current_theme().px
         self.setContentsMargins(px(10), px(4), px(10), px(4))

@@ -6,8 +6,8 @@ from PySide6.QtCore import QRectF, QSize, Qt
 from PySide6.QtGui import QAccessible, QAccessibleAnnouncementEvent, QColor, QFontMetrics, QPainter, QPaintEvent
 from PySide6.QtWidgets import QSizePolicy, QWidget
 
+from app.theme.current import current_theme, px
 from app.theme.icons import Icon, paint_icon
-from app.theme.notifier import ThemeNotifier
 from app.theme.theme import CARD_RADIUS
 from app.widgets.text import MEDIUM, SEMIBOLD
 from app.wording.numbers import clock
@@ -35,9 +35,8 @@ class Hint:
 class HintBand(QWidget):
     accessible_role = QAccessible.Role.Note
 
-    def __init__(self, look: ThemeNotifier) -> None:
+    def __init__(self) -> None:
         super().__init__()
-        self._look = look
         self._hint = Hint("")
         self._elapsed, self._usual = "", ""
         self._is_compact = False
@@ -71,7 +70,7 @@ class HintBand(QWidget):
         self._refresh()
 
     def sizeHint(self) -> QSize:
-        px = self._look.theme.px
+        px = current_theme().px
         height = COMPACT_HEIGHT if self._is_compact else LARGE_HEIGHT if self._is_large else HEIGHT
         return QSize(px(480), px(height))
 
@@ -79,7 +78,7 @@ class HintBand(QWidget):
         return self.sizeHint()
 
     def paintEvent(self, _event: QPaintEvent) -> None:
-        theme, hint = self._look.theme, self._hint
+        theme, hint = current_theme(), self._hint
         c, px = theme.colours, theme.px
         painter = QPainter(self)
         theme.paint_box(painter, QRectF(self.rect()), c.inv, radius=CARD_RADIUS)
@@ -109,7 +108,7 @@ class HintBand(QWidget):
 
     def _paint_words(self, painter: QPainter, words: QRectF) -> None:
         """The sentence as large as it may be and still fits; what to add under it."""
-        theme, hint = self._look.theme, self._hint
+        theme, hint = current_theme(), self._hint
         c, px = theme.colours, theme.px
         size: float = COMPACT_SENTENCE if self._is_compact else LARGE_SENTENCE if self._is_large else SENTENCE
         width = QFontMetrics(theme.font(size, SEMIBOLD)).horizontalAdvance(hint.sentence)
@@ -132,11 +131,11 @@ class HintBand(QWidget):
 
     @property
     def _is_large(self) -> bool:
-        return not self._is_compact and self.width() >= self._look.theme.px(LARGE_FROM)
+        return not self._is_compact and self.width() >= px(LARGE_FROM)
 
     def _clock(self) -> QRectF:
-        px = self._look.theme.px
-        small = self._look.theme.font(14 if self._is_compact else 16, MEDIUM)
+        px = current_theme().px
+        small = current_theme().font(14 if self._is_compact else 16, MEDIUM)
         width = max(px(128), QFontMetrics(small).horizontalAdvance(self._usual) + px(4))
         height = px(64 if self._is_compact else 88)
         return QRectF(self.width() - px(24) - width, (self.height() - height) / 2, width, height)

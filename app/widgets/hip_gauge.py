@@ -10,9 +10,9 @@ from PySide6.QtCore import QRectF, QSize, Qt
 from PySide6.QtGui import QAccessible, QColor, QFontMetrics, QPainter, QPaintEvent
 from PySide6.QtWidgets import QSizePolicy, QWidget
 
+from app.theme.current import current_theme, px
 from app.theme.icons import Icon, paint_icon
 from app.theme.leg_chip import paint_chip
-from app.theme.notifier import ThemeNotifier
 from app.theme.theme import CARD_RADIUS
 from app.widgets.gauge import DASH, DASHES, UNKNOWN, GaugeMeasure, gauge_measure
 from app.widgets.painted_text import RIGHT, PaintedText, height_for
@@ -59,9 +59,9 @@ class HipGauge(QWidget):
 
     accessible_role = QAccessible.Role.Graphic
 
-    def __init__(self, look: ThemeNotifier, joint: Joint) -> None:
+    def __init__(self, joint: Joint) -> None:
         super().__init__()
-        self._look, self._joint = look, joint
+        self._joint = joint
         self._face = HipFace()
         self._is_compact = False
         self.setSizePolicy(QSizePolicy.Policy.Expanding, QSizePolicy.Policy.Maximum)
@@ -84,24 +84,24 @@ class HipGauge(QWidget):
         self.update()
 
     def sizeHint(self) -> QSize:
-        px = self._look.theme.px
+        px = current_theme().px
         return QSize(px(300), px(COMPACT_HEIGHT if self._is_compact else HEIGHT))
 
     def minimumSizeHint(self) -> QSize:
-        px = self._look.theme.px
+        px = current_theme().px
         return QSize(px(300), px(LEAST_HEIGHT))
 
     @property
     def _is_low(self) -> bool:
-        return self.height() < self._look.theme.px(LOW_BELOW)
+        return self.height() < px(LOW_BELOW)
 
     @property
     def _chip(self) -> int:
-        return self._look.theme.px(LOW_CHIP if self._is_low else CHIP)
+        return px(LOW_CHIP if self._is_low else CHIP)
 
     def painted_texts(self) -> list[PaintedText]:
         """Give what is painted now, each in its box."""
-        theme, face = self._look.theme, self._face
+        theme, face = current_theme(), self._face
         px = theme.px
         box = QRectF(self.rect()).adjusted(px(14), 0, -px(14), 0)
         left = self._chip_left() + self._chip + px(8)
@@ -131,7 +131,7 @@ class HipGauge(QWidget):
         )
 
     def paintEvent(self, _event: QPaintEvent) -> None:
-        theme, face = self._look.theme, self._face
+        theme, face = current_theme(), self._face
         c = theme.colours
         painter = QPainter(self)
         painter.setRenderHint(QPainter.RenderHint.Antialiasing)
@@ -151,16 +151,16 @@ class HipGauge(QWidget):
             text.paint(painter, c)
 
     def _ring(self) -> QRectF:
-        px = self._look.theme.px
+        px = current_theme().px
         side = min(px(RING), self.height() - px(16))
         return QRectF(px(14), (self.height() - side) / 2, side, side)
 
     def _chip_left(self) -> float:
-        px = self._look.theme.px
+        px = current_theme().px
         return px(14) if self._is_low else self._ring().right() + px(12)
 
     def _paint_ring(self, painter: QPainter, room: QRectF) -> None:
-        theme, face, side = self._look.theme, self._face, self._joint.side
+        theme, face, side = current_theme(), self._face, self._joint.side
         width = theme.px(WIDTH)
         box = room.adjusted(width / 2, width / 2, -width / 2, -width / 2)
         pen = theme.pen(theme.colours.track, 1)

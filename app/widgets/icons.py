@@ -4,16 +4,16 @@ from PySide6.QtCore import QRectF, QSize
 from PySide6.QtGui import QPainter, QPaintEvent
 from PySide6.QtWidgets import QSizePolicy, QWidget
 
+from app.theme.current import current_theme, px
 from app.theme.icons import Icon, paint_icon
-from app.theme.notifier import ThemeNotifier
 
 
 class IconMark(QWidget):
     """An icon beside words. The words say what it shows, so a screen reader passes over it."""
 
-    def __init__(self, look: ThemeNotifier, icon: Icon, size: float = 20, tone: str = "ink") -> None:
+    def __init__(self, icon: Icon, size: float = 20, tone: str = "ink") -> None:
         super().__init__()
-        self._look, self._icon, self._size, self._tone = look, icon, size, tone
+        self._icon, self._size, self._tone = icon, size, tone
         self.setSizePolicy(QSizePolicy.Policy.Fixed, QSizePolicy.Policy.Fixed)
 
     def set_icon(self, icon: Icon) -> None:
@@ -21,9 +21,9 @@ class IconMark(QWidget):
         self.update()
 
     def sizeHint(self) -> QSize:
-        side = self._look.theme.px(self._size)
+        side = px(self._size)
         return QSize(side, side)
 
     def paintEvent(self, _event: QPaintEvent) -> None:
         painter = QPainter(self)
-        paint_icon(painter, self._icon, QRectF(self.rect()), getattr(self._look.theme.colours, self._tone))
+        paint_icon(painter, self._icon, QRectF(self.rect()), getattr(current_theme().colours, self._tone))

@@ -4,8 +4,8 @@ from PySide6.QtCore import QRectF, QSize
 from PySide6.QtGui import QPainter, QPaintEvent
 from PySide6.QtWidgets import QSizePolicy, QToolTip
 
+from app.theme.current import current_theme, px
 from app.theme.icons import Icon, paint_icon
-from app.theme.notifier import ThemeNotifier
 from app.widgets.painted_button import PaintedButton
 
 ICON, TARGET = 18, 24
@@ -14,8 +14,8 @@ ICON, TARGET = 18, 24
 class InfoButton(PaintedButton):
     """Pressed, or under the mouse, it shows its words; hidden while it has none."""
 
-    def __init__(self, look: ThemeNotifier, name: str) -> None:
-        super().__init__(look)
+    def __init__(self, name: str) -> None:
+        super().__init__()
         self.setAccessibleName(name)
         self.setSizePolicy(QSizePolicy.Policy.Fixed, QSizePolicy.Policy.Fixed)
         self.clicked.connect(self._show)
@@ -31,11 +31,11 @@ class InfoButton(PaintedButton):
         self.setVisible(bool(words))
 
     def sizeHint(self) -> QSize:
-        side = self._look.theme.px(TARGET)
+        side = px(TARGET)
         return QSize(side, side)
 
     def paintEvent(self, _event: QPaintEvent) -> None:
-        theme, painter = self._look.theme, QPainter(self)
+        theme, painter = current_theme(), QPainter(self)
         side, box = theme.px(ICON), QRectF(self.rect())
         self.paint_veil(painter, box)
         place = QRectF(box.center().x() - side / 2, box.center().y() - side / 2, side, side)

@@ -6,7 +6,7 @@ from PySide6.QtCore import QEvent, QMimeData, QSize, Qt
 from PySide6.QtGui import QColor, QPalette, QTextBlockFormat, QTextOption
 from PySide6.QtWidgets import QFrame, QSizePolicy, QTextEdit
 
-from app.theme.notifier import ThemeNotifier
+from app.theme.current import current_theme, px
 from app.widgets.text import SEMIBOLD
 
 COLUMNS = 3
@@ -22,9 +22,8 @@ class KeyGroups(QTextEdit):
     and copies means to.
     """
 
-    def __init__(self, look: ThemeNotifier) -> None:
+    def __init__(self) -> None:
         super().__init__()
-        self._look = look
         self._groups: list[str] = []
         self.setReadOnly(True)
         self.setUndoRedoEnabled(False)  # nothing of a key stays where it is taken away
@@ -39,7 +38,7 @@ class KeyGroups(QTextEdit):
         self.setSizePolicy(QSizePolicy.Policy.Expanding, QSizePolicy.Policy.Fixed)
         self.document().setDocumentMargin(0)
         self.viewport().setAutoFillBackground(False)
-        self._on_look_changed()
+        self._apply_theme()
 
     @property
     def text(self) -> str:
@@ -60,10 +59,10 @@ class KeyGroups(QTextEdit):
     def changeEvent(self, event: QEvent) -> None:
         super().changeEvent(event)
         if event.type() is QEvent.Type.StyleChange:
-            self._on_look_changed()
+            self._apply_theme()
 
     def sizeHint(self) -> QSize:
-        return QSize(self._look.theme.px(COLUMNS * WIDTH), self._look.theme.px(ROW) * len(self._rows))
+        return QSize(px(COLUMNS * WIDTH), px(ROW) * len(self._rows))
 
     def minimumSizeHint(self) -> QSize:
         return self.sizeHint()
@@ -77,12 +76,12 @@ class KeyGroups(QTextEdit):
         cursor = self.textCursor()
         cursor.select(cursor.SelectionType.Document)
         form = cursor.blockFormat()
-        form.setLineHeight(self._look.theme.px(ROW), QTextBlockFormat.LineHeightTypes.FixedHeight.value)
+        form.setLineHeight(px(ROW), QTextBlockFormat.LineHeightTypes.FixedHeight.value)
         cursor.setBlockFormat(form)
         self.updateGeometry()
 
-    def _on_look_changed(self) -> None:
-        theme = self._look.theme
+    def _apply_theme(self) -> None:
+        theme = current_theme()
         self.setFont(theme.font(SIZE, SEMIBOLD, is_code=True))
         self.setTabStopDistance(theme.px(WIDTH))
         palette = self.palette()

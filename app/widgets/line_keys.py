@@ -6,16 +6,15 @@ from PySide6.QtCore import QSize
 from PySide6.QtGui import QPainter, QPaintEvent, QPen
 from PySide6.QtWidgets import QHBoxLayout, QSizePolicy, QWidget
 
-from app.theme.notifier import ThemeNotifier
+from app.theme.current import px
 from app.widgets.text import Text
 
 KEY = 28
 
 
 class LineKeys(QWidget):
-    def __init__(self, look: ThemeNotifier) -> None:
+    def __init__(self) -> None:
         super().__init__()
-        self._look = look
         self._row = QHBoxLayout(self)
         self._row.setContentsMargins(0, 0, 0, 0)
 
@@ -26,22 +25,22 @@ class LineKeys(QWidget):
                 widget.hide()
                 widget.deleteLater()
         for pen_of, name in keys:
-            self._row.addWidget(_Line(self._look, pen_of))
-            self._row.addWidget(Text(self._look, name, size=12, tone="ink2"))
-            self._row.addSpacing(self._look.theme.px(8))
+            self._row.addWidget(_Line(pen_of))
+            self._row.addWidget(Text(name, size=12, tone="ink2"))
+            self._row.addSpacing(px(8))
         self._row.addStretch(1)
 
 
 class _Line(QWidget):
     """A piece of a line as it is drawn in the picture."""
 
-    def __init__(self, look: ThemeNotifier, pen_of: Callable[[], QPen]) -> None:
+    def __init__(self, pen_of: Callable[[], QPen]) -> None:
         super().__init__()
-        self._look, self._pen_of = look, pen_of
+        self._pen_of = pen_of
         self.setSizePolicy(QSizePolicy.Policy.Fixed, QSizePolicy.Policy.Preferred)
 
     def sizeHint(self) -> QSize:
-        return QSize(self._look.theme.px(KEY), self._look.theme.px(16))
+        return QSize(px(KEY), px(16))
 
     def paintEvent(self, _event: QPaintEvent) -> None:
         painter = QPainter(self)

@@ -11,8 +11,8 @@ from PySide6.QtGui import QColor, QFont, QFontMetrics, QPainter, QResizeEvent
 from PySide6.QtWidgets import QStyle, QStyleOptionViewItem
 
 from app.summary.progress_words import Arrow
+from app.theme.current import current_theme, px
 from app.theme.icons import Icon, paint_icon
-from app.theme.notifier import ThemeNotifier
 from app.theme.theme import CARD_RADIUS, Theme
 from app.widgets.change_arrow import ARROW, paint_change_arrow
 from app.widgets.table import CellTable, Index, TableColumn, TableRow
@@ -305,14 +305,13 @@ class LineList(CellTable):
 
     def __init__(
         self,
-        look: ThemeNotifier,
         name: str,
         is_opened_by_click: bool = False,
         row: int = ROW,
         head: int = 0,
         chosen_on: str = "sunken",
     ) -> None:
-        super().__init__(look, name, row=row, head=head, padding=PAD, edge=PAD, is_list=True)
+        super().__init__(name, row=row, head=head, padding=PAD, edge=PAD, is_list=True)
         self.lines: tuple[Line, ...] = ()
         self._longest: list[LineCell] = []
         self._chosen_on = chosen_on
@@ -331,7 +330,7 @@ class LineList(CellTable):
     def word_room(self) -> int:
         """The width that words have, whether or not there is a scroll bar."""
         bar = self.verticalScrollBar().sizeHint().width() if self._are_even else 0
-        return self.width() - bar - 2 * self._look.theme.px(PAD)
+        return self.width() - bar - 2 * px(PAD)
 
     @property
     def in_sight(self) -> tuple[Line, ...]:
@@ -385,7 +384,7 @@ class LineList(CellTable):
         """Make every line as high as its words in this width, or all of thousands as high as the longest one."""
         if self._are_even:
             heights = [self._height(cell) for cell in self._longest]
-            self.verticalHeader().setDefaultSectionSize(max([self._look.theme.px(self._row), *heights]))
+            self.verticalHeader().setDefaultSectionSize(max([px(self._row), *heights]))
         else:
             for number, row in enumerate(self.cells.rows):
                 self.setRowHeight(number, self._height(row.cells[0]))
@@ -393,7 +392,7 @@ class LineList(CellTable):
 
     def paint_ground(self, painter: QPainter, option: QStyleOptionViewItem, index: Index) -> None:
         """A line under each row; the row that is chosen or under the mouse has a round ground."""
-        theme = self._look.theme
+        theme = current_theme()
         c, px, rect = theme.colours, theme.px, option.rect
         is_chosen = bool(option.state & QStyle.StateFlag.State_Selected)
         box = QRectF(rect).adjusted(0.5, 0.5, -0.5, -0.5)
@@ -421,7 +420,7 @@ class LineList(CellTable):
 
     def _height(self, cell: TableCell) -> int:
         assert isinstance(cell, LineCell)
-        px, rows = self._look.theme.px, len(cell.word_rows(self.word_room, self._look.theme))
+        px, rows = current_theme().px, len(cell.word_rows(self.word_room, current_theme()))
         held = ROWS_HELD if self._are_even else 2
         return px(self._row) + max(0, rows - held) * px(TEXT_ROW)
 

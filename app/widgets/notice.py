@@ -4,8 +4,8 @@ from PySide6.QtCore import QRectF, Qt
 from PySide6.QtGui import QAccessible, QAccessibleAnnouncementEvent, QPainter, QPaintEvent
 from PySide6.QtWidgets import QHBoxLayout, QSizePolicy, QVBoxLayout
 
+from app.theme.current import current_theme
 from app.theme.icons import Icon, paint_icon
-from app.theme.notifier import ThemeNotifier
 from app.widgets.text import SEMIBOLD, Text
 from app.widgets.themed import Themed
 
@@ -18,20 +18,20 @@ class Notice(Themed):
 
     accessible_role = QAccessible.Role.Note
 
-    def __init__(self, look: ThemeNotifier, size: float = 18, padding: int = PADDING) -> None:
+    def __init__(self, size: float = 18, padding: int = PADDING) -> None:
         super().__init__()
-        self._look, self._padding = look, padding
+        self._padding = padding
         self._icon: Icon | None = None
         self._is_caution = False
         self.setSizePolicy(QSizePolicy.Policy.Preferred, QSizePolicy.Policy.Preferred)  # fixed ones may not wrap
-        self._what = Text(look, size=size, weight=SEMIBOLD, wraps=True)
-        self._then = Text(look, size=14, tone="ink2", wraps=True)
+        self._what = Text(size=size, weight=SEMIBOLD, wraps=True)
+        self._then = Text(size=14, tone="ink2", wraps=True)
         self._words = QVBoxLayout()
         self._words.addWidget(self._what)
         self._words.addWidget(self._then)
         self._row = QHBoxLayout(self)
         self._row.addLayout(self._words, 1)
-        self._on_look_changed()
+        self._apply_theme()
 
     @property
     def text(self) -> str:
@@ -55,7 +55,7 @@ class Notice(Themed):
         self.update()
 
     def paintEvent(self, _event: QPaintEvent) -> None:
-        theme = self._look.theme
+        theme = current_theme()
         c, px = theme.colours, theme.px
         painter = QPainter(self)
         if self._is_caution:
@@ -70,8 +70,8 @@ class Notice(Themed):
             mark = QRectF(px(PADDING), middle - px(ICON) / 2, px(ICON), px(ICON))
             paint_icon(painter, self._icon, mark, c.caution_ink if self._is_caution else c.ink)
 
-    def _on_look_changed(self) -> None:
-        px = self._look.theme.px
+    def _apply_theme(self) -> None:
+        px = current_theme().px
         above = px(self._padding)
         self._row.setContentsMargins(px(PADDING + ICON + 8), above, px(PADDING), above)
         self._words.setSpacing(px(2))

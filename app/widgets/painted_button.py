@@ -4,7 +4,7 @@ from PySide6.QtCore import QRectF, Qt
 from PySide6.QtGui import QKeyEvent, QPainter
 from PySide6.QtWidgets import QAbstractButton, QWidget
 
-from app.theme.notifier import ThemeNotifier
+from app.theme.current import current_theme
 from app.theme.theme import CONTROL_RADIUS
 
 
@@ -13,9 +13,8 @@ class PaintedButton(QAbstractButton):
 
     pressing_keys: tuple[Qt.Key, ...] = (Qt.Key.Key_Return, Qt.Key.Key_Enter)
 
-    def __init__(self, look: ThemeNotifier, parent: QWidget | None = None) -> None:
+    def __init__(self, parent: QWidget | None = None) -> None:
         super().__init__(parent)
-        self._look = look
         self.setAttribute(Qt.WidgetAttribute.WA_Hover)
 
     def keyPressEvent(self, event: QKeyEvent) -> None:
@@ -27,5 +26,5 @@ class PaintedButton(QAbstractButton):
     def paint_veil(self, painter: QPainter, box: QRectF, radius: float = CONTROL_RADIUS) -> None:
         """Show that the mouse is over it; `radius` in pixels at scale 1."""
         if self.underMouse() or self.isDown():
-            theme = self._look.theme
+            theme = current_theme()
             theme.paint_box(painter, box, theme.veil(self.isDown()), radius=radius)

@@ -4,7 +4,7 @@ from PySide6.QtCore import Qt
 from PySide6.QtGui import QPainter, QPaintEvent
 from PySide6.QtWidgets import QHBoxLayout, QProgressBar, QSizePolicy
 
-from app.theme.notifier import ThemeNotifier
+from app.theme.current import current_theme
 from app.widgets.text import Text
 from app.widgets.themed import Themed
 from app.wording.translation import tr
@@ -15,18 +15,17 @@ HEIGHT, BAR = 36, (160, 6)
 class ProgressStrip(Themed):
     """Hidden until it is shown something."""
 
-    def __init__(self, look: ThemeNotifier) -> None:
+    def __init__(self) -> None:
         super().__init__()
-        self._look = look
         self.setSizePolicy(QSizePolicy.Policy.Preferred, QSizePolicy.Policy.Fixed)
-        self.words = Text(look, tone="ink2", wraps=True)
+        self.words = Text(tone="ink2", wraps=True)
         self._line = QProgressBar()
         self._line.setTextVisible(False)
         self._line.setAccessibleName(tr("Progress so far"))
         self._row = QHBoxLayout(self)
         self._row.addWidget(self.words, 1)
         self._row.addWidget(self._line, 0, Qt.AlignmentFlag.AlignVCenter)
-        self._on_look_changed()
+        self._apply_theme()
         self.hide()
 
     @property
@@ -42,11 +41,11 @@ class ProgressStrip(Themed):
 
     def paintEvent(self, _event: QPaintEvent) -> None:
         painter = QPainter(self)
-        painter.setPen(self._look.theme.pen(self._look.theme.colours.line, 1))
+        painter.setPen(current_theme().pen(current_theme().colours.line, 1))
         painter.drawLine(0, 0, self.width(), 0)
 
-    def _on_look_changed(self) -> None:
-        px = self._look.theme.px
+    def _apply_theme(self) -> None:
+        px = current_theme().px
         self._row.setContentsMargins(px(24), px(6), px(24), px(6))
         self._row.setSpacing(px(16))
         self._line.setFixedSize(px(BAR[0]), px(BAR[1]))

@@ -16,8 +16,8 @@ from PySide6.QtGui import (
 )
 from PySide6.QtWidgets import QAbstractButton, QSizePolicy
 
+from app.theme.current import current_theme, px
 from app.theme.icons import Icon, paint_icon
-from app.theme.notifier import ThemeNotifier
 from app.theme.theme import CHIP_RADIUS, CONTROL_RADIUS
 from app.widgets.painted_text import CENTRE, PaintedText, height_for
 from app.widgets.text import MEDIUM, SEMIBOLD
@@ -70,9 +70,9 @@ class RailButton(QAbstractButton):
     moved = Signal(int)  # by so many rows, with the arrows
     looked_at = Signal(bool)  # it got the focus or the mouse, or lost it
 
-    def __init__(self, look: ThemeNotifier) -> None:
+    def __init__(self) -> None:
         super().__init__()
-        self._look, self._form = look, RailForm.USUAL
+        self._form = RailForm.USUAL
         self._row, self._number, self._count = RailRow(""), 0, 0
         self._key = ""
         self.setSizePolicy(QSizePolicy.Policy.Expanding, QSizePolicy.Policy.Fixed)
@@ -115,7 +115,7 @@ class RailButton(QAbstractButton):
         return self._number > 0
 
     def sizeHint(self) -> QSize:
-        px = self._look.theme.px
+        px = current_theme().px
         if self._form is RailForm.COMPACT:
             return QSize(px(44), px(48 if self._is_step else 44))
         title, note = self._heights()
@@ -126,7 +126,7 @@ class RailButton(QAbstractButton):
 
     def painted_texts(self) -> list[PaintedText]:
         """Give what is painted now, each in its box."""
-        theme = self._look.theme
+        theme = current_theme()
         texts = []
         if self._is_step and self._row.icon is None and self._row.state in (StepState.CURRENT, StepState.TODO):
             tone = "inv_ink" if self.is_current else "ink2"
@@ -149,7 +149,7 @@ class RailButton(QAbstractButton):
         return texts
 
     def paintEvent(self, _event: QPaintEvent) -> None:
-        theme = self._look.theme
+        theme = current_theme()
         c = theme.colours
         painter = QPainter(self)
         painter.setRenderHint(QPainter.RenderHint.Antialiasing)
@@ -197,7 +197,7 @@ class RailButton(QAbstractButton):
 
     def _paint_join(self, painter: QPainter) -> None:
         """Draw the ground that joins the row to the page, and the bar at its outer edge."""
-        theme = self._look.theme
+        theme = current_theme()
         c, px = theme.colours, theme.px
         beyond = CONTROL_RADIUS * theme.scale  # its right corners lie outside
         theme.paint_box(painter, QRectF(self.rect()).adjusted(0, px(2), beyond, -px(2)), c.ground)
@@ -206,7 +206,7 @@ class RailButton(QAbstractButton):
 
     def _paint_line(self, painter: QPainter) -> None:
         """Draw this row's part of the line that joins the rings."""
-        theme = self._look.theme
+        theme = current_theme()
         ring = self._ring()
         gap = theme.px(4)
         painter.setPen(theme.pen(theme.colours.control, 1.25))
@@ -217,7 +217,7 @@ class RailButton(QAbstractButton):
             painter.drawLine(QPointF(x, ring.bottom() + gap), QPointF(x, self.height()))
 
     def _paint_ring(self, painter: QPainter) -> None:
-        theme = self._look.theme
+        theme = current_theme()
         c = theme.colours
         ring = self._ring().adjusted(1, 1, -1, -1)
         state = self._row.state
@@ -244,42 +244,42 @@ class RailButton(QAbstractButton):
             paint_icon(painter, Icon.STILL, ring.adjusted(inset, inset, -inset, -inset), c.ink2)
 
     def _ring(self) -> QRectF:
-        px = self._look.theme.px
+        px = current_theme().px
         side = px(RING)
         middle = px(26 if self._form is RailForm.COMPACT else 30)
         return QRectF(middle - side / 2, (self.height() - side) / 2, side, side)
 
     def icon_box(self) -> QRectF:
         """Give the box of the icon of a row that is no step: as large as a step's ring where no word is beside it."""
-        ring, side = self._ring(), self._look.theme.px(ICON_ALONE if self._form is RailForm.COMPACT else ICON)
+        ring, side = self._ring(), px(ICON_ALONE if self._form is RailForm.COMPACT else ICON)
         inset = (ring.width() - side) / 2
         return ring.adjusted(inset, inset, -inset, -inset)
 
     def _cap(self) -> QRectF:
         """Give the box of the key cap, at the right."""
-        px = self._look.theme.px
-        width = QFontMetrics(self._look.theme.font(12, MEDIUM)).horizontalAdvance(self._key) + px(14)
+        px = current_theme().px
+        width = QFontMetrics(current_theme().font(12, MEDIUM)).horizontalAdvance(self._key) + px(14)
         return QRectF(self.width() - px(17) - width, (self.height() - px(22)) / 2, width, px(22)).adjusted(0, 0.5, 0, 0)
 
     def _text_left(self) -> int:
-        return self._look.theme.px(56)
+        return px(56)
 
     def _text_width(self) -> int:
         """Give the room for words, from the rail's width and not the row's own: it must not wait for a layout."""
-        px = self._look.theme.px
+        px = current_theme().px
         width = px(self._form.value) - px(12) - self._text_left() - px(4)
         return width - px(13) - round(self._cap().width()) - px(8) if self._key else width
 
     def _title_font(self) -> QFont:
         size = 15 if self._is_step and self._row.icon is None else 14
-        return self._look.theme.font(size, SEMIBOLD if self.is_current else MEDIUM)
+        return current_theme().font(size, SEMIBOLD if self.is_current else MEDIUM)
 
     def _heights(self) -> tuple[int, int]:
         """Give the heights of title and note in the lines they take."""
         width = self._text_width()
         return (
             height_for(self._row.title, self._title_font(), width),
-            height_for(self._row.note, self._look.theme.font(12), width),
+            height_for(self._row.note, current_theme().font(12), width),
         )
 
     def _refresh(self) -> None:

@@ -6,7 +6,7 @@ from PySide6.QtCore import QRectF, Signal
 from PySide6.QtGui import QAccessible, QPainter, QPaintEvent
 from PySide6.QtWidgets import QAbstractButton, QButtonGroup, QHBoxLayout, QSizePolicy, QWidget
 
-from app.theme.notifier import ThemeNotifier
+from app.theme.current import current_theme
 from app.widgets.button import Button, ButtonKind
 
 HEIGHT = 52
@@ -20,14 +20,13 @@ class Segmented(QWidget):
 
     chosen = Signal(str)
 
-    def __init__(self, look: ThemeNotifier, name: str, options: Sequence[tuple[str, str, str]]) -> None:
+    def __init__(self, name: str, options: Sequence[tuple[str, str, str]]) -> None:
         super().__init__()
-        self._look = look
         self.setAccessibleName(name)
         self.setSizePolicy(QSizePolicy.Policy.Minimum, QSizePolicy.Policy.Fixed)
         self._group = QButtonGroup(self)
         height = HEIGHT if any(note for _, _, note in options) else PLAIN_HEIGHT
-        self._segments = {key: _Segment(look, word, note, height, self) for key, word, note in options}
+        self._segments = {key: _Segment(word, note, height, self) for key, word, note in options}
         row = QHBoxLayout(self)
         row.setContentsMargins(2, 2, 2, 2)
         row.setSpacing(0)
@@ -72,9 +71,9 @@ class Segmented(QWidget):
             segment.set_brief(is_brief)
 
     def paintEvent(self, _event: QPaintEvent) -> None:
-        c = self._look.theme.colours
+        c = current_theme().colours
         box = QRectF(self.rect()).adjusted(0.5, 0.5, -0.5, -0.5)
-        self._look.theme.paint_box(QPainter(self), box, c.sunken, c.line, 1)
+        current_theme().paint_box(QPainter(self), box, c.sunken, c.line, 1)
 
     def _leave(self, key: str, must_leave: bool) -> None:
         """Go to the first choice that can be chosen, if `key` was chosen and no longer can be."""
@@ -88,8 +87,8 @@ class Segmented(QWidget):
 
 
 class _Segment(Button):
-    def __init__(self, look: ThemeNotifier, word: str, note: str, height: float, parent: QWidget) -> None:
-        super().__init__(look, word, ButtonKind.SEGMENT, height=height, parent=parent)
+    def __init__(self, word: str, note: str, height: float, parent: QWidget) -> None:
+        super().__init__(word, ButtonKind.SEGMENT, height=height, parent=parent)
         self._note, self._reason, self._is_brief = note, "", False
         self.setCheckable(True)
         self.setAutoExclusive(True)

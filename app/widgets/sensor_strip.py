@@ -9,7 +9,7 @@ from PySide6.QtCore import QElapsedTimer, QRect, QRectF, Qt, QTimer, Signal
 from PySide6.QtGui import QAccessible, QColor, QPainter, QPaintEvent, QResizeEvent
 from PySide6.QtWidgets import QSizePolicy
 
-from app.theme.notifier import ThemeNotifier
+from app.theme.current import current_theme
 from app.widgets.body_figure import paint_legs
 from app.widgets.grid import LEAST, side_margin
 from app.widgets.painted_text import CENTRE, PaintedText
@@ -36,9 +36,9 @@ class SensorStrip(Themed):
     turned_bad = Signal()
     tiles_changed = Signal()
 
-    def __init__(self, look: ThemeNotifier) -> None:
+    def __init__(self) -> None:
         super().__init__()
-        self._look, self._is_compact, self._is_from_behind = look, False, False
+        self._is_compact, self._is_from_behind = False, False
         self.setSizePolicy(QSizePolicy.Policy.Expanding, QSizePolicy.Policy.Fixed)
         self.setAccessibleName(tr("Sensors"))
         self._tiles: dict[Site, SensorTile] = {}
@@ -97,7 +97,7 @@ class SensorStrip(Themed):
         """Give what is painted between the tiles, each in its box."""
         if self._legs.isEmpty():
             return []
-        theme = self._look.theme
+        theme = current_theme()
         font, width, height = theme.font(12, SEMIBOLD), theme.px(16), theme.px(18)
         at = {Side.LEFT: self._legs.right() - width, Side.RIGHT: self._legs.left()}
         if self._is_from_behind:
@@ -108,7 +108,7 @@ class SensorStrip(Themed):
         ]
 
     def paintEvent(self, event: QPaintEvent) -> None:
-        theme = self._look.theme
+        theme = current_theme()
         painter = QPainter(self)
         painter.fillRect(event.rect(), QColor(theme.colours.surface))
         painter.setPen(theme.pen(theme.colours.line, 1))
@@ -136,7 +136,7 @@ class SensorStrip(Themed):
             self.turned_bad.emit()
 
     def _add(self, site: Site) -> None:
-        widget = self.widgets[site] = TileWidget(self._look, site, self)
+        widget = self.widgets[site] = TileWidget(site, self)
         widget.moved.connect(self._on_moved)
         widget.setFocusPolicy(Qt.FocusPolicy.ClickFocus)
         widget.set_compact(self._is_compact)
@@ -165,8 +165,8 @@ class SensorStrip(Themed):
 
     def _arrange_seven(self) -> None:
         """In one row about the pelvis; in two with the pelvis at the end of the first; else the sides side by side."""
-        px = self._look.theme.px
-        margin = side_margin(self.width(), self._look.theme)
+        px = current_theme().px
+        margin = side_margin(self.width(), current_theme())
         gap, height = px(GAP), px(COMPACT_TILE if self._is_compact else TILE)
         room = max(self.width(), px(LEAST)) - 2 * margin
         order = [self.widgets[site] for site in _order(self.widgets, self._is_from_behind)]
@@ -189,8 +189,8 @@ class SensorStrip(Themed):
         self.update()
 
     def _arrange_six(self) -> None:
-        px = self._look.theme.px
-        margin = side_margin(self.width(), self._look.theme)
+        px = current_theme().px
+        margin = side_margin(self.width(), current_theme())
         gap, height = px(GAP), px(COMPACT_TILE if self._is_compact else TILE)
         room = max(self.width(), px(LEAST)) - 2 * margin
         between = px(BETWEEN) if self._is_compact else px(LEGS) + 2 * gap
@@ -238,7 +238,7 @@ class SensorStrip(Themed):
         if self._waiting is not None:
             self.show_at_once(self._waiting)
 
-    def _on_look_changed(self) -> None:
+    def _apply_theme(self) -> None:
         self._arrange()
         self.update()
 

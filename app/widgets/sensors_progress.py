@@ -8,8 +8,8 @@ from PySide6.QtCore import QRectF, QSize, Qt, Signal
 from PySide6.QtGui import QFontMetrics, QPainter, QPaintEvent, QResizeEvent
 from PySide6.QtWidgets import QHBoxLayout, QProgressBar, QSizePolicy, QVBoxLayout, QWidget
 
+from app.theme.current import current_theme, px
 from app.theme.icons import Icon, paint_icon
-from app.theme.notifier import ThemeNotifier
 from app.widgets.button import Button, ButtonKind
 from app.widgets.notice import Notice
 from app.widgets.painted_text import LEFT, PaintedText
@@ -62,17 +62,16 @@ class SensorsProgress(Themed):
 
     stop_pressed = Signal()
 
-    def __init__(self, look: ThemeNotifier) -> None:
+    def __init__(self) -> None:
         super().__init__()
-        self._look = look
         self._shown = ProgressShown("")
-        self._title = Text(look, size=20, weight=SEMIBOLD, wraps=True)
-        self._sentence = Text(look, size=15, tone="ink2", wraps=True)
+        self._title = Text(size=20, weight=SEMIBOLD, wraps=True)
+        self._sentence = Text(size=15, tone="ink2", wraps=True)
         self._bar = QProgressBar()
         self._bar.setTextVisible(False)
-        self._lines = _SensorLines(look)
-        self.notice = Notice(look, size=16)
-        self.stop = Button(look, tr("Cancel"), ButtonKind.SECONDARY, Icon.STOP)
+        self._lines = _SensorLines()
+        self.notice = Notice(size=16)
+        self.stop = Button(tr("Cancel"), ButtonKind.SECONDARY, Icon.STOP)
         self._inside = QWidget()
         self._column = QVBoxLayout(self._inside)
         self._column.setContentsMargins(0, 0, 0, 0)
@@ -91,7 +90,7 @@ class SensorsProgress(Themed):
         outer.addLayout(middle)
         outer.addStretch(2)
         self.stop.clicked.connect(self.stop_pressed)
-        self._on_look_changed()
+        self._apply_theme()
 
     @property
     def shown(self) -> ProgressShown:
@@ -130,10 +129,10 @@ class SensorsProgress(Themed):
 
     def _fit(self) -> None:
         """Give it a width of its own: sentences that wrap ask for their height by that."""
-        self._inside.setFixedWidth(min(self._look.theme.px(WIDEST), self.width()))
+        self._inside.setFixedWidth(min(px(WIDEST), self.width()))
 
-    def _on_look_changed(self) -> None:
-        px = self._look.theme.px
+    def _apply_theme(self) -> None:
+        px = current_theme().px
         self._column.setSpacing(px(14))
         self._bar.setFixedHeight(px(8))
         self._fit()
@@ -142,9 +141,8 @@ class SensorsProgress(Themed):
 class _SensorLines(Themed):
     """The sensors one below the other; screen readers are given all of them."""
 
-    def __init__(self, look: ThemeNotifier) -> None:
+    def __init__(self) -> None:
         super().__init__()
-        self._look = look
         self._shown: tuple[SensorLine, ...] = ()
         self.setSizePolicy(QSizePolicy.Policy.Preferred, QSizePolicy.Policy.Fixed)
 
@@ -160,7 +158,7 @@ class _SensorLines(Themed):
         self.update()
 
     def sizeHint(self) -> QSize:
-        px = self._look.theme.px
+        px = current_theme().px
         widths = [QFontMetrics(text.font).horizontalAdvance(text.text) for text in self.painted_texts()]
         return QSize(max(widths, default=0) + px(MARK + GAP), len(self._shown) * px(LINE))
 
@@ -169,7 +167,7 @@ class _SensorLines(Themed):
 
     def painted_texts(self) -> list[PaintedText]:
         """Give what is painted now, each in its box."""
-        px, theme = self._look.theme.px, self._look.theme
+        px, theme = current_theme().px, current_theme()
         texts = []
         for number, line in enumerate(self._shown):
             box = QRectF(px(MARK + GAP), number * px(LINE), self.width() - px(MARK + GAP), px(LINE))
@@ -179,7 +177,7 @@ class _SensorLines(Themed):
         return texts
 
     def paintEvent(self, _event: QPaintEvent) -> None:
-        px, c = self._look.theme.px, self._look.theme.colours
+        px, c = current_theme().px, current_theme().colours
         painter = QPainter(self)
         painter.setRenderHint(QPainter.RenderHint.Antialiasing)
         for number, line in enumerate(self._shown):
@@ -188,7 +186,7 @@ class _SensorLines(Themed):
         for text in self.painted_texts():
             text.paint(painter, c)
 
-    def _on_look_changed(self) -> None:
+    def _apply_theme(self) -> None:
         self.updateGeometry()
         self.update()
 

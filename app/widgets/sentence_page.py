@@ -3,8 +3,8 @@
 from PySide6.QtCore import Qt, Signal
 from PySide6.QtWidgets import QVBoxLayout
 
+from app.theme.current import current_theme
 from app.theme.icons import Icon
-from app.theme.notifier import ThemeNotifier
 from app.widgets.button import Button, ButtonKind
 from app.widgets.text import SEMIBOLD, Text
 from app.widgets.themed import Themed
@@ -13,14 +13,13 @@ from app.widgets.themed import Themed
 class SentencePage(Themed):
     pressed = Signal()
 
-    def __init__(self, look: ThemeNotifier) -> None:
+    def __init__(self) -> None:
         super().__init__()
-        self._look = look
-        self._what = Text(look, size=22, weight=SEMIBOLD, wraps=True)
-        self._then = Text(look, size=14, tone="ink2", wraps=True)
+        self._what = Text(size=22, weight=SEMIBOLD, wraps=True)
+        self._then = Text(size=14, tone="ink2", wraps=True)
         for text in (self._what, self._then):
             text.setAlignment(Qt.AlignmentFlag.AlignCenter)
-        self.button = Button(look, "", ButtonKind.SECONDARY, Icon.CHEVRON)
+        self.button = Button("", ButtonKind.SECONDARY, Icon.CHEVRON)
         self.button.clicked.connect(self.pressed)
         self._column = QVBoxLayout(self)
         self._column.addStretch(1)
@@ -28,7 +27,7 @@ class SentencePage(Themed):
         self._column.addWidget(self._then)
         self._column.addWidget(self.button, 0, Qt.AlignmentFlag.AlignHCenter)
         self._column.addStretch(1)
-        self._on_look_changed()
+        self._apply_theme()
 
     def focus(self) -> None:
         """Give the focus to the button; without one the bar has it."""
@@ -45,7 +44,7 @@ class SentencePage(Themed):
         self.button.setVisible(bool(button))
         self.button.updateGeometry()
 
-    def _on_look_changed(self) -> None:
-        px = self._look.theme.px
+    def _apply_theme(self) -> None:
+        px = current_theme().px
         self._column.setContentsMargins(px(24), px(24), px(24), px(24))
         self._column.setSpacing(px(16))

@@ -3,7 +3,6 @@
 from PySide6.QtCore import QObject, Signal
 from PySide6.QtWidgets import QWidget
 
-from app.theme.notifier import ThemeNotifier
 from app.widgets.field import Field
 from app.wording.translation import tr
 
@@ -15,13 +14,13 @@ class ServerFields(QObject):
 
     entered = Signal()  # by Enter
 
-    def __init__(self, look: ThemeNotifier, place: str, parent: QWidget, *, is_place_optional: bool) -> None:
+    def __init__(self, place: str, parent: QWidget, *, is_place_optional: bool) -> None:
         """`place` is what the field of the recordings' place is called. `parent` lays the fields out."""
         super().__init__(parent)
         self._is_place_optional = is_place_optional
-        self.address = Field(look, tr("Address of the clinic's server"), placeholder=ADDRESS)
-        self.password = Field(look, tr("Server password, if required"), is_secret=True)
-        self.place = Field(look, place, is_optional=is_place_optional)
+        self.address = Field(tr("Address of the clinic's server"), placeholder=ADDRESS)
+        self.password = Field(tr("Server password, if required"), is_secret=True)
+        self.place = Field(place, is_optional=is_place_optional)
         for field in self.fields:
             field.edited.connect(self._on_edited)
             field.line_edit.returnPressed.connect(self.entered)

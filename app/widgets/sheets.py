@@ -6,7 +6,7 @@ from PySide6.QtCore import QBuffer, QPointF, QRectF, QSize, Qt, QTimer, Signal
 from PySide6.QtGui import QAccessible, QColor, QImage, QImageReader, QKeyEvent, QMouseEvent, QPainter, QPaintEvent
 from PySide6.QtWidgets import QSizePolicy, QVBoxLayout, QWidget
 
-from app.theme.notifier import ThemeNotifier
+from app.theme.current import current_theme, px
 from app.widgets.themed import Themed
 from app.wording.translation import tr, tr_n
 
@@ -50,9 +50,8 @@ class Sheets(QWidget):
 
     sharper_required = Signal()
 
-    def __init__(self, look: ThemeNotifier) -> None:
+    def __init__(self) -> None:
         super().__init__()
-        self._look = look
         self.pages: list[Sheet] = []
         self._settled = QTimer(self)
         self._settled.setSingleShot(True)
@@ -80,11 +79,11 @@ class Sheets(QWidget):
 
     def top_of(self, number: int) -> float:
         """Where a page begins, its number from 0."""
-        gap = self._look.theme.px(GAP)
+        gap = px(GAP)
         return sum(self._width() * page.height_per_width + gap for page in self.pages[:number])
 
     def sizeHint(self) -> QSize:
-        return QSize(self._look.theme.px(PAGE_WIDTH), round(self.top_of(self.count)))
+        return QSize(px(PAGE_WIDTH), round(self.top_of(self.count)))
 
     def resizeEvent(self, _event: object) -> None:
         self._fit()
@@ -99,10 +98,10 @@ class Sheets(QWidget):
         for number, page in enumerate(self.pages):
             place = QRectF(left, self.top_of(number), width, width * page.height_per_width)
             if place.intersects(QRectF(self.visibleRegion().boundingRect())):
-                _paint_page(painter, place, page.picture(), self._look)
+                _paint_page(painter, place, page.picture())
 
     def _width(self) -> float:
-        return min(float(self.width()), 1.5 * self._look.theme.px(PAGE_WIDTH))
+        return min(float(self.width()), 1.5 * px(PAGE_WIDTH))
 
     def _fit(self) -> None:
         self.setMinimumHeight(round(self.top_of(self.count)))
@@ -121,9 +120,8 @@ class SmallSheets(Themed):
 
     requested = Signal(int)
 
-    def __init__(self, look: ThemeNotifier) -> None:
+    def __init__(self) -> None:
         super().__init__()
-        self._look = look
         self._pages: list[Sheet] = []
         self.number = 0
         self.setFocusPolicy(Qt.FocusPolicy.StrongFocus)
@@ -142,19 +140,19 @@ class SmallSheets(Themed):
 
     def place_of(self, number: int) -> QRectF:
         """Where a small page is."""
-        px, top, width = self._look.theme.px, 0.0, self._small_width()
+        px, top, width = current_theme().px, 0.0, self._small_width()
         for page in self._pages[:number]:
             top += width * page.height_per_width + px(NUMBER + SMALL_GAP)
         return QRectF(px(8), px(2) + top, width, width * self._pages[number].height_per_width)
 
     def _small_width(self) -> float:
         """As wide as is usual, or as all pages still find room."""
-        px, heights = self._look.theme.px, sum(page.height_per_width for page in self._pages)
+        px, heights = current_theme().px, sum(page.height_per_width for page in self._pages)
         room = self.height() - px(4) - len(self._pages) * px(NUMBER + SMALL_GAP)
         return max(min(px(SMALL_WIDTH), room / max(heights, 1.0)), px(LEAST_WIDTH))
 
     def sizeHint(self) -> QSize:
-        px = self._look.theme.px
+        px = current_theme().px
         return QSize(px(SMALL_WIDTH + 16), px(SMALL_WIDTH))
 
     def keyPressEvent(self, event: QKeyEvent) -> None:
@@ -176,7 +174,7 @@ class SmallSheets(Themed):
                 self._go_to(number)
 
     def paintEvent(self, _event: QPaintEvent) -> None:
-        theme = self._look.theme
+        theme = current_theme()
         painter = QPainter(self)
         painter.setRenderHint(QPainter.RenderHint.SmoothPixmapTransform)
         painter.setRenderHint(QPainter.RenderHint.Antialiasing)
@@ -184,7 +182,7 @@ class SmallSheets(Themed):
         for number, page in enumerate(self._pages):
             place = self.place_of(number)
             small = page.small(round(place.width() * self.devicePixelRatioF()))
-            _paint_page(painter, place, small, self._look)
+            _paint_page(painter, place, small)
             painter.setPen(QColor(theme.colours.ink2))
             below = QRectF(place.left(), place.bottom(), place.width(), theme.px(NUMBER))
             painter.drawText(below, Qt.AlignmentFlag.AlignCenter, str(number + 1))
@@ -205,13 +203,13 @@ class SmallSheets(Themed):
         stated = tr("Page {page} of {pages}").format(page=self.number + 1, pages=len(self._pages))
         self.setAccessibleDescription(stated if self._pages else "")
 
-    def _on_look_changed(self) -> None:
+    def _apply_theme(self) -> None:
         self.updateGeometry()
 
 
-def _paint_page(painter: QPainter, place: QRectF, picture: QImage, look: ThemeNotifier) -> None:
+def _paint_page(painter: QPainter, place: QRectF, picture: QImage) -> None:
     """A page with its edge."""
     painter.drawImage(place, picture)
-    painter.setPen(look.theme.pen(look.theme.colours.control, 1))
+    painter.setPen(current_theme().pen(current_theme().colours.control, 1))
     painter.setBrush(Qt.BrushStyle.NoBrush)
     painter.drawRect(place.adjusted(0.5, 0.5, -0.5, -0.5))

@@ -5,7 +5,7 @@ from PySide6.QtCore import QPointF, QSize
 from PySide6.QtGui import QAccessible, QPainter, QPaintEvent, QPolygonF
 from PySide6.QtWidgets import QSizePolicy
 
-from app.theme.notifier import ThemeNotifier
+from app.theme.current import current_theme, px
 from app.widgets.themed import Themed
 from core.samples import FloatArray
 
@@ -17,9 +17,8 @@ class SmallCurve(Themed):
 
     accessible_role = QAccessible.Role.Graphic
 
-    def __init__(self, look: ThemeNotifier, name: str) -> None:
+    def __init__(self, name: str) -> None:
         super().__init__()
-        self._look = look
         self._time_s: FloatArray = np.empty(0)
         self._values: FloatArray = np.empty(0)
         self.setSizePolicy(QSizePolicy.Policy.Fixed, QSizePolicy.Policy.Fixed)
@@ -31,7 +30,7 @@ class SmallCurve(Themed):
         self.update()
 
     def sizeHint(self) -> QSize:
-        return QSize(self._look.theme.px(SIZE[0]), self._look.theme.px(SIZE[1]))
+        return QSize(px(SIZE[0]), px(SIZE[1]))
 
     def paintEvent(self, _event: QPaintEvent) -> None:
         known = np.isfinite(self._values)
@@ -44,12 +43,12 @@ class SmallCurve(Themed):
         y = self.height() - 1 - (values - least) / height * (self.height() - 2)
         painter = QPainter(self)
         painter.setRenderHint(QPainter.RenderHint.Antialiasing)
-        painter.setPen(self._look.theme.pen(self._look.theme.colours.ink2, 1))
+        painter.setPen(current_theme().pen(current_theme().colours.ink2, 1))
         ends = np.flatnonzero(np.diff(known.astype(np.int8), prepend=0, append=0))
         for start, end in zip(ends[::2], ends[1::2], strict=True):
             part = zip(x[start:end], y[start:end], strict=True)
             painter.drawPolyline(QPolygonF([QPointF(float(a), float(b)) for a, b in part]))
 
-    def _on_look_changed(self) -> None:
+    def _apply_theme(self) -> None:
         self.updateGeometry()
         self.update()

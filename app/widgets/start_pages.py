@@ -3,8 +3,8 @@
 from PySide6.QtCore import Qt, Signal
 from PySide6.QtWidgets import QHBoxLayout, QProgressBar, QVBoxLayout
 
+from app.theme.current import current_theme
 from app.theme.icons import Icon
-from app.theme.notifier import ThemeNotifier
 from app.widgets.button import Button, ButtonKind
 from app.widgets.text import SEMIBOLD, Text
 from app.widgets.themed import Themed
@@ -16,15 +16,12 @@ SENTENCE = later("No session is open.")
 class EmptyPage(Themed):
     """One sentence and the two ways on."""
 
-    def __init__(self, look: ThemeNotifier) -> None:
+    def __init__(self) -> None:
         super().__init__()
-        self._look = look
-        self.open_folder = Button(look, tr("Open a session folder"), ButtonKind.PRIMARY, Icon.FOLDER, tr("Ctrl O"))
-        self.open_demonstration = Button(
-            look, tr("Open the demonstration"), ButtonKind.SECONDARY, Icon.PLAY, tr("Ctrl D")
-        )
-        self._sentence = Text(look, tr(SENTENCE), size=26, weight=SEMIBOLD)
-        self._hint = Text(look, tr("You can also drop a session folder here."), tone="ink2")
+        self.open_folder = Button(tr("Open a session folder"), ButtonKind.PRIMARY, Icon.FOLDER, tr("Ctrl O"))
+        self.open_demonstration = Button(tr("Open the demonstration"), ButtonKind.SECONDARY, Icon.PLAY, tr("Ctrl D"))
+        self._sentence = Text(tr(SENTENCE), size=26, weight=SEMIBOLD)
+        self._hint = Text(tr("You can also drop a session folder here."), tone="ink2")
         self._row = QHBoxLayout()
         self._row.addStretch(1)
         self._row.addWidget(self.open_folder)
@@ -36,15 +33,15 @@ class EmptyPage(Themed):
         self._column.addLayout(self._row)
         self._column.addWidget(self._hint, 0, Qt.AlignmentFlag.AlignHCenter)
         self._column.addStretch(1)
-        self._on_look_changed()
+        self._apply_theme()
 
     def set_narrow(self, is_narrow: bool) -> None:
         """Stack the two buttons where they do not fit side by side."""
         way = QHBoxLayout.Direction.TopToBottom if is_narrow else QHBoxLayout.Direction.LeftToRight
         self._row.setDirection(way)
 
-    def _on_look_changed(self) -> None:
-        px = self._look.theme.px
+    def _apply_theme(self) -> None:
+        px = current_theme().px
         self._column.setContentsMargins(px(24), px(24), px(24), px(24))
         self._column.setSpacing(px(24))
         self._row.setSpacing(px(16))
@@ -55,17 +52,16 @@ class WorkingPage(Themed):
 
     stop_pressed = Signal()
 
-    def __init__(self, look: ThemeNotifier) -> None:
+    def __init__(self) -> None:
         super().__init__()
-        self._look = look
-        self._title = Text(look, size=26, weight=SEMIBOLD, wraps=True)
+        self._title = Text(size=26, weight=SEMIBOLD, wraps=True)
         self._title.setAlignment(Qt.AlignmentFlag.AlignCenter)
-        self._what = Text(look, tone="ink2")
+        self._what = Text(tone="ink2")
         self._line = QProgressBar()
         self._line.setTextVisible(False)
         self._line.setRange(0, 1000)
         self._line.setAccessibleName(tr("Progress so far"))
-        self.stop = Button(look, tr("Stop"), ButtonKind.SECONDARY, Icon.STOP, tr("Esc"))
+        self.stop = Button(tr("Stop"), ButtonKind.SECONDARY, Icon.STOP, tr("Esc"))
         self._column = QVBoxLayout(self)
         self._column.addStretch(1)
         self._column.addWidget(self._title)
@@ -74,7 +70,7 @@ class WorkingPage(Themed):
         self._column.addWidget(self.stop, 0, Qt.AlignmentFlag.AlignHCenter)
         self._column.addStretch(1)
         self.stop.clicked.connect(self.stop_pressed)
-        self._on_look_changed()
+        self._apply_theme()
 
     def begin(self, title: str) -> None:
         self._title.setText(title)
@@ -88,8 +84,8 @@ class WorkingPage(Themed):
     def progress(self) -> tuple[float, str]:
         return self._line.value() / 1000, self._what.text()
 
-    def _on_look_changed(self) -> None:
-        px = self._look.theme.px
+    def _apply_theme(self) -> None:
+        px = current_theme().px
         self._column.setContentsMargins(px(24), px(24), px(24), px(24))
         self._column.setSpacing(px(16))
         self._line.setFixedSize(px(400), px(8))

@@ -14,8 +14,8 @@ from PySide6.QtGui import (
 )
 from PySide6.QtWidgets import QFrame, QScrollArea, QSizePolicy, QVBoxLayout, QWidget
 
+from app.theme.current import current_theme
 from app.theme.icons import Icon
-from app.theme.notifier import ThemeNotifier
 from app.theme.theme import CONTROL_RADIUS
 from app.widgets.header import ProductMark
 from app.widgets.heard_order import hear_as_laid_out
@@ -51,21 +51,21 @@ class StepRail(Themed):
     step_pressed = Signal(int)
     below_pressed = Signal(str)
 
-    def __init__(self, look: ThemeNotifier) -> None:
+    def __init__(self) -> None:
         super().__init__()
-        self._look, self._form = look, RailForm.USUAL
+        self._form = RailForm.USUAL
         self._below_names: list[str] = []
         self.setSizePolicy(QSizePolicy.Policy.Fixed, QSizePolicy.Policy.Expanding)
         self.setAccessibleName(tr("Steps"))
         self.rows: list[RailButton] = []
         self.below: list[RailButton] = []
-        self._mark = ProductMark(look)
-        self._name = Text(look, "Gaitwright", size=18, weight=SEMIBOLD)
-        self._note = Text(look, size=12, tone="ink2", wraps=True)
-        self._tag = _NameTag(look, self)
+        self._mark = ProductMark()
+        self._name = Text("Gaitwright", size=18, weight=SEMIBOLD)
+        self._note = Text(size=12, tone="ink2", wraps=True)
+        self._tag = _NameTag(self)
         self._build()
         self.show_below(wizard_below())
-        self._on_look_changed()
+        self._apply_theme()
 
     @property
     def form(self) -> RailForm:
@@ -90,7 +90,7 @@ class StepRail(Themed):
     def set_form(self, form: RailForm) -> None:
         if form is not self._form:
             self._form = form
-            self._on_look_changed()
+            self._apply_theme()
 
     def focus(self) -> None:
         """Give the focus to the row of the current step."""
@@ -99,7 +99,7 @@ class StepRail(Themed):
             current.setFocus(Qt.FocusReason.OtherFocusReason)
 
     def paintEvent(self, _event: QPaintEvent) -> None:
-        QPainter(self).fillRect(self.rect(), QColor(self._look.theme.colours.sunken))
+        QPainter(self).fillRect(self.rect(), QColor(current_theme().colours.sunken))
 
     def _build(self) -> None:
         self._head = QWidget()
@@ -138,7 +138,7 @@ class StepRail(Themed):
             gone.hide()
             gone.deleteLater()
         while len(rows) < count:
-            row = RailButton(self._look)
+            row = RailButton()
             row.set_form(self._form)
             row.clicked.connect(slot)
             row.moved.connect(self._on_moved)
@@ -183,8 +183,8 @@ class StepRail(Themed):
         self._name.setVisible(has_words)
         self._note.setVisible(has_words and bool(self._note.text()))
 
-    def _on_look_changed(self) -> None:
-        px = self._look.theme.px
+    def _apply_theme(self) -> None:
+        px = current_theme().px
         is_compact = self._form is RailForm.COMPACT
         self.setFixedWidth(px(self._form.value))
         self._head.setFixedHeight(px(53 if is_compact else 72))
@@ -206,14 +206,14 @@ class StepRail(Themed):
 class _NameTag(Text):
     """What a row is called, beside it, where the rail has no room for words."""
 
-    def __init__(self, look: ThemeNotifier, rail: QWidget) -> None:
-        super().__init__(look, size=14, weight=REGULAR, tone="inv_ink", parent=rail)
+    def __init__(self, rail: QWidget) -> None:
+        super().__init__(size=14, weight=REGULAR, tone="inv_ink", parent=rail)
         self._rail = rail
         self.setAttribute(Qt.WidgetAttribute.WA_TransparentForMouseEvents)
         self.hide()
 
     def name(self, row: RailButton) -> None:
-        px = self._look.theme.px
+        px = current_theme().px
         window = self._rail.window()
         if self.parentWidget() is not window:
             self.setParent(window)
@@ -226,7 +226,7 @@ class _NameTag(Text):
         self.show()
 
     def paintEvent(self, event: QPaintEvent) -> None:
-        theme = self._look.theme
+        theme = current_theme()
         painter = QPainter(self)
         painter.setRenderHint(QPainter.RenderHint.Antialiasing)
         painter.setPen(Qt.PenStyle.NoPen)

@@ -8,9 +8,9 @@ from PySide6.QtCore import QPointF, QRect, QRectF, QSize, Qt
 from PySide6.QtGui import QAccessible, QColor, QFontMetrics, QPainter, QPaintEvent
 from PySide6.QtWidgets import QSizePolicy, QWidget
 
+from app.theme.current import current_theme, px
 from app.theme.icons import Icon, paint_icon
 from app.theme.leg_chip import CHIP, paint_chip
-from app.theme.notifier import ThemeNotifier
 from app.theme.theme import CHIP_RADIUS
 from app.widgets.text import MEDIUM, REGULAR, SEMIBOLD
 from app.wording.body import segment_name
@@ -44,9 +44,9 @@ class CountRing(QWidget):
 
     accessible_role = QAccessible.Role.Graphic
 
-    def __init__(self, look: ThemeNotifier) -> None:
+    def __init__(self) -> None:
         super().__init__()
-        self._look, self._face = look, RingFace()
+        self._face = RingFace()
         self.setSizePolicy(QSizePolicy.Policy.Expanding, QSizePolicy.Policy.Expanding)
 
     def show_face(self, face: RingFace) -> None:
@@ -57,14 +57,14 @@ class CountRing(QWidget):
         self.update()
 
     def minimumSizeHint(self) -> QSize:
-        side = self._look.theme.px(160)
+        side = px(160)
         return QSize(side, side)
 
     def sizeHint(self) -> QSize:
         return self.minimumSizeHint()  # it takes the room there is, and asks for none that would have to scroll
 
     def paintEvent(self, _event: QPaintEvent) -> None:
-        theme, face = self._look.theme, self._face
+        theme, face = current_theme(), self._face
         c = theme.colours
         side = min(self.width(), self.height(), theme.px(1.3 * RING_SIZE))
         grow = side / RING_SIZE  # of what lies inside
@@ -89,7 +89,7 @@ class CountRing(QWidget):
         self._paint_face(painter, box, grow)
 
     def _paint_face(self, painter: QPainter, box: QRectF, grow: float) -> None:
-        theme, face = self._look.theme, self._face
+        theme, face = current_theme(), self._face
         c, middle = theme.colours, Qt.AlignmentFlag.AlignCenter
         has_more = bool(face.word or face.key)
         figure = QRectF(box.left(), box.center().y() - 108 * grow, box.width(), 190 * grow)
@@ -143,9 +143,8 @@ class MovementBars(QWidget):
     A row is painted again only when its figure or its mark changes.
     """
 
-    def __init__(self, look: ThemeNotifier) -> None:
+    def __init__(self) -> None:
         super().__init__()
-        self._look = look
         self._is_compact = False
         self._limit = 1.0
         self._rows: dict[str, _Row] = {}
@@ -184,10 +183,10 @@ class MovementBars(QWidget):
         self._rows = rows
 
     def sizeHint(self) -> QSize:
-        return QSize(self._look.theme.px(230), max(1, len(self._rows)) * self._row_height)
+        return QSize(px(230), max(1, len(self._rows)) * self._row_height)
 
     def minimumSizeHint(self) -> QSize:
-        px = self._look.theme.px
+        px = current_theme().px
         return QSize(
             px(INSET + CHIP + 8) + self._name_width + px(8 + 50 + 8) + self._figure_width, self.sizeHint().height()
         )
@@ -201,7 +200,7 @@ class MovementBars(QWidget):
                 self._paint_row(painter, place, sensor, row)
 
     def _paint_row(self, painter: QPainter, place: QRect, sensor: str, row: "_Row") -> None:
-        theme = self._look.theme
+        theme = current_theme()
         c, px = theme.colours, theme.px
         ink = c.ink
         if row.has_moved or row.is_silent:
@@ -242,18 +241,18 @@ class MovementBars(QWidget):
 
     @property
     def _row_height(self) -> int:
-        return self._look.theme.px(COMPACT_ROW if self._is_compact else ROW)
+        return px(COMPACT_ROW if self._is_compact else ROW)
 
     @property
     def _name_width(self) -> int:
-        metrics = QFontMetrics(self._look.theme.font(14, MEDIUM))
-        chip = self._look.theme.px(CHIP + 8)  # a sensor that nobody has placed has none, but a longer name
+        metrics = QFontMetrics(current_theme().font(14, MEDIUM))
+        chip = px(CHIP + 8)  # a sensor that nobody has placed has none, but a longer name
         widths = [metrics.horizontalAdvance(_name(one)) - (0 if one in set(Site) else chip) for one in self._rows]
         return max(widths, default=0)
 
     @property
     def _figure_width(self) -> int:
-        return QFontMetrics(self._look.theme.font(14, SEMIBOLD)).horizontalAdvance("000.0") + self._look.theme.px(INSET)
+        return QFontMetrics(current_theme().font(14, SEMIBOLD)).horizontalAdvance("000.0") + px(INSET)
 
     def _refresh(self) -> None:
         self.updateGeometry()

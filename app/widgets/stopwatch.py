@@ -4,7 +4,7 @@ from PySide6.QtCore import QRectF, QSize, Qt
 from PySide6.QtGui import QColor, QFontMetrics, QPainter, QPaintEvent
 from PySide6.QtWidgets import QSizePolicy, QWidget
 
-from app.theme.notifier import ThemeNotifier
+from app.theme.current import current_theme
 from app.widgets.painted_text import RIGHT, PaintedText
 from app.widgets.text import SEMIBOLD
 from app.wording.numbers import clock
@@ -18,9 +18,9 @@ THICK = 5
 class Stopwatch(QWidget):
     """Passive: it shows what it is given."""
 
-    def __init__(self, look: ThemeNotifier) -> None:
+    def __init__(self) -> None:
         super().__init__()
-        self._look, self._is_compact, self._elapsed_s = look, False, 0
+        self._is_compact, self._elapsed_s = False, 0
         self.setSizePolicy(QSizePolicy.Policy.Fixed, QSizePolicy.Policy.Fixed)
         self.show_elapsed(0.0)
 
@@ -37,13 +37,13 @@ class Stopwatch(QWidget):
         self._refresh()
 
     def sizeHint(self) -> QSize:
-        px = self._look.theme.px
+        px = current_theme().px
         words, time = self._columns()
         return QSize(words + px(16) + time, px(40))
 
     def painted_texts(self) -> list[PaintedText]:
         """Give what is painted now, each in its box."""
-        theme = self._look.theme
+        theme = current_theme()
         words, time = self._columns()
         height = self.height() if self._is_compact else theme.px(18)
         top = 0 if self._is_compact else (self.height() - theme.px(18 + 6 + THICK)) / 2
@@ -58,7 +58,7 @@ class Stopwatch(QWidget):
         ]
 
     def paintEvent(self, _event: QPaintEvent) -> None:
-        theme = self._look.theme
+        theme = current_theme()
         c, px = theme.colours, theme.px
         painter = QPainter(self)
         painter.setRenderHint(QPainter.RenderHint.Antialiasing)
@@ -88,7 +88,7 @@ class Stopwatch(QWidget):
 
     def _columns(self) -> tuple[int, int]:
         """Give the widths of words and time, from all they may say: the header must not shift."""
-        theme = self._look.theme
+        theme = current_theme()
         minutes = TARGET_S // 60
         small = QFontMetrics(theme.font(12))
         stated = [tr("{minutes} min target exceeded"), tr("of {minutes} min target")]

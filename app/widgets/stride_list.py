@@ -8,9 +8,9 @@ import numpy as np
 from PySide6.QtCore import QModelIndex, QPointF, QRectF, Qt, Signal
 from PySide6.QtGui import QColor, QFontMetrics, QKeyEvent, QPainter, QPolygonF
 
+from app.theme.current import px
 from app.theme.icons import Icon, paint_icon
 from app.theme.leg_chip import CHIP, paint_chip
-from app.theme.notifier import ThemeNotifier
 from app.theme.theme import Theme
 from app.widgets.table import CellTable, TableColumn, TableRow
 from app.widgets.table_cells import EMPTY, LEFT, RIGHT, TableCell, TextCell
@@ -161,8 +161,8 @@ class StrideList(CellTable):
 
     turned = Signal(object)
 
-    def __init__(self, look: ThemeNotifier, name: str) -> None:
-        super().__init__(look, name, row=ROW, head=HEAD, padding=PADDING, edge=PADDING, is_list=True)
+    def __init__(self, name: str) -> None:
+        super().__init__(name, row=ROW, head=HEAD, padding=PADDING, edge=PADDING, is_list=True)
         self.lines: tuple[StrideLine, ...] = ()
         self._can_turn = True
         self._has_shapes = False
@@ -204,7 +204,7 @@ class StrideList(CellTable):
             if any(kind in line.shapes_deg for line in self.lines if line.is_used)
         ]
         spare = self.viewport().width() - sum(self.needed_widths)
-        is_shown = self._has_shapes and bool(known) and spare // len(known) >= self._look.theme.px(LEAST_SHAPE)
+        is_shown = self._has_shapes and bool(known) and spare // len(known) >= px(LEAST_SHAPE)
         for shape in SHAPES:
             self.setColumnHidden(shape, not (is_shown and shape in known))
         super().share_width()

@@ -6,7 +6,7 @@ from PySide6.QtCore import QRectF, QSize, Qt, Signal
 from PySide6.QtGui import QFont, QFontMetrics, QPainter, QPaintEvent
 from PySide6.QtWidgets import QAbstractButton, QSizePolicy
 
-from app.theme.notifier import ThemeNotifier
+from app.theme.current import current_theme, px
 from app.widgets.body_figure import paint_legs
 from app.widgets.painted_text import PaintedText
 from app.widgets.sensor_tile import SensorTile, marks, sentence
@@ -19,9 +19,9 @@ class StripButton(QAbstractButton):
 
     resized = Signal()  # its words have another length
 
-    def __init__(self, look: ThemeNotifier) -> None:
+    def __init__(self) -> None:
         super().__init__()
-        self._look, self._is_compact = look, False
+        self._is_compact = False
         self._tiles: dict[Site, SensorTile] = {}
         self.setCheckable(True)  # checked: the strip is unfolded
         self.setFocusPolicy(Qt.FocusPolicy.StrongFocus)
@@ -43,17 +43,17 @@ class StripButton(QAbstractButton):
         self._refresh()
 
     def sizeHint(self) -> QSize:
-        theme = self._look.theme
+        theme = current_theme()
         words = QFontMetrics(self._font()).horizontalAdvance(self.text())
         return QSize(self._text_left() + words + theme.px(16), theme.px(44 if not self._is_compact else 40))
 
     def painted_texts(self) -> list[PaintedText]:
         """Give the sentence in its box."""
-        box = QRectF(self.rect()).adjusted(self._text_left(), 0, -self._look.theme.px(14), 0)
+        box = QRectF(self.rect()).adjusted(self._text_left(), 0, -px(14), 0)
         return [PaintedText(self.text(), box, self._font(), "caution_ink" if self._is_bad() else "ink")]
 
     def paintEvent(self, _event: QPaintEvent) -> None:
-        theme = self._look.theme
+        theme = current_theme()
         c, px = theme.colours, theme.px
         painter = QPainter(self)
         is_bad, box = self._is_bad(), QRectF(self.rect()).adjusted(1, 1, -1, -1)
@@ -71,10 +71,10 @@ class StripButton(QAbstractButton):
         return any(tile.is_bad for tile in self._tiles.values())
 
     def _font(self) -> QFont:
-        return self._look.theme.font(14, SEMIBOLD)
+        return current_theme().font(14, SEMIBOLD)
 
     def _text_left(self) -> int:
-        return self._look.theme.px(44)
+        return px(44)
 
     def _refresh(self) -> None:
         self.updateGeometry()

@@ -26,7 +26,7 @@ from PySide6.QtWidgets import (
     QTableView,
 )
 
-from app.theme.notifier import ThemeNotifier
+from app.theme.current import current_theme, px
 from app.widgets.table_cells import EMPTY, TableCell
 
 ROW, HEAD, PADDING = 28, 32, 6
@@ -134,7 +134,6 @@ class CellTable(QTableView):
 
     def __init__(
         self,
-        look: ThemeNotifier,
         name: str,
         *,
         row: int = ROW,
@@ -144,7 +143,7 @@ class CellTable(QTableView):
         is_list: bool = False,
     ) -> None:
         super().__init__()
-        self._look, self._row, self._head, self._padding, self._edge = look, row, head, padding, edge
+        self._row, self._head, self._padding, self._edge = row, head, padding, edge
         self._is_list = is_list
         self.needed_widths: list[int] = []  # px of the screen by column; nothing for a hidden one
         self.cells = TableModel()
@@ -209,7 +208,7 @@ class CellTable(QTableView):
 
     def paint_ground(self, painter: QPainter, option: QStyleOptionViewItem, index: Index) -> None:
         """Draw what lies under a cell: the line above it, and whether its row is a heading, chosen or in focus."""
-        theme, rect = self._look.theme, QRectF(option.rect)
+        theme, rect = current_theme(), QRectF(option.rect)
         is_chosen = self._is_list and bool(option.state & QStyle.StateFlag.State_Selected)
         if is_chosen or self.cells.rows[index.row()].is_heading:
             painter.fillRect(rect, QColor(theme.colours.sunken if is_chosen else theme.colours.ground))
@@ -223,22 +222,22 @@ class CellTable(QTableView):
     def paint_cell(self, painter: QPainter, option: QStyleOptionViewItem, index: Index) -> None:
         is_heading = self.cells.rows[index.row()].is_heading
         room = self.room_of(QRectF(option.rect), index.column(), is_heading=is_heading)
-        self.cells.cell(index).paint(painter, room, self._look.theme)
+        self.cells.cell(index).paint(painter, room, current_theme())
 
     def paint_head(self, painter: QPainter, rect: QRectF, column: int) -> None:
         if column < len(self.cells.columns):
-            self.cells.columns[column].head.paint(painter, self.room_of(rect, column), self._look.theme)
+            self.cells.columns[column].head.paint(painter, self.room_of(rect, column), current_theme())
 
     def room_of(self, rect: QRectF, column: int, *, is_heading: bool = False) -> QRectF:
         """What a cell's padding leaves of it; a heading lies on a ground of its own and begins after its edge."""
-        px = self._look.theme.px
+        px = current_theme().px
         left = px(self._padding) if is_heading else self._left_padding(column)
         return rect.adjusted(left, 0, -px(self._padding), 0)
 
     def fit(self) -> None:
         """Measure all of it again."""
-        px = self._look.theme.px
-        self.setFont(self._look.theme.font(14))
+        px = current_theme().px
+        self.setFont(current_theme().font(14))
         self.horizontalHeader().setFixedHeight(px(self._head) if self._head else 0)
         self.fit_rows()
         self.needed_widths = [self.needed_width(column) for column in range(len(self.cells.columns))]
@@ -251,7 +250,7 @@ class CellTable(QTableView):
 
     def fit_rows(self) -> None:
         """Give every row its height; the rows of a list all have the same."""
-        theme = self._look.theme
+        theme = current_theme()
         self.verticalHeader().setDefaultSectionSize(theme.px(self._row))
         for number, row in enumerate(self.cells.rows) if not self._is_list else ():
             self.setRowHeight(number, max(theme.px(self._row), *(cell.height(theme) for cell in row.cells)))
@@ -270,7 +269,7 @@ class CellTable(QTableView):
             self.setColumnWidth(column, needed[column] + more)
 
     def minimumSizeHint(self) -> QSize:
-        px = self._look.theme.px
+        px = current_theme().px
         width, head = sum(self.needed_widths), px(self._head) if self._head else 0
         if self._is_list:
             return QSize(width + self.verticalScrollBar().sizeHint().width(), head + px(LEAST_ROWS * self._row))
@@ -283,7 +282,7 @@ class CellTable(QTableView):
         """What a column needs, in px of the screen."""
         if self.isColumnHidden(column):
             return 0
-        theme, described = self._look.theme, self.cells.columns[column]
+        theme, described = current_theme(), self.cells.columns[column]
         measured = [described.head]
         if described.widest is not None:
             measured.append(described.widest)
@@ -296,7 +295,7 @@ class CellTable(QTableView):
         """The padding before a cell, which is the table's edge at the first column that is shown."""
         is_first = all(self.isColumnHidden(before) for before in range(column))
         length = self._edge if is_first else self._padding
-        return self._look.theme.px(length) if length else 0
+        return px(length) if length else 0
 
     def keyPressEvent(self, event: QKeyEvent) -> None:
         if not self._is_list and event.matches(QKeySequence.StandardKey.Copy):

@@ -6,7 +6,7 @@ from PySide6.QtCore import QEvent, Qt
 from PySide6.QtGui import QColor, QFont, QPalette
 from PySide6.QtWidgets import QLabel, QWidget
 
-from app.theme.notifier import ThemeNotifier
+from app.theme.current import current_theme
 
 REGULAR = QFont.Weight.Normal
 MEDIUM = QFont.Weight.Medium
@@ -20,7 +20,6 @@ class Text(QLabel):
 
     def __init__(
         self,
-        look: ThemeNotifier,
         text: str = "",
         size: float = 14,
         weight: QFont.Weight = REGULAR,
@@ -30,12 +29,11 @@ class Text(QLabel):
         parent: QWidget | None = None,
     ) -> None:
         super().__init__(parent)
-        self._look = look
         self._size, self._weight, self._tone, self._is_code = size, weight, tone, is_code
         self.setTextFormat(Qt.TextFormat.PlainText)  # what files hold is never markup
         self.setWordWrap(wraps)
         self.setText(text)
-        self._on_look_changed()
+        self._apply_theme()
 
     def setText(self, text: str) -> None:  # noqa: N802  Qt names it
         super().setText(UNIT.sub(JOINER, text) if self.wordWrap() else text)
@@ -47,20 +45,20 @@ class Text(QLabel):
     def changeEvent(self, event: QEvent) -> None:
         super().changeEvent(event)
         if event.type() is QEvent.Type.StyleChange:
-            self._on_look_changed()
+            self._apply_theme()
 
     def set_size(self, size: float) -> None:
         if size != self._size:
             self._size = size
-            self._on_look_changed()
+            self._apply_theme()
 
     def set_tone(self, tone: str) -> None:
         if tone != self._tone:
             self._tone = tone
-            self._on_look_changed()
+            self._apply_theme()
 
-    def _on_look_changed(self) -> None:
-        theme = self._look.theme
+    def _apply_theme(self) -> None:
+        theme = current_theme()
         self.setFont(theme.font(self._size, self._weight, self._is_code))
         palette = self.palette()
         palette.setColor(QPalette.ColorRole.WindowText, QColor(getattr(theme.colours, self._tone)))

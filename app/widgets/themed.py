@@ -5,7 +5,7 @@ from PySide6.QtWidgets import QWidget
 
 
 class Themed(QWidget):
-    """`_on_look_changed` sets margins and sizes; what is painted, Qt paints again and measures by itself.
+    """`_apply_theme` sets margins and sizes; what is painted, Qt paints again and measures by itself.
 
     Whoever derives from it calls it once its parts are there.
     """
@@ -13,7 +13,7 @@ class Themed(QWidget):
     def changeEvent(self, event: QEvent) -> None:
         super().changeEvent(event)
         if event.type() is QEvent.Type.StyleChange:
-            self._on_look_changed()
+            self._apply_theme()
 
-    def _on_look_changed(self) -> None:
+    def _apply_theme(self) -> None:
         raise NotImplementedError

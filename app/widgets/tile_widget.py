@@ -4,9 +4,9 @@ from PySide6.QtCore import QRectF, Qt, Signal
 from PySide6.QtGui import QAccessible, QColor, QFont, QFontMetrics, QKeyEvent, QPainter, QPaintEvent
 from PySide6.QtWidgets import QWidget
 
+from app.theme.current import current_theme
 from app.theme.icons import Icon, paint_icon
 from app.theme.leg_chip import CHIP, paint_chip
-from app.theme.notifier import ThemeNotifier
 from app.theme.theme import CONTROL_RADIUS
 from app.widgets.battery import WIDTH as BATTERY_WIDTH
 from app.widgets.battery import paint_battery
@@ -28,9 +28,9 @@ class TileWidget(QWidget):
 
     moved = Signal(int)  # by so many tiles, with the arrows
 
-    def __init__(self, look: ThemeNotifier, site: Site, parent: QWidget) -> None:
+    def __init__(self, site: Site, parent: QWidget) -> None:
         super().__init__(parent)
-        self._look, self._is_compact, self._is_tight = look, False, False
+        self._is_compact, self._is_tight = False, False
         self._tile = SensorTile(site, "", None, 0.0, 0.0, 0.0, is_moving=False, is_worn=False)
         self._name()
 
@@ -52,7 +52,7 @@ class TileWidget(QWidget):
 
     def needed_width(self, is_tight: bool) -> int:
         """The width below which its words are cut, whatever it may come to say."""
-        px = self._look.theme.px
+        px = current_theme().px
         name = QFontMetrics(self._name_font()).horizontalAdvance(self._segment())
         bold = QFontMetrics(self._words_font(is_bold=True))
         if self._is_compact:
@@ -67,7 +67,7 @@ class TileWidget(QWidget):
 
     def painted_texts(self) -> list[PaintedText]:
         """Give what is painted now, each in its box."""
-        px = self._look.theme.px
+        px = current_theme().px
         state = self._tile.state
         is_bold = self._tile.is_bad
         tone = "caution_ink" if is_bold else "ink2"
@@ -100,7 +100,7 @@ class TileWidget(QWidget):
         ]
 
     def paintEvent(self, _event: QPaintEvent) -> None:
-        theme = self._look.theme
+        theme = current_theme()
         c = theme.colours
         painter = QPainter(self)
         painter.setRenderHint(QPainter.RenderHint.Antialiasing)
@@ -119,7 +119,7 @@ class TileWidget(QWidget):
             super().keyPressEvent(event)
 
     def _paint_frame(self, painter: QPainter) -> None:
-        theme = self._look.theme
+        theme = current_theme()
         c = theme.colours
         pen = theme.pen(c.line, 1)
         painter.setBrush(QColor(c.ground))
@@ -137,7 +137,7 @@ class TileWidget(QWidget):
 
     def _paint_marks(self, painter: QPainter, ink: QColor) -> None:
         """Draw battery and movement at the right of the name, or what takes their place."""
-        px = self._look.theme.px
+        px = current_theme().px
         state = self._tile.state
         icon = Icon.WAVE if self._tile.is_moving else Icon.STILL
         if state is TileState.SILENT:
@@ -160,7 +160,7 @@ class TileWidget(QWidget):
             and self._tile.battery is not None
         ):
             cell = QRectF(self._marks_left(), middle - px(7), px(BATTERY_WIDTH), px(14))
-            paint_battery(painter, cell, self._tile.battery, self._look.theme, ink)
+            paint_battery(painter, cell, self._tile.battery, current_theme(), ink)
 
     @property
     def _chip_room(self) -> int:
@@ -168,7 +168,7 @@ class TileWidget(QWidget):
         return CHIP + 6 if self._tile.site.side is not None else 0
 
     def _chip(self) -> QRectF:
-        px = self._look.theme.px
+        px = current_theme().px
         chip = px(CHIP)
         if self._is_compact:
             return QRectF(px(8), (self.height() - chip) / 2, chip, chip)
@@ -179,7 +179,7 @@ class TileWidget(QWidget):
 
     def _marks_left(self) -> float:
         """Give where the battery begins, also where there is none: the name keeps its place."""
-        px = self._look.theme.px
+        px = current_theme().px
         return self.width() - px(9 + MARKS)
 
     def _segment(self) -> str:
@@ -197,10 +197,10 @@ class TileWidget(QWidget):
         return words
 
     def _name_font(self) -> QFont:
-        return self._look.theme.font(13 if self._is_compact else 14, SEMIBOLD)
+        return current_theme().font(13 if self._is_compact else 14, SEMIBOLD)
 
     def _words_font(self, is_bold: bool) -> QFont:
-        return self._look.theme.font(12, SEMIBOLD if is_bold else MEDIUM)
+        return current_theme().font(12, SEMIBOLD if is_bold else MEDIUM)
 
     def _name(self) -> None:
         tile = self._tile

@@ -11,7 +11,7 @@ from PySide6.QtGui import (
 )
 from PySide6.QtWidgets import QHBoxLayout, QSizePolicy, QWidget
 
-from app.theme.notifier import ThemeNotifier
+from app.theme.current import current_theme
 from app.widgets.action_bar import BarAction, VerbButton
 from app.widgets.button import ButtonKind
 from app.widgets.text import Text
@@ -30,12 +30,12 @@ class Toast(Themed):
 
     undone = Signal()
 
-    def __init__(self, look: ThemeNotifier, parent: QWidget | None = None) -> None:
+    def __init__(self, parent: QWidget | None = None) -> None:
         super().__init__(parent)
-        self._look, self._room = look, 10_000
+        self._room = 10_000
         self.setSizePolicy(QSizePolicy.Policy.Fixed, QSizePolicy.Policy.Fixed)
-        self._text = Text(look, tone="inv_ink", wraps=True)
-        self.button = VerbButton(look, self)
+        self._text = Text(tone="inv_ink", wraps=True)
+        self.button = VerbButton(self)
         self._clock = QTimer(self)
         self._clock.setSingleShot(True)
         self._clock.setInterval(STAYS_MS)
@@ -45,7 +45,7 @@ class Toast(Themed):
         self._clock.timeout.connect(self._on_timeout)
         self.button.clicked.connect(self.undo)
         self.hide()
-        self._on_look_changed()
+        self._apply_theme()
 
     @property
     def text(self) -> str:
@@ -90,9 +90,9 @@ class Toast(Themed):
         self._clock.stop()
 
     def paintEvent(self, _event: QPaintEvent) -> None:
-        c, box = self._look.theme.colours, QRectF(self.rect()).adjusted(0.5, 0.5, -0.5, -0.5)
+        c, box = current_theme().colours, QRectF(self.rect()).adjusted(0.5, 0.5, -0.5, -0.5)
         line = c.surface  # so that it shows on the inverse bar too
-        self._look.theme.paint_box(QPainter(self), box, c.inv, line, 1)
+        current_theme().paint_box(QPainter(self), box, c.inv, line, 1)
 
     def _on_timeout(self) -> None:
         if self.button.hasFocus():
@@ -101,13 +101,13 @@ class Toast(Themed):
             self.hide()
 
     def _fit(self) -> None:
-        px = self._look.theme.px
+        px = current_theme().px
         width = min(max(px(WIDTH), self.button.sizeHint().width() + px(180 + 32)), self._room)
         room = width - self.button.sizeHint().width() - px(16 + 12 + 4)
         self.setFixedSize(width, max(px(HEIGHT), self._text.heightForWidth(room) + px(16)))
 
-    def _on_look_changed(self) -> None:
-        px = self._look.theme.px
+    def _apply_theme(self) -> None:
+        px = current_theme().px
         self._row.setContentsMargins(px(16), px(4), px(4), px(4))
         self._row.setSpacing(px(12))
         self._fit()

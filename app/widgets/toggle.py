@@ -2,15 +2,14 @@
 
 from PySide6.QtCore import QSignalBlocker
 
-from app.theme.notifier import ThemeNotifier
 from app.widgets.button import Button, ButtonKind
 
 HEIGHT = 52  # as high as the controls beside it
 
 
 class Toggle(Button):
-    def __init__(self, look: ThemeNotifier, text: str, key: str, is_on: bool) -> None:
-        super().__init__(look, text, ButtonKind.TOGGLE, key=key, height=HEIGHT)
+    def __init__(self, text: str, key: str, is_on: bool) -> None:
+        super().__init__(text, ButtonKind.TOGGLE, key=key, height=HEIGHT)
         self.setCheckable(True)
         self.setChecked(is_on)
 

@@ -4,7 +4,7 @@ from PySide6.QtCore import QPointF, QRectF, QSize, Qt, Signal
 from PySide6.QtGui import QColor, QFont, QKeyEvent, QPainter, QPaintEvent, QStaticText, QTextOption, QTransform
 from PySide6.QtWidgets import QAbstractButton, QSizePolicy
 
-from app.theme.notifier import ThemeNotifier
+from app.theme.current import current_theme, px
 
 PADDING, MARK, GAP = 14, 20, 12
 VALUE_SIZE, WHOSE_SIZE = 16, 14
@@ -31,9 +31,9 @@ class VersionCell(QAbstractButton):
     moved = Signal(int, int)
     confirmed = Signal()
 
-    def __init__(self, look: ThemeNotifier, field: str, value: str, whose: str) -> None:
+    def __init__(self, field: str, value: str, whose: str) -> None:
         super().__init__()
-        self._look, self.value, self.whose = look, value, whose
+        self.value, self.whose = value, whose
         self.setCheckable(True)
         self.setText(value)
         self.setAccessibleName(f"{field}, {whose}: {value}")
@@ -47,16 +47,16 @@ class VersionCell(QAbstractButton):
         return True
 
     def heightForWidth(self, width: int) -> int:  # noqa: N802  Qt calls it
-        px = self._look.theme.px
+        px = current_theme().px
         value, whose = self._texts(width - px(2 * PADDING + MARK + GAP))
         return round(value.size().height() + whose.size().height()) + px(2 * PADDING + 2)
 
     def sizeHint(self) -> QSize:
-        width = self._look.theme.px(LEAST)
+        width = px(LEAST)
         return QSize(width, self.heightForWidth(width))
 
     def minimumSizeHint(self) -> QSize:
-        return QSize(self._look.theme.px(LEAST), 0)
+        return QSize(px(LEAST), 0)
 
     def keyPressEvent(self, event: QKeyEvent) -> None:
         key = Qt.Key(event.key())
@@ -68,7 +68,7 @@ class VersionCell(QAbstractButton):
             super().keyPressEvent(event)
 
     def paintEvent(self, _event: QPaintEvent) -> None:
-        theme = self._look.theme
+        theme = current_theme()
         c, px = theme.colours, theme.px
         painter = QPainter(self)
         painter.setRenderHint(QPainter.RenderHint.Antialiasing)
@@ -90,7 +90,7 @@ class VersionCell(QAbstractButton):
             painter.drawStaticText(QPointF(left, top), text)
 
     def _paint_mark(self, painter: QPainter) -> None:
-        theme = self._look.theme
+        theme = current_theme()
         c, px = theme.colours, theme.px
         box = QRectF(px(PADDING), px(PADDING) + px(1), px(MARK), px(MARK))
         painter.setPen(theme.pen(c.ink if self.isChecked() else c.control, 1.5))
@@ -114,4 +114,4 @@ class VersionCell(QAbstractButton):
         return texts
 
     def _font(self, size: float) -> QFont:
-        return self._look.theme.font(size, QFont.Weight.Medium if size == VALUE_SIZE else QFont.Weight.Normal)
+        return current_theme().font(size, QFont.Weight.Medium if size == VALUE_SIZE else QFont.Weight.Normal)

@@ -8,16 +8,15 @@ from PySide6.QtWidgets import QWidget
 
 from app.editing.dialog import EditDialog
 from app.editing.question import EditQuestion
-from app.theme.notifier import ThemeNotifier
 from app.wizard.visit import Visit
 
 
 class AskedEdits(QObject):
     """`may_ask` returns whether a dialog may open now; `go_on` is to be called when that may have changed."""
 
-    def __init__(self, look: ThemeNotifier, window: QWidget, may_ask: Callable[[], bool]) -> None:
+    def __init__(self, window: QWidget, may_ask: Callable[[], bool]) -> None:
         super().__init__(window)
-        self._look, self._window, self._may_ask = look, window, may_ask
+        self._window, self._may_ask = window, may_ask
         self._asked: deque[tuple[Visit, EditQuestion]] = deque()
         self._is_covered = False
         self.dialog: EditDialog | None = None
@@ -30,7 +29,7 @@ class AskedEdits(QObject):
         """Ask the next question, if there is one and nothing forbids it."""
         if not self._asked or self.dialog is not None or self._is_covered or not self._may_ask():
             return
-        self.dialog = EditDialog(self._look, self._asked[0][1], self._window)
+        self.dialog = EditDialog(self._asked[0][1], self._window)
         self.dialog.settled.connect(self._on_settled)
         self.dialog.open()
 

@@ -7,8 +7,8 @@ from PySide6.QtCore import QEvent, QObject, QPoint, QRect, Qt, QTimer, QVariantA
 from PySide6.QtGui import QColor, QPainter, QPaintEvent, QPixmap, QResizeEvent, QShowEvent
 from PySide6.QtWidgets import QFrame, QHBoxLayout, QScrollArea, QVBoxLayout, QWidget
 
+from app.theme.current import current_theme, px
 from app.theme.motion import duration_ms
-from app.theme.notifier import ThemeNotifier
 from app.widgets.action_bar import ActionBar, BarState
 from app.widgets.banner import Banner
 from app.widgets.grid import COMPACT_BELOW, CONTENT, LEAST, WIDE_FROM, side_margin
@@ -49,27 +49,27 @@ class WizardShell(Themed):
 
     room_changed = Signal(bool, float, float)
 
-    def __init__(self, look: ThemeNotifier) -> None:
+    def __init__(self) -> None:
         super().__init__()
-        self._look, self._strip_mode, self._is_compact = look, StripMode.HIDDEN, False
+        self._strip_mode, self._is_compact = StripMode.HIDDEN, False
         self._is_low = False
         self._by_step: dict[StepId, QWidget] = {}
-        self.rail = StepRail(look)
-        self.header = Header(look, has_mark=False)
-        self.strip = SensorStrip(look)
-        self.banner = Banner(look)
+        self.rail = StepRail()
+        self.header = Header(has_mark=False)
+        self.strip = SensorStrip()
+        self.banner = Banner()
         self._pages = PageStack()
         self._scroll = QScrollArea()
         self._outer = QScrollArea()  # scrolls only in a window that is too low for header and bar, as 400 x 280 is
-        self.bar = ActionBar(look)
+        self.bar = ActionBar()
         self._build()
-        self.toast = Toast(look, self)
-        self._fade = _Fade(look, self._scroll)
+        self.toast = Toast(self)
+        self._fade = _Fade(self._scroll)
         self._settled = QTimer(self)
         self._settled.setSingleShot(True)
         self._settled.timeout.connect(lambda: self._scroll.setUpdatesEnabled(True))
         self._connect()
-        self._on_look_changed()
+        self._apply_theme()
         self.set_strip_mode(StripMode.HIDDEN)
 
     @property
@@ -170,7 +170,7 @@ class WizardShell(Themed):
         return super().eventFilter(watched, event)
 
     def paintEvent(self, _event: QPaintEvent) -> None:
-        QPainter(self).fillRect(self.rect(), QColor(self._look.theme.colours.ground))
+        QPainter(self).fillRect(self.rect(), QColor(current_theme().colours.ground))
 
     def _build(self) -> None:
         for scroll in (self._scroll, self._outer):
@@ -214,7 +214,7 @@ class WizardShell(Themed):
 
     def _fit(self) -> None:
         """Choose the forms of all parts by the room the window has, in px of the design."""
-        scale = self._look.theme.scale
+        scale = current_theme().scale
         width, height = self.width() / scale, self.height() / scale
         was_low, self._is_low = self._is_low, height < LOW_BELOW
         self._is_compact = width < COMPACT_BELOW[0] or height < COMPACT_BELOW[1]
@@ -222,11 +222,11 @@ class WizardShell(Themed):
         self.rail.set_form(RailForm.COMPACT if self._is_compact else form)
         self.header.set_compact(self._is_compact)
         self.strip.set_compact(self._is_compact)
-        self._scroll.setMinimumHeight(self._look.theme.px(LEAST_PAGE))
+        self._scroll.setMinimumHeight(px(LEAST_PAGE))
         free = self.width() - self.rail.width()
-        beside = max(free - self._look.theme.px(CONTENT), 0) // 2
+        beside = max(free - px(CONTENT), 0) // 2
         self._middle.setContentsMargins(beside, 0, beside, 0)
-        margin = side_margin(free, self._look.theme) - beside
+        margin = side_margin(free, current_theme()) - beside
         self._banner_row.setContentsMargins(margin, 0, margin, 0)
         if was_low != self._is_low:
             self.header.fold.setChecked(False)
@@ -237,7 +237,7 @@ class WizardShell(Themed):
     def _show_room(self) -> None:
         if self.page is None:
             return
-        scale = self._look.theme.scale
+        scale = current_theme().scale
         room = self._scroll.viewport().size()
         self.room_changed.emit(self._is_compact, room.width() / scale, room.height() / scale)
 
@@ -278,9 +278,9 @@ class WizardShell(Themed):
         self.strip.setVisible(mode is StripMode.SHOWN or (mode is StripMode.FOLDED and self.header.fold.isChecked()))
 
     def _place_toast(self) -> None:
-        px = self._look.theme.px
+        px = current_theme().px
         bar = QRect(self.bar.mapTo(self, QPoint(0, 0)), self.bar.size())
-        margin = side_margin(bar.width(), self._look.theme)
+        margin = side_margin(bar.width(), current_theme())
         if bar.width() <= px(LEAST):
             margin = px(4)
         self.toast.set_room(bar.width() - 2 * margin)
@@ -309,9 +309,9 @@ class WizardShell(Themed):
     def _on_range_changed(self) -> None:
         """Keep what stops a recording in sight where the frame itself has to scroll."""
         if self.bar.state.recording is not None:
-            self._outer.ensureWidgetVisible(self.bar.primary, 0, self._look.theme.px(8))
+            self._outer.ensureWidgetVisible(self.bar.primary, 0, px(8))
 
-    def _on_look_changed(self) -> None:
+    def _apply_theme(self) -> None:
         self._fit()
         self.update()
 
@@ -319,9 +319,9 @@ class WizardShell(Themed):
 class _Fade(QWidget):
     """The page that was there, as a picture over the one that is, going away."""
 
-    def __init__(self, look: ThemeNotifier, scroll: QScrollArea) -> None:
+    def __init__(self, scroll: QScrollArea) -> None:
         super().__init__(scroll.viewport())
-        self._look, self._under = look, scroll.viewport()
+        self._under = scroll.viewport()
         self._picture = QPixmap()
         self.setAttribute(Qt.WidgetAttribute.WA_TransparentForMouseEvents)
         self._run = QVariantAnimation(self)
@@ -334,7 +334,7 @@ class _Fade(QWidget):
     def begin(self) -> None:
         """Take the picture of what is there now; what comes next appears under it."""
         self.end()
-        duration = duration_ms(FADE_MS, self._look.theme)
+        duration = duration_ms(FADE_MS, current_theme())
         if duration == 0 or not self._under.isVisible():
             return
         self._picture = self._under.grab()

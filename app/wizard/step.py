@@ -6,7 +6,6 @@ from typing import TYPE_CHECKING, ClassVar
 from PySide6.QtCore import QObject, Signal
 from PySide6.QtWidgets import QWidget
 
-from app.theme.notifier import ThemeNotifier
 from app.widgets.action_bar import BarState
 from app.widgets.rail_row import StepState
 from app.wizard.keys import Intent
@@ -55,9 +54,9 @@ class Step(QObject):
     offered = Signal(str)
     demonstration_required = Signal()
 
-    def __init__(self, look: ThemeNotifier, visit: "Visit", parent: QObject | None = None) -> None:
+    def __init__(self, visit: "Visit", parent: QObject | None = None) -> None:
         super().__init__(parent)
-        self._look, self._visit = look, visit
+        self._visit = visit
 
     @property
     def page(self) -> QWidget:

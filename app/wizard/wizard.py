@@ -12,7 +12,7 @@ from app.editing.question import EditQuestion
 from app.system import sounds
 from app.system.prompts import prompter
 from app.system.settings import Settings
-from app.theme.notifier import ThemeNotifier
+from app.theme.current import grow
 from app.widgets.action_bar import BarAction, BarState
 from app.widgets.rail_row import RailRow, StepState
 from app.wizard.asked_edits import AskedEdits
@@ -61,9 +61,9 @@ class Wizard(QWidget):
     help_required = Signal(str)
     settings_required = Signal()
 
-    def __init__(self, look: ThemeNotifier, controller: LibraryController, settings: Settings) -> None:
+    def __init__(self, controller: LibraryController, settings: Settings) -> None:
         super().__init__()
-        self._look, self._controller, self._settings = look, controller, settings
+        self._controller, self._settings = controller, settings
         self._visit: Visit | None = None
         self._demonstration: Visit | None = None  # that waits for its patient
         self._closing: list[Visit] = []  # their threads end by themselves
@@ -74,11 +74,11 @@ class Wizard(QWidget):
         self._to_resume: UUID | None = None  # a session that waits for what visits before still save
         self._deaf_until_s = 0.0
         self._reported_of_recording: Message = NOTHING
-        self.shell = WizardShell(look)
+        self.shell = WizardShell()
         column = QVBoxLayout(self)
         column.setContentsMargins(0, 0, 0, 0)
         column.addWidget(self.shell)
-        self.asked = AskedEdits(look, self, self._may_ask)
+        self.asked = AskedEdits(self, self._may_ask)
         self._keys = Keys(self, lambda: self.shell.bar.keys)
         self._timer = QTimer(self)
         self._timer.setInterval(TICK_MS)
@@ -199,15 +199,14 @@ class Wizard(QWidget):
         self._visit = visit
         visit.source_before = self._settings.latest_source
         visit.sensors.opened.connect(self._on_source_opened)
-        look = self._look
         steps = (
-            PatientStep(look, visit, self),
-            SensorsStep(look, visit, self),
-            StandStillStep(look, visit, self),
-            FreeMotionStep(look, visit, self),
-            WalkingStep(look, visit, self),
-            ResultsStep(look, visit, self),
-            ReportStep(look, visit, self._controller, self),
+            PatientStep(visit, self),
+            SensorsStep(visit, self),
+            StandStillStep(visit, self),
+            FreeMotionStep(visit, self),
+            WalkingStep(visit, self),
+            ResultsStep(visit, self),
+            ReportStep(visit, self._controller, self),
         )
         self._steps = {step.id: step for step in steps}
         for step in steps:
@@ -366,11 +365,11 @@ class Wizard(QWidget):
             case KeyAction.HELP:
                 self.help_required.emit(step.topic)
             case KeyAction.LARGER:
-                self._look.grow(1)
+                grow(1)
             case KeyAction.SMALLER:
-                self._look.grow(-1)
+                grow(-1)
             case KeyAction.USUAL_SIZE:
-                self._look.grow(0)
+                grow(0)
 
     def _has_just_turned(self) -> bool:
         """Whether the page turned by itself a moment ago: what is pressed now was meant for the one before."""

@@ -8,7 +8,8 @@ from PySide6.QtWidgets import QApplication
 from pytestqt.qtbot import QtBot
 
 from app.results.result_page import ResultPage
-from app.theme.notifier import ThemeNotifier, load_fonts
+from app.theme.current import current_theme, load_fonts, set_theme
+from app.theme.theme import Theme
 from app.wording.translation import use_language
 from tests.app.watchdog import Watchdog
 
@@ -31,22 +32,27 @@ def pseudo_language() -> Iterator[None]:
     use_language("en")
 
 
-@pytest.fixture
-def look(qapp: QApplication) -> Iterator[ThemeNotifier]:
-    """The light theme at its usual size, whatever a test makes of it."""
+@pytest.fixture(autouse=True, scope="session")
+def usual_theme(qapp: QApplication) -> Theme:
+    """The light theme at its usual size, in force from the first test on."""
     load_fonts()
-    look = ThemeNotifier()
-    look.set_dark(False)
-    yield look
-    # what the test closed is gone first: a scene that Python let go of must not be given of a change
-    qapp.sendPostedEvents(None, QEvent.Type.DeferredDelete)
-    look.set_scale(1.0)
-    qapp.setStyleSheet("")
+    set_theme(Theme())
+    return Theme()
+
+
+@pytest.fixture(autouse=True)
+def theme_as_before(qapp: QApplication, usual_theme: Theme) -> Iterator[None]:
+    """Whatever a test makes of the theme, the next one begins with the usual one."""
+    yield
+    if current_theme() != usual_theme:
+        # what the test closed is gone first: a scene that Python let go of must not be given of a change
+        qapp.sendPostedEvents(None, QEvent.Type.DeferredDelete)
+        set_theme(usual_theme)
 
 
 @pytest.fixture
-def result_page(qtbot: QtBot, look: ThemeNotifier) -> ResultPage:
+def result_page(qtbot: QtBot) -> ResultPage:
     """The results by themselves, in the light theme."""
-    page = ResultPage(look)
+    page = ResultPage()
     qtbot.addWidget(page)
     return page

@@ -3,7 +3,7 @@
 import pytest
 from pytestqt.qtbot import QtBot
 
-from app.theme.notifier import ThemeNotifier
+from app.theme.current import px, set_scale
 from tests.app.results.filled_pages import BELOW_STRIP, PAGES
 from tests.app.room import words_cut
 
@@ -24,16 +24,14 @@ STRIP, COMPACT_STRIP = 72, 44  # on the steps that show it
 @pytest.mark.usefixtures("pseudo_language")
 @pytest.mark.parametrize("window", WINDOWS)
 @pytest.mark.parametrize("name", PAGES)
-def test_every_word_of_a_longer_language_has_its_room(
-    qtbot: QtBot, look: ThemeNotifier, name: str, window: str
-) -> None:
+def test_every_word_of_a_longer_language_has_its_room(qtbot: QtBot, name: str, window: str) -> None:
     width, height, scale, is_compact = WINDOWS[window]
-    width -= look.theme.px(scale * (COMPACT_RAIL if is_compact else RAIL))
-    height -= look.theme.px(scale * HEADER_AND_BAR)
+    width -= px(scale * (COMPACT_RAIL if is_compact else RAIL))
+    height -= px(scale * HEADER_AND_BAR)
     if name in BELOW_STRIP:
-        height -= look.theme.px(scale * (COMPACT_STRIP if is_compact else STRIP))
-    look.set_scale(scale)
-    page = PAGES[name](look)
+        height -= px(scale * (COMPACT_STRIP if is_compact else STRIP))
+    set_scale(scale)
+    page = PAGES[name]()
     qtbot.addWidget(page)
     if hasattr(page, "set_compact"):
         page.set_compact(is_compact)

@@ -35,7 +35,7 @@ from app.storage.stored import LibraryError, Operator, Role
 from app.system.progress import Report
 from app.system.settings import Scheme, Settings
 from app.theme.colours import DARK, LIGHT
-from app.theme.notifier import ThemeNotifier
+from app.theme.current import current_theme, set_scale
 from app.wizard.keys import Intent, KeyAction
 from app.wording.translation import use_language
 from core.session import Patient, Recording, RecordingKind, Session
@@ -72,7 +72,7 @@ Open = Callable[[Path | None], MainWindow]
 
 
 @pytest.fixture
-def open_window(qtbot: QtBot, look: ThemeNotifier, settings: Settings) -> Open:
+def open_window(qtbot: QtBot, settings: Settings) -> Open:
     """Open a window with the library in a folder, or without any."""
 
     def end(window: MainWindow) -> None:
@@ -80,7 +80,7 @@ def open_window(qtbot: QtBot, look: ThemeNotifier, settings: Settings) -> Open:
         window.finish()
 
     def open_it(library: Path | None) -> MainWindow:
-        window = MainWindow(look, settings, library)
+        window = MainWindow(settings, library)
         window.resize(1280, 800)
         qtbot.addWidget(window, before_close_func=end)
         with qtbot.waitActive(window):
@@ -682,24 +682,22 @@ def test_escape_stops_an_analysis(qtbot: QtBot, window: MainWindow, monkeypatch:
     assert window.session.pages.currentWidget() is window.session.empty
 
 
-def test_keys_change_the_size_of_everything_and_it_is_kept(
-    window: MainWindow, look: ThemeNotifier, settings: Settings
-) -> None:
+def test_keys_change_the_size_of_everything_and_it_is_kept(window: MainWindow, settings: Settings) -> None:
     for _ in range(9):
         QTest.keyClick(window, Qt.Key.Key_Plus, Qt.KeyboardModifier.ControlModifier)
-    assert look.theme.scale == settings.scale == 2.0
+    assert current_theme().scale == settings.scale == 2.0
     QTest.keyClick(window, Qt.Key.Key_0, Qt.KeyboardModifier.ControlModifier)
-    assert look.theme.scale == settings.scale == 1.0
+    assert current_theme().scale == settings.scale == 1.0
     for _ in range(4):
         QTest.keyClick(window, Qt.Key.Key_Minus, Qt.KeyboardModifier.ControlModifier)
-    assert look.theme.scale == settings.scale == 0.8
+    assert current_theme().scale == settings.scale == 0.8
 
 
-def test_light_and_dark_follow_what_is_set(window: MainWindow, look: ThemeNotifier, settings: Settings) -> None:
+def test_light_and_dark_follow_what_is_set(window: MainWindow, settings: Settings) -> None:
     settings.scheme = Scheme.DARK
-    assert look.theme.colours is DARK
+    assert current_theme().colours is DARK
     settings.scheme = Scheme.LIGHT
-    assert look.theme.colours is LIGHT
+    assert current_theme().colours is LIGHT
 
 
 def is_cut(widget: QWidget) -> bool:
@@ -753,7 +751,6 @@ def test_every_word_fits(
     qapp: QApplication,
     open_window: Open,
     folder: Path,
-    look: ThemeNotifier,
     language: str,
     size: tuple[int, int],
     scale: float,
@@ -762,7 +759,7 @@ def test_every_word_fits(
     try:
         window = open_window(folder)
         logged_in(qtbot, window)
-        look.set_scale(scale)
+        set_scale(scale)
         window.resize(*size)
         assert window.entry is not None
         home, entry = window.home, window.entry

@@ -5,7 +5,7 @@ from PySide6.QtCore import QRectF
 from PySide6.QtWidgets import QLineEdit, QScrollArea, QVBoxLayout, QWidget
 from pytestqt.qtbot import QtBot
 
-from app.theme.notifier import ThemeNotifier
+from app.theme.current import current_theme
 from app.widgets.button import Button
 from app.widgets.painted_text import PaintedText
 from app.widgets.segmented import Segmented
@@ -15,11 +15,11 @@ from tests.app.room import words_cut
 
 class Painted(QWidget):
     def painted_texts(self) -> list[PaintedText]:
-        font = ThemeNotifier().theme.font(14)
+        font = current_theme().font(14)
         return [PaintedText("Left knee", QRectF(0, 0, self.width(), self.height()), font)]
 
 
-def parts(look: ThemeNotifier) -> list[QWidget]:
+def parts() -> list[QWidget]:
     field = QLineEdit()
     field.setPlaceholderText("kept out of exports")
     options = [
@@ -27,21 +27,21 @@ def parts(look: ThemeNotifier) -> list[QWidget]:
         ("walk", "Whole walk", "second by second"),
     ]
     return [
-        Text(look, "The patient faces you"),
-        Text(look, "Unreasonableness is one word", wraps=True),
-        Button(look, "Continue to walking"),
-        Segmented(look, "View", options),
+        Text("The patient faces you"),
+        Text("Unreasonableness is one word", wraps=True),
+        Button("Continue to walking"),
+        Segmented("View", options),
         field,
         Painted(),
     ]
 
 
 @pytest.mark.parametrize("kind", range(6))
-def test_what_has_its_room_passes_and_what_has_not_is_named(look: ThemeNotifier, qtbot: QtBot, kind: int) -> None:
+def test_what_has_its_room_passes_and_what_has_not_is_named(qtbot: QtBot, kind: int) -> None:
     page = QWidget()
     qtbot.addWidget(page)
     page.resize(600, 300)
-    part = parts(look)[kind]
+    part = parts()[kind]
     part.setParent(page)
     part.setGeometry(10, 10, 400, 60)
     page.show()
@@ -50,21 +50,21 @@ def test_what_has_its_room_passes_and_what_has_not_is_named(look: ThemeNotifier,
     assert words_cut(page) != []
 
 
-def test_lines_that_have_no_room_below_are_named(look: ThemeNotifier, qtbot: QtBot) -> None:
+def test_lines_that_have_no_room_below_are_named(qtbot: QtBot) -> None:
     page = QWidget()
     qtbot.addWidget(page)
-    text = Text(look, "Recording goes on. Right ankle and right phases are missing until it is back.", wraps=True)
+    text = Text("Recording goes on. Right ankle and right phases are missing until it is back.", wraps=True)
     text.setParent(page)
     text.setGeometry(0, 0, 200, 20)
     page.show()
     assert "height" in words_cut(page)[0]
 
 
-def test_what_sticks_out_of_the_page_is_named_but_not_what_scrolls(look: ThemeNotifier, qtbot: QtBot) -> None:
+def test_what_sticks_out_of_the_page_is_named_but_not_what_scrolls(qtbot: QtBot) -> None:
     page = QWidget()
     qtbot.addWidget(page)
     page.resize(300, 200)
-    button = Button(look, "Stop walk")
+    button = Button("Stop walk")
     button.setParent(page)
     button.setGeometry(250, 10, 200, 48)
     page.show()
@@ -80,10 +80,10 @@ def test_what_sticks_out_of_the_page_is_named_but_not_what_scrolls(look: ThemeNo
     assert words_cut(page) == []
 
 
-def test_what_is_hidden_is_not_looked_at(look: ThemeNotifier, qtbot: QtBot) -> None:
+def test_what_is_hidden_is_not_looked_at(qtbot: QtBot) -> None:
     page = QWidget()
     qtbot.addWidget(page)
-    text = Text(look, "The patient faces you", parent=page)
+    text = Text("The patient faces you", parent=page)
     text.setGeometry(0, 0, 5, 5)
     text.hide()
     page.show()

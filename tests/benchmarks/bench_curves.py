@@ -16,6 +16,8 @@ from functools import partial
 from pathlib import Path
 from time import perf_counter, process_time, sleep
 
+from app.theme.current import load_fonts
+
 os.environ.setdefault("QT_QPA_PLATFORM", "offscreen")
 
 from PySide6.QtCore import QEvent, QObject
@@ -28,7 +30,6 @@ from app.storage.layout import KEYS
 from app.storage.library import Library
 from app.storage.slots import Cost
 from app.storage.stored import Operator, Role
-from app.theme.notifier import ThemeNotifier, load_fonts
 from app.wizard.keys import Intent, KeyAction
 from app.wizard.visit import Visit
 from app.wizard.walking.step import WalkingStep
@@ -159,7 +160,7 @@ def main() -> None:
         wait(lambda: controller.state is not None)
         visit = dressed(controller, patient(required.walks, required.speed))
         calibrate(visit, required.speed)
-        step = WalkingStep(ThemeNotifier(), visit)
+        step = WalkingStep(visit)
         step.page.resize(1064, 672)
         step.page.show()
         step.enter()

@@ -18,6 +18,7 @@ import tempfile
 from pathlib import Path
 from time import monotonic, process_time
 
+from app.theme.current import load_fonts
 from tests.benchmarks.own_display import own_display, own_environment
 
 CODES = ("DEMO-KNEE", "DEMO-STROKE", "DEMO-AK")
@@ -34,7 +35,6 @@ def measure(*, is_prepared: bool) -> None:
 
     from app.main_window import MainWindow
     from app.system.settings import Settings
-    from app.theme.notifier import ThemeNotifier, load_fonts
     from tests.app.watchdog import Watchdog
 
     application = QApplication([])
@@ -42,7 +42,7 @@ def measure(*, is_prepared: bool) -> None:
     load_fonts()
     with tempfile.TemporaryDirectory() as folder:
         settings = Settings(QSettings(f"{folder}/settings.ini", QSettings.Format.IniFormat))
-        window = MainWindow(ThemeNotifier(application), settings, Path(folder) / "library")
+        window = MainWindow(settings, Path(folder) / "library")
         window.show()
         QTest.qWaitForWindowExposed(window)
         if is_prepared:

@@ -41,7 +41,7 @@ from app.main_window import SWITCH_S
 from app.storage.journal.writer import JournalWriter
 from app.system import sounds
 from app.system.sounds import Sound
-from app.theme.notifier import ThemeNotifier, load_fonts
+from app.theme.current import load_fonts
 from app.wizard.walking.estimator import WalkingEstimator
 from app.wizard.walking.page import WalkingPage
 from app.wizard.walking.patient_feedback import PatientFeedback
@@ -146,7 +146,6 @@ def run(seconds: float) -> None:
     app = QApplication([])
     collector = GarbageCollector(app, lambda: False)  # as in the application: only between frames
     load_fonts()
-    look = ThemeNotifier()
     strides = round(seconds / STRIDE_S)
     required = (Standing(duration_s=10.0), FreeMotion(duration_s=25.0), Walk(strides=strides, standing_before_s=2.0))
     session = simulate(replace(DEMONSTRATION, rate_hz=RATE_HZ, recordings=required)).session
@@ -158,11 +157,11 @@ def run(seconds: float) -> None:
     try:
         sensors = live_sensors(site_of, stood(acquisition).state.standing.rest, acquisition.status())
         estimator = WalkingEstimator(site_of, sensors, calibration)
-        page = WalkingPage(look)
+        page = WalkingPage()
         page.resize(1064, 600)
         page.show_walks((WalkRow("1", "A", "Barefoot", WalkState.RECORDING),))
         page.show()
-        feedback = PatientFeedback(look, _visit(site_of, calibration), page.patient_controls, page)
+        feedback = PatientFeedback(_visit(site_of, calibration), page.patient_controls, page)
         feedback.toggle()
         assert feedback.window is not None
         feedback.watch(estimator)
@@ -218,7 +217,6 @@ def compute(seconds: float) -> None:
     app = QApplication([])
     collector = GarbageCollector(app, lambda: False)
     load_fonts()
-    look = ThemeNotifier()
     required = (
         Standing(duration_s=10.0),
         FreeMotion(duration_s=25.0),
@@ -230,11 +228,11 @@ def compute(seconds: float) -> None:
     rests = {block.sensor: rest for block in standing.imu.values() if (rest := rest_of(block)) is not None}
     sensors = {name: LiveSensor(RATE_HZ, rest.gyr_rad_s) for name, rest in rests.items()}
     calibration = analyse(session).calibrations[-1].joints
-    page = WalkingPage(look)
+    page = WalkingPage()
     page.resize(1064, 600)
     page.show_walks((WalkRow("1", "A", "Barefoot", WalkState.RECORDING),))
     page.show()
-    feedback = PatientFeedback(look, _visit(site_of, calibration), page.patient_controls, page)
+    feedback = PatientFeedback(_visit(site_of, calibration), page.patient_controls, page)
     feedback.toggle()
     played, sounds.play = sounds.play, lambda sound: None
     noted: dict[TargetMeasure, tuple[Noted, Noted]] = {measure: ([], []) for measure in TargetMeasure}

@@ -17,6 +17,8 @@ from collections.abc import Callable
 from pathlib import Path
 from time import perf_counter, sleep, thread_time
 
+from app.theme.current import load_fonts
+
 os.environ.setdefault("QT_QPA_PLATFORM", "offscreen")
 
 from PySide6.QtCore import QSettings
@@ -30,7 +32,6 @@ from app.storage.library import Library
 from app.storage.slots import Cost
 from app.storage.stored import Operator, Role
 from app.system.settings import Settings
-from app.theme.notifier import ThemeNotifier, load_fonts
 from app.workers.library_controller import LibraryController
 from core.session import Patient, Session
 from tests.app.home.course_library import PASSPHRASE, add_visit, course_of_visit
@@ -83,7 +84,6 @@ def main() -> None:
         state = controller.state
         assert state is not None
         home = Home(
-            ThemeNotifier(application),
             controller,
             Settings(QSettings(f"{temporary}/settings.ini", QSettings.Format.IniFormat)),
         )

@@ -281,7 +281,7 @@ def _bench_page(window: "MainWindow", wizard: "Wizard") -> Any:
     assert acquisition is not None
     page = QWidget()
     column = QVBoxLayout(page)
-    strips = [LiveStrip(window._look, (-400.0, 400.0), 400) for _ in range(9)]
+    strips = [LiveStrip((-400.0, 400.0), 400) for _ in range(9)]
     for strip in strips:
         column.addWidget(strip, 1)
 

@@ -34,7 +34,8 @@ from app.storage.opened import OpenedLibrary, open_library
 from app.storage.slots import Cost
 from app.storage.stored import Operator, Role
 from app.system.settings import Settings
-from app.theme.notifier import ThemeNotifier, load_fonts
+from app.theme.current import load_fonts, set_theme
+from app.theme.theme import Theme
 from app.wizard.wizard import Wizard
 from app.workers.library_controller import LibraryController
 from core.session import Session
@@ -136,13 +137,14 @@ def main() -> None:
     times = parser.parse_args().times
     application = QApplication(sys.argv[:1])
     load_fonts()
-    look, controller = ThemeNotifier(application), LibraryController()
+    set_theme(Theme())
+    controller = LibraryController()
     with tempfile.TemporaryDirectory(prefix="gaitwright-") as folder:
         session_id = library_with(three_walks(), Path(folder))
         controller.open(Path(folder), PASSPHRASE)
         wait_until(application, lambda: controller.state is not None)
         settings = Settings(QSettings(str(Path(folder) / "settings.ini"), QSettings.Format.IniFormat))
-        wizard = Wizard(look, controller, settings)
+        wizard = Wizard(controller, settings)
         wizard.resize(1280, 800)
         wizard.show()
         print("| analysis | first, s | median, s | longest, s | processor, s |\n|---|---|---|---|---|", flush=True)

@@ -25,7 +25,7 @@ import numpy as np
 from PySide6.QtCore import Qt
 from PySide6.QtWidgets import QApplication
 
-from app.theme.notifier import load_fonts
+from app.theme.current import load_fonts
 from app.wizard.sensors.dot_form import DotChoice
 from app.wizard.sensors.sources import SEARCH
 from app.wizard.sensors.step import SensorsStep

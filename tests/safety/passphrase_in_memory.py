@@ -22,7 +22,7 @@ from PySide6.QtWidgets import QApplication
 
 from app.main_window import MainWindow
 from app.system.settings import Settings
-from app.theme.notifier import ThemeNotifier, load_fonts
+from app.theme.current import load_fonts
 
 SHIFTED = {"passphrase": "gnts!rinsu!vnser!idsd", "code": "Q,1056,YX["}  # each letter is its adjacent one
 MAKE = """
@@ -80,7 +80,7 @@ def main() -> int:
         folder.mkdir()
         subprocess.run([sys.executable, "-c", MAKE, str(folder), json.dumps(SHIFTED)], check=True)
         settings = Settings(QSettings(str(Path(place, "settings.ini")), QSettings.Format.IniFormat))
-        window = MainWindow(ThemeNotifier(app), settings, folder)
+        window = MainWindow(settings, folder)
         window.show()
         _follow(app, window, args.locks)
         window.close()

@@ -22,6 +22,8 @@ from dataclasses import dataclass, field
 from functools import partial
 from pathlib import Path
 
+from app.theme.current import load_fonts
+
 os.environ.setdefault("QT_QPA_PLATFORM", "offscreen")
 os.environ["OPENBLAS_NUM_THREADS"] = "1"
 
@@ -33,7 +35,6 @@ from PySide6.QtWidgets import QApplication
 from app.editing.session_recording import SessionRecording
 from app.storage.journal.header import JournalHeader
 from app.system.settings import Settings
-from app.theme.notifier import ThemeNotifier, load_fonts
 from app.wizard.sensors.sources import COLUMNS, SEARCH
 from app.wizard.sensors.step import SensorsStep
 from app.wizard.step import StepId
@@ -165,7 +166,7 @@ class WindowSession:
         self.controller.create(folder / "library", "PT", "Port Tester", "seven quiet herons cross")
         self.wait(lambda: self.controller.state is not None, "library")
         settings = Settings(QSettings(str(folder / "settings.ini"), QSettings.Format.IniFormat))
-        self.wizard = Wizard(ThemeNotifier(application), self.controller, settings)
+        self.wizard = Wizard(self.controller, settings)
         self.wizard.resize(1280, 800)
         self.wizard.show()
         self.wizard.activateWindow()

@@ -24,6 +24,8 @@ from pathlib import Path
 from types import TracebackType
 from typing import Any
 
+from app.theme.current import load_fonts
+
 os.environ["QT_QPA_PLATFORM"] = "offscreen"
 os.environ["OPENBLAS_NUM_THREADS"] = "1"
 
@@ -39,7 +41,6 @@ from app.storage.keys import KeyRefusedError, KeySlots
 from app.storage.layout import KEYS
 from app.storage.opened import OpenedLibrary
 from app.system.settings import Settings
-from app.theme.notifier import ThemeNotifier, load_fonts
 from app.wizard.sensors import sources
 from app.wizard.worn_sensors import SourceChoice
 from app.workers.garbage import GarbageCollector
@@ -335,7 +336,7 @@ def main() -> int:
     load_fonts()
     chance = random.Random(required.seed)
     settings = Settings(QSettings(str(required.place / "settings.ini"), QSettings.Format.IniFormat))
-    window = MainWindow(ThemeNotifier(application), settings, required.place / "library")
+    window = MainWindow(settings, required.place / "library")
     dog = Watchdog()
     user = RandomUser(window, chance, required.place)
     life = RandomLife(window, user, dog, chance, required.end)

@@ -11,6 +11,8 @@ from contextlib import contextmanager
 from dataclasses import dataclass
 from pathlib import Path
 
+from app.theme.current import load_fonts
+
 os.environ["QT_QPA_PLATFORM"] = "offscreen"
 os.environ["OPENBLAS_NUM_THREADS"] = "1"
 
@@ -20,7 +22,6 @@ from PySide6.QtWidgets import QApplication
 from app.acquisition.acquisition import Acquisition
 from app.main_window import SWITCH_S, MainWindow
 from app.system.settings import Settings
-from app.theme.notifier import ThemeNotifier, load_fonts
 from app.wizard.sensors import sources
 from app.wizard.worn_sensors import SourceChoice
 from app.workers.garbage import GarbageCollector
@@ -96,7 +97,7 @@ def opened_window(open_sensors: Callable[[], Acquisition]) -> Iterator[tuple[QAp
     load_fonts()
     with tempfile.TemporaryDirectory() as folder:
         settings = Settings(QSettings(f"{folder}/settings.ini", QSettings.Format.IniFormat))
-        window = MainWindow(ThemeNotifier(application), settings, Path(folder) / "library")
+        window = MainWindow(settings, Path(folder) / "library")
         garbage = GarbageCollector(window, lambda: window.preparing.is_busy)
         window.preparing.done.connect(garbage.pass_over_imported)
         window.show()

@@ -16,6 +16,8 @@ from dataclasses import replace
 from enum import StrEnum
 from pathlib import Path
 
+from app.theme.current import load_fonts
+
 os.environ["QT_QPA_PLATFORM"] = "offscreen"
 os.environ["OPENBLAS_NUM_THREADS"] = "1"
 
@@ -26,7 +28,6 @@ from PySide6.QtWidgets import QApplication
 from app.acquisition.acquisition import Acquisition
 from app.main_window import SWITCH_S, MainWindow
 from app.system.settings import Settings
-from app.theme.notifier import ThemeNotifier, load_fonts
 from app.wizard.keys import Intent, KeyAction
 from app.wizard.report.step import ReportStep
 from app.wizard.results.step import ResultsStep
@@ -207,7 +208,7 @@ def main() -> int:
     application.setStyle("Fusion")
     load_fonts()
     settings = Settings(QSettings(str(required.library.parent / "settings.ini"), QSettings.Format.IniFormat))
-    window = MainWindow(ThemeNotifier(application), settings, required.library)
+    window = MainWindow(settings, required.library)
     window.show()
     guide = Guide(application, window)
     guide.begin(required.library, required.passphrase, sites)

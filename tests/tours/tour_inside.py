@@ -72,11 +72,13 @@ def _answer(command: str) -> None:
 
 def _take_look(window: Any, theme: str, size: str) -> None:
     """Show the window in this theme and size, and let it settle."""
-    look, (side, scale) = window._look, size.split("@")
+    from app.theme.current import current_theme, set_dark, set_scale
+
+    side, scale = size.split("@")
     width, height = (int(one) for one in side.split("x"))
-    if (look.theme.is_dark, look.theme.scale) != (theme == "dark", int(scale) / 100):
-        look.set_dark(theme == "dark")
-        look.set_scale(int(scale) / 100)
+    if (current_theme().is_dark, current_theme().scale) != (theme == "dark", int(scale) / 100):
+        set_dark(theme == "dark")
+        set_scale(int(scale) / 100)
     if (window.width(), window.height()) != (width, height):
         window.resize(width, height)
         _settle()

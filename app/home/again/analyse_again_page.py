@@ -8,8 +8,8 @@ from PySide6.QtCore import QModelIndex, QRectF, Qt, Signal
 from PySide6.QtGui import QColor, QFontMetrics, QKeyEvent, QPainter
 from PySide6.QtWidgets import QHBoxLayout, QVBoxLayout, QWidget
 
+from app.theme.current import current_theme
 from app.theme.icons import Icon, paint_icon
-from app.theme.notifier import ThemeNotifier
 from app.theme.theme import Theme
 from app.widgets.button import Button, ButtonKind
 from app.widgets.card import Card
@@ -99,14 +99,12 @@ class AnalyseAgainPage(Themed):
 
     changed = Signal()
 
-    def __init__(self, look: ThemeNotifier) -> None:
+    def __init__(self) -> None:
         super().__init__()
-        self._look = look
         self._lines: tuple[AgainLine, ...] = ()
         self._ticked: set[UUID] = set()
-        self._title = Text(look, tr("Analyse again"), size=26, weight=SEMIBOLD)
+        self._title = Text(tr("Analyse again"), size=26, weight=SEMIBOLD)
         self._lead = Text(
-            look,
             tr(
                 "The sessions are analysed with this version, on all processors. Entries, corrections and "
                 "exclusions are kept. Results and progress across visits are saved in the library."
@@ -114,12 +112,12 @@ class AnalyseAgainPage(Themed):
             tone="ink2",
             wraps=True,
         )
-        self.earlier = Button(look, tr("Not with this version"), ButtonKind.SECONDARY, height=44)
-        self.all = Button(look, tr("All"), ButtonKind.SECONDARY, height=44)
-        self.none = Button(look, tr("None"), ButtonKind.QUIET, height=44)
-        self.list = TickList(look, tr("Sessions"), row=ROW, head=HEAD, padding=PADDING, edge=PADDING, is_list=True)
+        self.earlier = Button(tr("Not with this version"), ButtonKind.SECONDARY, height=44)
+        self.all = Button(tr("All"), ButtonKind.SECONDARY, height=44)
+        self.none = Button(tr("None"), ButtonKind.QUIET, height=44)
+        self.list = TickList(tr("Sessions"), row=ROW, head=HEAD, padding=PADDING, edge=PADDING, is_list=True)
         self.list.setAccessibleDescription(tr("Space selects or clears a session."))
-        self.nothing = Text(look, tr("No session here has a recording."), wraps=True)
+        self.nothing = Text(tr("No session here has a recording."), wraps=True)
         self._build()
         self.list.opened.connect(self._turn)
         self.list.clicked.connect(self._on_clicked)
@@ -127,7 +125,7 @@ class AnalyseAgainPage(Themed):
         self.all.clicked.connect(self._on_all)
         self.none.clicked.connect(self._on_none)
         self.forget()
-        self._on_look_changed()
+        self._apply_theme()
 
     @property
     def ticked(self) -> tuple[UUID, ...]:
@@ -157,7 +155,7 @@ class AnalyseAgainPage(Themed):
         for button in (self.earlier, self.all, self.none):
             self._buttons.addWidget(button)
         self._buttons.addStretch(1)
-        self._card = Card(self._look, padding=0)
+        self._card = Card(padding=0)
         self._card.column.addWidget(self.list, 1)
         self._card.column.addWidget(self.nothing, 1, Qt.AlignmentFlag.AlignCenter)
         self._column = QVBoxLayout(self)
@@ -217,8 +215,8 @@ class AnalyseAgainPage(Themed):
         self._ticked = set()
         self._show()
 
-    def _on_look_changed(self) -> None:
-        px = self._look.theme.px
+    def _apply_theme(self) -> None:
+        px = current_theme().px
         self._column.setContentsMargins(px(MARGIN), px(16), px(MARGIN), px(GAP))
         self._column.setSpacing(px(GAP))
         self._buttons.setSpacing(px(8))

@@ -16,7 +16,6 @@ from app.home.again.analyse_again_page import AgainLine, AnalyseAgainPage
 from app.storage.kept_analyses import algorithm
 from app.system.progress import Report
 from app.theme.icons import Icon
-from app.theme.notifier import ThemeNotifier
 from app.widgets.action_bar import BarAction, BarState
 from app.widgets.folder_dialog import ask_for_new_folder
 from app.wizard.resuming import session_to_analyse
@@ -55,7 +54,7 @@ class AnalysingAgain(QObject):
     done = Signal(str, str)
     table_made = Signal(object)
 
-    def __init__(self, look: ThemeNotifier, controller: LibraryController, parent: QObject) -> None:
+    def __init__(self, controller: LibraryController, parent: QObject) -> None:
         super().__init__(parent)
         self._controller = controller
         self._dialog: QFileDialog | None = None
@@ -64,7 +63,7 @@ class AnalysingAgain(QObject):
         self._out = Path()
         self.is_working = False
         self.is_of_library = False  # what was asked for last: a table over all sessions, from the page that asks it
-        self.page = AnalyseAgainPage(look)
+        self.page = AnalyseAgainPage()
         self.page.changed.connect(self.changed)
 
     @property

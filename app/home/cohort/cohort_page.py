@@ -10,8 +10,8 @@ from app.cohort.study.measures import in_order, measure_words
 from app.home.cohort.cohort_table import MOST_ROWS, groups_table
 from app.home.cohort.cohort_text import group_name, grouping_word, notes, sentence
 from app.plots.group_plot import GroupLine, GroupPlot
+from app.theme.current import current_theme
 from app.theme.icons import Icon
-from app.theme.notifier import ThemeNotifier
 from app.widgets.button import Button, ButtonKind
 from app.widgets.card import Card
 from app.widgets.choice import Choice
@@ -45,33 +45,30 @@ class QuestionsPage(Themed):
     making_requested = Signal()
     question_changed = Signal(object)
 
-    def __init__(self, look: ThemeNotifier) -> None:
+    def __init__(self) -> None:
         super().__init__()
-        self._look, self._width = look, 1000.0
+        self._width = 1000.0
         self.found: GroupAnswer | None = None
-        self._title = Text(look, tr("Cohort"), size=26, weight=SEMIBOLD)
-        self._name = Text(look, tone="ink2", wraps=True)
-        self.choose_table = Button(look, tr("Choose a table"), ButtonKind.SECONDARY, Icon.FOLDER)
-        self.refusal = Notice(look, size=16)
-        self._empty = Card(look, padding=20, spacing=16)
-        self.make_table = Button(look, tr("Create a table from this library"), ButtonKind.PRIMARY, Icon.PLAY, height=56)
-        self.first_table = Button(look, tr("Choose a table"), ButtonKind.SECONDARY, Icon.FOLDER, height=56)
+        self._title = Text(tr("Cohort"), size=26, weight=SEMIBOLD)
+        self._name = Text(tone="ink2", wraps=True)
+        self.choose_table = Button(tr("Choose a table"), ButtonKind.SECONDARY, Icon.FOLDER)
+        self.refusal = Notice(size=16)
+        self._empty = Card(padding=20, spacing=16)
+        self.make_table = Button(tr("Create a table from this library"), ButtonKind.PRIMARY, Icon.PLAY, height=56)
+        self.first_table = Button(tr("Choose a table"), ButtonKind.SECONDARY, Icon.FOLDER, height=56)
         self._controls = QWidget()
-        self.measure = Choice(look, tr("Measure"))
-        self.grouping = Choice(look, tr("Group by"))
+        self.measure = Choice(tr("Measure"))
+        self.grouping = Choice(tr("Group by"))
         for choice in (self.measure, self.grouping):
             choice.let_shrink(LEAST_CHOICE, MOST_CHOICE)
-        self.included = Segmented(
-            look, tr("Include"), [(READ, tr("Good"), ""), (WITH_CARE, tr("Good and caution"), "")]
-        )
-        self.simulated = Toggle(look, tr("Include simulated"), "", is_on=False)
+        self.included = Segmented(tr("Include"), [(READ, tr("Good"), ""), (WITH_CARE, tr("Good and caution"), "")])
+        self.simulated = Toggle(tr("Include simulated"), "", is_on=False)
         self.simulated.set_face(height=48)
         self.answer = QWidget()
-        self.sentence = Text(look, size=22, weight=SEMIBOLD, wraps=True)
-        self.notes = Text(look, tone="ink2", wraps=True)
-        self.plot = GroupPlot(look)
+        self.sentence = Text(size=22, weight=SEMIBOLD, wraps=True)
+        self.notes = Text(tone="ink2", wraps=True)
+        self.plot = GroupPlot()
         self._legend = Text(
-            look,
             tr(
                 "Dot: mean of the sessions (walks averaged per leg, then both legs). Bar: 95 % interval of "
                 "that mean. Hollow dot: no interval. Groups are not tested for differences."
@@ -80,12 +77,12 @@ class QuestionsPage(Themed):
             tone="ink2",
             wraps=True,
         )
-        self.table = CellTable(look, tr("Groups"))
-        self.more = Text(look, size=12, tone="ink2", wraps=True)
+        self.table = CellTable(tr("Groups"))
+        self.more = Text(size=12, tone="ink2", wraps=True)
         self._build()
         self._connect()
         self.show_nothing()
-        self._on_look_changed()
+        self._apply_theme()
 
     @property
     def question(self) -> GroupQuestion | None:
@@ -105,7 +102,7 @@ class QuestionsPage(Themed):
     def set_room(self, width: float) -> None:
         """Lay out for a page of this width, in px of the design."""
         self._width = width
-        px = self._look.theme.px
+        px = current_theme().px
         room = px(width) - 2 * px(MARGIN)
         halves = (self._first_half, self._second_half)
         beside = sum(half.sizeHint().width() for half in halves) + px(GAP)
@@ -194,7 +191,6 @@ class QuestionsPage(Themed):
         self._name.setVisible(self._empty not in shown and bool(self._name.text()))
 
     def _build(self) -> None:
-        look = self._look
         head = QHBoxLayout()
         head.addWidget(self._title)
         head.addWidget(self._name, 1)
@@ -204,11 +200,11 @@ class QuestionsPage(Themed):
             tr("All sessions of this library are analysed into a folder. Their results there are not encrypted."),
             tr("For session folders run gaitwright batch FOLDER --out OUT, then choose OUT/parameters.parquet here."),
         )
-        self._empty.column.addWidget(Text(look, tr("No table yet"), size=26, weight=SEMIBOLD, wraps=True))
+        self._empty.column.addWidget(Text(tr("No table yet"), size=26, weight=SEMIBOLD, wraps=True))
         for words in how[:2]:
-            self._empty.column.addWidget(Text(look, words, size=16, tone="ink2", wraps=True))
+            self._empty.column.addWidget(Text(words, size=16, tone="ink2", wraps=True))
         self._empty.column.addWidget(self.make_table, 0, Qt.AlignmentFlag.AlignLeft)
-        self._empty.column.addWidget(Text(look, how[2], size=16, tone="ink2", wraps=True))
+        self._empty.column.addWidget(Text(how[2], size=16, tone="ink2", wraps=True))
         self._empty.column.addWidget(self.first_table, 0, Qt.AlignmentFlag.AlignLeft)
         self._first_half, self._second_half = (
             QBoxLayout(QBoxLayout.Direction.LeftToRight),
@@ -221,7 +217,7 @@ class QuestionsPage(Themed):
             for label, control in named:
                 part = QVBoxLayout()
                 part.setSpacing(4)
-                part.addWidget(Text(look, label, weight=MEDIUM))
+                part.addWidget(Text(label, weight=MEDIUM))
                 part.addWidget(control, 1, Qt.AlignmentFlag.AlignVCenter)  # they are not all of one height
                 half.addLayout(part)
             half.addStretch(1)
@@ -229,10 +225,10 @@ class QuestionsPage(Themed):
         self._halves.setContentsMargins(0, 0, 0, 0)
         self._halves.addLayout(self._first_half)
         self._halves.addLayout(self._second_half)
-        self._chart = Card(look)
+        self._chart = Card()
         self._chart.column.addWidget(self.plot)
         self._chart.column.addWidget(self._legend)
-        self._figures = Card(look)
+        self._figures = Card()
         self._figures.column.addWidget(self.table)
         self._figures.column.addWidget(self.more)
         self._answer_column = QVBoxLayout(self.answer)
@@ -259,8 +255,8 @@ class QuestionsPage(Themed):
         if (question := self.question) is not None:
             self.question_changed.emit(question)
 
-    def _on_look_changed(self) -> None:
-        px = self._look.theme.px
+    def _apply_theme(self) -> None:
+        px = current_theme().px
         self._column.setContentsMargins(px(MARGIN), px(16), px(MARGIN), px(20))
         self._column.setSpacing(px(12))
         self._answer_column.setSpacing(px(8))

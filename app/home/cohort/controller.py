@@ -14,7 +14,6 @@ from app.home.cohort.cohort_page import QuestionsPage
 from app.system.progress import Report
 from app.system.settings import Settings
 from app.theme.icons import Icon
-from app.theme.notifier import ThemeNotifier
 from app.widgets.action_bar import BarAction, BarState
 from app.widgets.folder_dialog import ask_for_new_file
 from app.wording.translation import filled, tr
@@ -61,14 +60,14 @@ class Questions(QObject):
     making_requested = Signal()
     reported = Signal(str, str)
 
-    def __init__(self, look: ThemeNotifier, settings: Settings, parent: QObject) -> None:
+    def __init__(self, settings: Settings, parent: QObject) -> None:
         super().__init__(parent)
         self._settings = settings
         self._background, self._writing = Background(self), Background(self)
         self._path: Path | None = None
         self._asked: GroupQuestion | None = None
         self._dialog: QFileDialog | None = None
-        self.page = QuestionsPage(look)
+        self.page = QuestionsPage()
         self._background.done.connect(self._on_done)
         self._background.failed.connect(self._on_failed)
         self._writing.done.connect(self._on_written)

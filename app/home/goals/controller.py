@@ -11,7 +11,6 @@ from app.editing.words import by_words, field_word
 from app.home.goals.goals_page import GoalDraft, GoalsPage
 from app.storage.edited_fields import goal_field, patient_fields
 from app.theme.icons import Icon
-from app.theme.notifier import ThemeNotifier
 from app.widgets.action_bar import BarAction, BarState
 from app.wording.translation import tr
 from app.workers.library_controller import LibraryController
@@ -43,7 +42,6 @@ class GoalsOfPatient(QObject):
 
     def __init__(
         self,
-        look: ThemeNotifier,
         controller: LibraryController,
         parent: QObject,
         now: Callable[[], datetime.date] = today,
@@ -52,7 +50,7 @@ class GoalsOfPatient(QObject):
         self._controller, self._now = controller, now
         self._patient: StoredPatient | None = None
         self._is_busy = False
-        self.page = GoalsPage(look)
+        self.page = GoalsPage()
         self.page.agreed.connect(self._on_agreed)
         self.page.taken_back.connect(self._on_taken_back)
 

@@ -6,7 +6,7 @@ from dataclasses import dataclass
 from PySide6.QtCore import Qt, Signal
 from PySide6.QtWidgets import QBoxLayout, QHBoxLayout, QVBoxLayout, QWidget
 
-from app.theme.notifier import ThemeNotifier
+from app.theme.current import current_theme
 from app.widgets.button import Button, ButtonKind
 from app.widgets.card import Card
 from app.widgets.choice import Choice
@@ -52,13 +52,11 @@ class GoalsPage(TallPage):
     agreed = Signal(object)
     taken_back = Signal(object)
 
-    def __init__(self, look: ThemeNotifier) -> None:
+    def __init__(self) -> None:
         super().__init__()
-        self._look = look
         self.rows: list[_GoalRow] = []
-        self._title = Text(look, size=26, weight=SEMIBOLD)
+        self._title = Text(size=26, weight=SEMIBOLD)
         self._lead = Text(
-            look,
             tr(
                 "Agree on a goal with the patient and enter it here. Date and user are recorded. The goal "
                 "appears wherever the measure is shown. At later visits, it also guides which results are "
@@ -67,23 +65,23 @@ class GoalsPage(TallPage):
             tone="ink2",
             wraps=True,
         )
-        self.measure = Choice(look, tr("Measure"))
+        self.measure = Choice(tr("Measure"))
         for column in GOAL_COLUMNS:
             self.measure.addItem(measure_name(column), column)
         names = {GoalOf.LEFT: tr("Left"), GoalOf.RIGHT: tr("Right"), GoalOf.BETWEEN: tr("Left vs right")}
-        self.whose = Segmented(look, tr("Side"), [(of.value, word, "") for of, word in names.items()])
-        self.sense = Segmented(look, tr("Limit"), [(AT_LEAST, tr("At least"), ""), (AT_MOST, tr("At most"), "")])
+        self.whose = Segmented(tr("Side"), [(of.value, word, "") for of, word in names.items()])
+        self.sense = Segmented(tr("Limit"), [(AT_LEAST, tr("At least"), ""), (AT_MOST, tr("At most"), "")])
         self.apart = Text(
-            look, tr("The legs should differ by no more than the value entered, in either direction."), wraps=True
+            tr("The legs should differ by no more than the value entered, in either direction."), wraps=True
         )
-        self.value = NumberField(look, tr("Value"), low=LEAST, high=1.0, decimals=2)
-        self.weeks = NumberField(look, tr("Within"), low=1, high=LONGEST_WEEKS, unit=tr("weeks"), is_optional=True)
-        self.note = Field(look, tr("Note"), is_optional=True, most=MOST_NOTE)
-        self.none_yet = Text(look, tr("No goals agreed yet."), tone="ink2", wraps=True)
+        self.value = NumberField(tr("Value"), low=LEAST, high=1.0, decimals=2)
+        self.weeks = NumberField(tr("Within"), low=1, high=LONGEST_WEEKS, unit=tr("weeks"), is_optional=True)
+        self.note = Field(tr("Note"), is_optional=True, most=MOST_NOTE)
+        self.none_yet = Text(tr("No goals agreed yet."), tone="ink2", wraps=True)
         self._build()
         self._connect()
         self._on_measure_chosen()
-        self._on_look_changed()
+        self._apply_theme()
 
     @property
     def tab_order(self) -> list[QWidget]:
@@ -114,7 +112,7 @@ class GoalsPage(TallPage):
             row.hide()
             row.deleteLater()
         ordered = [*held(goals[::-1]), *(goal for goal in goals[::-1] if not goal.is_held)]
-        self.rows = [_GoalRow(self._look, goal) for goal in ordered]
+        self.rows = [_GoalRow(goal) for goal in ordered]
         for at, row in enumerate(self.rows):
             self._list.insertWidget(at, row)
             if row.take_back is not None:
@@ -156,9 +154,9 @@ class GoalsPage(TallPage):
         self.note.set_text("")
 
     def _build(self) -> None:
-        form = self._form = Card(self._look, spacing=12)
-        form.column.addWidget(Text(self._look, tr("Add a goal"), size=16, weight=SEMIBOLD))
-        form.column.addWidget(Text(self._look, tr("Measure"), weight=MEDIUM))
+        form = self._form = Card(spacing=12)
+        form.column.addWidget(Text(tr("Add a goal"), size=16, weight=SEMIBOLD))
+        form.column.addWidget(Text(tr("Measure"), weight=MEDIUM))
         form.column.addWidget(self.measure)
         for one in (self.whose, self.sense, self.apart):
             form.column.addWidget(one)
@@ -168,8 +166,8 @@ class GoalsPage(TallPage):
         form.column.addLayout(self._figures)
         form.column.addWidget(self.note)
         form.column.addStretch(1)
-        self._held = Card(self._look)
-        self._held.column.addWidget(Text(self._look, tr("Agreed"), size=16, weight=SEMIBOLD))
+        self._held = Card()
+        self._held.column.addWidget(Text(tr("Agreed"), size=16, weight=SEMIBOLD))
         self._held.column.addWidget(self.none_yet)
         self._list = QVBoxLayout()
         self._held.column.addLayout(self._list)
@@ -203,8 +201,8 @@ class GoalsPage(TallPage):
         self.value.low, self.value.high = (0.0 if is_between else LEAST), MOST[self._column]
         self.value.set_unit(short_unit(self._column).strip())
 
-    def _on_look_changed(self) -> None:
-        px = self._look.theme.px
+    def _apply_theme(self) -> None:
+        px = current_theme().px
         self.column.setContentsMargins(px(MARGIN), px(16), px(MARGIN), px(GAP))
         self.column.setSpacing(px(12))
         self._columns.setSpacing(px(GAP))
@@ -217,15 +215,15 @@ class _GoalRow(Themed):
 
     taken_back = Signal(object)
 
-    def __init__(self, look: ThemeNotifier, goal: Goal) -> None:
+    def __init__(self, goal: Goal) -> None:
         super().__init__()
-        self._look, self._key = look, goal.key
+        self._key = goal.key
         name = ", ".join(filter(None, [measure_name(goal.column), whose_name(goal.of)]))
-        self.words = Text(look, name, weight=SEMIBOLD if goal.is_held else MEDIUM, wraps=True)
+        self.words = Text(name, weight=SEMIBOLD if goal.is_held else MEDIUM, wraps=True)
         if not goal.is_held:
             self.words.set_tone("ink2")
-        self.limit = Text(look, required(goal), wraps=True, tone="ink" if goal.is_held else "ink2")
-        self.about = Text(look, about(goal), size=12, tone="ink2", wraps=True)
+        self.limit = Text(required(goal), wraps=True, tone="ink" if goal.is_held else "ink2")
+        self.about = Text(about(goal), size=12, tone="ink2", wraps=True)
         self.take_back: Button | None = None
         column = QVBoxLayout()
         column.setSpacing(0)
@@ -235,7 +233,7 @@ class _GoalRow(Themed):
         self._row.setContentsMargins(0, 0, 0, 0)
         self._row.addLayout(column, 1)
         if goal.is_held:
-            self.take_back = Button(look, tr("Withdraw"), ButtonKind.QUIET, height=36)
+            self.take_back = Button(tr("Withdraw"), ButtonKind.QUIET, height=36)
             self.take_back.setAccessibleName(tr("Withdraw: {goal}").format(goal=goal_in_words(goal)))
             self.take_back.clicked.connect(self._on_take_back)
             self._row.addWidget(self.take_back, 0, Qt.AlignmentFlag.AlignTop)

@@ -15,7 +15,6 @@ from app.importing.untrusted_files import gather_foreign, read_foreign_session, 
 from app.storage.exchange import import_session
 from app.system.progress import Report
 from app.theme.icons import Icon
-from app.theme.notifier import ThemeNotifier
 from app.widgets.action_bar import BarAction, BarState
 from app.widgets.folder_dialog import ask_for_files, ask_for_folder
 from app.wording.translation import tr, tr_n
@@ -78,7 +77,7 @@ class Importing(QObject):
     imported = Signal(object)
     reported = Signal(str, str)
 
-    def __init__(self, look: ThemeNotifier, controller: LibraryController, parent: QObject) -> None:
+    def __init__(self, controller: LibraryController, parent: QObject) -> None:
         super().__init__(parent)
         self._controller = controller
         self._waiting: deque[_Found] = deque()
@@ -87,7 +86,7 @@ class Importing(QObject):
         self._again: tuple[Path, ...] = ()
         self._is_importing = False
         self._dialog: QFileDialog | None = None
-        self.page = ImportPage(look)
+        self.page = ImportPage()
         self.page.code.line_edit.returnPressed.connect(self.take_in)
         self.page.files_requested.connect(self._choose_files)
         self.page.folder_requested.connect(self._choose_folder)

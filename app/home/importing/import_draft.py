@@ -15,8 +15,8 @@ from app.home.importing.import_words import (
     origin_words,
     sensor_name,
 )
+from app.theme.current import px
 from app.theme.icons import Icon
-from app.theme.notifier import ThemeNotifier
 from app.widgets.button import Button, ButtonKind
 from app.widgets.card import Card
 from app.widgets.choice import Choice
@@ -46,22 +46,21 @@ class DraftCards(QWidget):
     changed = Signal()
     placing_requested = Signal()
 
-    def __init__(self, look: ThemeNotifier, of_code: QWidget) -> None:
+    def __init__(self, of_code: QWidget) -> None:
         super().__init__()
-        self._look = look
         self._recordings: list[_RecordingRow] = []
         self._sensors: list[_SensorRow] = []
         self._chains: Chains | None = None
-        self._of_recordings, self._of_sensors = Card(look, padding=20, spacing=12), Card(look, padding=20, spacing=8)
-        self._recordings_title = Text(look, size=16, weight=SEMIBOLD, wraps=True)
+        self._of_recordings, self._of_sensors = Card(padding=20, spacing=12), Card(padding=20, spacing=8)
+        self._recordings_title = Text(size=16, weight=SEMIBOLD, wraps=True)
         self._recording_rows = QVBoxLayout()
-        self._sensors_title = Text(look, tr("Sensor positions"), size=16, weight=SEMIBOLD, wraps=True)
+        self._sensors_title = Text(tr("Sensor positions"), size=16, weight=SEMIBOLD, wraps=True)
         self._sensor_rows = QGridLayout()
-        self.place = Button(look, tr("Detect from movement"), ButtonKind.SECONDARY, Icon.WAVE, height=40)
-        self._question = Text(look, wraps=True)
-        self.is_left = Button(look, tr("Left leg"), ButtonKind.SECONDARY, height=40)
-        self.is_right = Button(look, tr("Right leg"), ButtonKind.SECONDARY, height=40)
-        self.trouble = Text(look, tone="ink2", wraps=True)
+        self.place = Button(tr("Detect from movement"), ButtonKind.SECONDARY, Icon.WAVE, height=40)
+        self._question = Text(wraps=True)
+        self.is_left = Button(tr("Left leg"), ButtonKind.SECONDARY, height=40)
+        self.is_right = Button(tr("Right leg"), ButtonKind.SECONDARY, height=40)
+        self.trouble = Text(tone="ink2", wraps=True)
         self._build(of_code)
 
     @property
@@ -116,9 +115,9 @@ class DraftCards(QWidget):
         count = len(draft.recordings)
         title = tr_n("{count} recording of {program}", "{count} recordings of {program}", count)
         self._recordings_title.setText(title.format(count=count, program=program))
-        self._recordings = [_RecordingRow(self._look, self._recording_rows, one) for one in draft.recordings]
+        self._recordings = [_RecordingRow(self._recording_rows, one) for one in draft.recordings]
         longest = max(draft.recordings, key=lambda one: max((len(s.block) for s in one.trial.sensors), default=0))
-        self._sensors = [_SensorRow(self._look, self._sensor_rows, one, longest) for one in draft.sensors]
+        self._sensors = [_SensorRow(self._sensor_rows, one, longest) for one in draft.sensors]
         for row in self._recordings:
             row.kind.currentIndexChanged.connect(self._on_changed)
         for sensor in self._sensors:
@@ -176,7 +175,7 @@ class DraftCards(QWidget):
     def set_narrow(self, is_narrow: bool) -> None:
         """Put the sensors under the recordings."""
         for layout in (self._row, self._left):
-            layout.setSpacing(self._look.theme.px(16))
+            layout.setSpacing(px(16))
         way = QBoxLayout.Direction.TopToBottom if is_narrow else QBoxLayout.Direction.LeftToRight
         self._row.setDirection(way)
 
@@ -223,26 +222,26 @@ class DraftCards(QWidget):
 
 
 class _RecordingRow:
-    def __init__(self, look: ThemeNotifier, column: QVBoxLayout, recording: "DraftRecording") -> None:
+    def __init__(self, column: QVBoxLayout, recording: "DraftRecording") -> None:
         self._part = QWidget()
         grid = QGridLayout(self._part)
         grid.setContentsMargins(0, 0, 0, 0)
         grid.setColumnStretch(0, 1)
-        self.kind = Choice(look, tr("Type of {name}").format(name=recording.title))
+        self.kind = Choice(tr("Type of {name}").format(name=recording.title))
         for kind, words in KIND_WORDS.items():
             self.kind.addItem(tr(words), kind)
         self.kind.addItem(tr("Excluded"), OPEN)
         self.kind.setCurrentIndex(self.kind.findData(recording.kind))
         self.kind.setMinimumHeight(self.kind.sizeHint().height())
-        curve = SmallCurve(look, tr("Angular rate of a sensor"))
+        curve = SmallCurve(tr("Angular rate of a sensor"))
         curve.show_curve(*liveliness([sensor.block for sensor in recording.trial.sensors]))
-        grid.addWidget(Text(look, breakable(recording.title), weight=SEMIBOLD, wraps=True), 0, 0)
+        grid.addWidget(Text(breakable(recording.title), weight=SEMIBOLD, wraps=True), 0, 0)
         grid.addWidget(curve, 0, 1)
         grid.addWidget(self.kind, 0, 2, Qt.AlignmentFlag.AlignRight)
         stated = f"{facts(recording.trial)} · {kind_origin_words(recording.origin)}"
-        grid.addWidget(Text(look, stated, size=12, tone="ink2", wraps=True), 1, 0, 1, 3)
+        grid.addWidget(Text(stated, size=12, tone="ink2", wraps=True), 1, 0, 1, 3)
         for unread in recording.trial.unread:
-            grid.addWidget(Text(look, str(unread.refusal), size=12, tone="ink2", wraps=True), grid.rowCount(), 0, 1, 3)
+            grid.addWidget(Text(str(unread.refusal), size=12, tone="ink2", wraps=True), grid.rowCount(), 0, 1, 3)
         column.addWidget(self._part)
 
     def remove(self) -> None:
@@ -251,23 +250,23 @@ class _RecordingRow:
 
 
 class _SensorRow:
-    def __init__(self, look: ThemeNotifier, grid: QGridLayout, sensor: "DraftSensor", shown: "DraftRecording") -> None:
+    def __init__(self, grid: QGridLayout, sensor: "DraftSensor", shown: "DraftRecording") -> None:
         from app.importing.import_drafts import key_of
 
         self.sensor = sensor
         self._origin, self._proposed = sensor.origin, sensor.site
         name = sensor_name(sensor)
-        self.site = Choice(look, tr("Position of {name}").format(name=name))
+        self.site = Choice(tr("Position of {name}").format(name=name))
         self.site.addItem(tr("Not recorded"), OPEN)
         for site, words in SITE_WORDS.items():
             self.site.addItem(tr(words), site)
         self.site.addItem(tr("Not on a leg"), ELSEWHERE)
         self.site.setCurrentIndex(self.site.findData(sensor.site) if sensor.site is not None else 0)
         self.site.setMinimumHeight(self.site.sizeHint().height())  # the rows of a grid give way before they scroll
-        self._curve = SmallCurve(look, tr("Angular rate of a sensor"))
+        self._curve = SmallCurve(tr("Angular rate of a sensor"))
         self._curve.show_curve(*liveliness([one.block for one in shown.trial.sensors if key_of(one) == sensor.key]))
-        self._words = Text(look, breakable(name), wraps=True)
-        self._from = Text(look, size=12, tone="ink2")
+        self._words = Text(breakable(name), wraps=True)
+        self._from = Text(size=12, tone="ink2")
         row = grid.rowCount()
         self._stated = QWidget()
         stated = QVBoxLayout(self._stated)

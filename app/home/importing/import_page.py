@@ -8,8 +8,8 @@ from PySide6.QtCore import Signal
 from PySide6.QtWidgets import QHBoxLayout, QVBoxLayout, QWidget
 
 from app.home.importing.import_draft import DraftCards
+from app.theme.current import current_theme
 from app.theme.icons import Icon
-from app.theme.notifier import ThemeNotifier
 from app.widgets.button import Button, ButtonKind
 from app.widgets.card import Card
 from app.widgets.field import Field, NumberField
@@ -43,27 +43,25 @@ class ImportPage(Themed):
     folder_requested = Signal()
     reading_requested = Signal(float)
 
-    def __init__(self, look: ThemeNotifier) -> None:
+    def __init__(self) -> None:
         super().__init__()
-        self._look = look
-        self._title = Text(look, tr("Import recordings"), size=26, weight=SEMIBOLD, wraps=True)
-        self._folder = Text(look, tone="ink2", wraps=True)
-        self._begin = Card(look, padding=20, spacing=12)
-        self.choose_files = Button(look, tr("Choose files"), ButtonKind.SECONDARY, Icon.FOLDER, height=56)
-        self.choose_folder = Button(look, tr("Choose a folder"), ButtonKind.SECONDARY, Icon.FOLDER, height=56)
-        self._formats = Text(look, tone="ink2", wraps=True)
-        self._recordings_title = Text(look, size=16, weight=SEMIBOLD, wraps=True)
-        self._recordings = Text(look, tone="ink2", wraps=True)
-        self.code = Field(look, tr("Patient code"), is_code=True)
-        self._hint = Text(look, tone="ink2", wraps=True)
-        self.day_field = Field(look, tr("Session date"), is_optional=True, placeholder=tr("year-month-day"))
-        self.findings = FindingsList(look)
-        self._card = Card(look, padding=20, spacing=12)
-        self.draft = DraftCards(look, self._card)
-        self._unread = Card(look, padding=20, spacing=8)
-        self._unread_words = Text(look, tone="ink2", wraps=True)
+        self._title = Text(tr("Import recordings"), size=26, weight=SEMIBOLD, wraps=True)
+        self._folder = Text(tone="ink2", wraps=True)
+        self._begin = Card(padding=20, spacing=12)
+        self.choose_files = Button(tr("Choose files"), ButtonKind.SECONDARY, Icon.FOLDER, height=56)
+        self.choose_folder = Button(tr("Choose a folder"), ButtonKind.SECONDARY, Icon.FOLDER, height=56)
+        self._formats = Text(tone="ink2", wraps=True)
+        self._recordings_title = Text(size=16, weight=SEMIBOLD, wraps=True)
+        self._recordings = Text(tone="ink2", wraps=True)
+        self.code = Field(tr("Patient code"), is_code=True)
+        self._hint = Text(tone="ink2", wraps=True)
+        self.day_field = Field(tr("Session date"), is_optional=True, placeholder=tr("year-month-day"))
+        self.findings = FindingsList()
+        self._card = Card(padding=20, spacing=12)
+        self.draft = DraftCards(self._card)
+        self._unread = Card(padding=20, spacing=8)
+        self._unread_words = Text(tone="ink2", wraps=True)
         self.rate = NumberField(
-            look,
             tr("Sampling rate, if not given in the file"),
             low=RATE_HZ[0],
             high=RATE_HZ[1],
@@ -71,9 +69,9 @@ class ImportPage(Themed):
             unit=tr("Hz"),
             is_optional=True,
         )
-        self.read_again = Button(look, tr("Read again"), ButtonKind.SECONDARY, Icon.IMPORT, height=48)
+        self.read_again = Button(tr("Read again"), ButtonKind.SECONDARY, Icon.IMPORT, height=48)
         self._build()
-        self._on_look_changed()
+        self._apply_theme()
 
     @property
     def tab_order(self) -> list[QWidget]:
@@ -142,7 +140,7 @@ class ImportPage(Themed):
         of_code: tuple[QWidget, ...] = (self._recordings_title, self._recordings, self.code, self._hint, self.day_field)
         for part in of_code:
             self._card.column.addWidget(part)
-        self._unread.column.addWidget(Text(self._look, tr("Not read"), size=16, weight=SEMIBOLD))
+        self._unread.column.addWidget(Text(tr("Not read"), size=16, weight=SEMIBOLD))
         of_unread: tuple[QWidget, ...] = (self._unread_words, self.rate, self.read_again)
         for part in of_unread:
             self._unread.column.addWidget(part)
@@ -186,7 +184,7 @@ class ImportPage(Themed):
         else:
             self.rate.setFocus()
 
-    def _on_look_changed(self) -> None:
-        px = self._look.theme.px
+    def _apply_theme(self) -> None:
+        px = current_theme().px
         self._column.setContentsMargins(px(24), px(16), px(24), px(20))
         self._column.setSpacing(px(16))

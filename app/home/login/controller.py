@@ -14,7 +14,6 @@ from app.home.login.join_page import JoinPage
 from app.home.login.log_in_page import LogInPage
 from app.storage.layout import DATABASE_VARIABLE, KEYS
 from app.system.settings import Settings
-from app.theme.notifier import ThemeNotifier
 from app.widgets.start_pages import WorkingPage
 from app.wording.translation import tr
 from app.workers.library_controller import LibraryController
@@ -37,9 +36,7 @@ class Entry(QObject):
     left = Signal()  # from the cover, for another operator
     shown = Signal(object)  # the page that is to be shown now
 
-    def __init__(
-        self, look: ThemeNotifier, controller: LibraryController, settings: Settings, folder: Path, parent: QObject
-    ) -> None:
+    def __init__(self, controller: LibraryController, settings: Settings, folder: Path, parent: QObject) -> None:
         super().__init__(parent)
         self._controller, self._settings, self._folder = controller, settings, folder
         self._place: LibraryPlace | None = None
@@ -50,10 +47,10 @@ class Entry(QObject):
         self._refusal: tuple[str, str] | None = None  # of the demonstration, to be shown at home
         self._delay: LoginDelay | None = None
         self._sheet: KeySheet | None = None
-        self.first_start = FirstStartPage(look, SHORTEST, _is_end_of_key)
-        self.log_in = LogInPage(look, SHORTEST)
-        self.join = JoinPage(look)
-        self.waiting = WorkingPage(look)
+        self.first_start = FirstStartPage(SHORTEST, _is_end_of_key)
+        self.log_in = LogInPage(SHORTEST)
+        self.join = JoinPage()
+        self.waiting = WorkingPage()
         self.waiting.stop.hide()
         self._connect()
 

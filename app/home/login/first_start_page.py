@@ -13,8 +13,8 @@ from PySide6.QtWidgets import QBoxLayout, QWidget
 
 from app.home.login.typed_entry import COLUMN, EntryPage
 from app.system.passphrases import REFUSED, strength_in_words, strength_of
+from app.theme.current import current_theme, px
 from app.theme.icons import Icon
-from app.theme.notifier import ThemeNotifier
 from app.widgets.button import Button, ButtonKind
 from app.widgets.card import Card
 from app.widgets.field import Field
@@ -39,33 +39,31 @@ class FirstStartPage(EntryPage):
     join_requested = Signal()  # the library that a clinic's stations share
     look_requested = Signal()  # whether the library that is missing is there now
 
-    def __init__(self, look: ThemeNotifier, shortest: int, is_end_of_key: Callable[[str, str], bool]) -> None:
-        super().__init__(look)
+    def __init__(self, shortest: int, is_end_of_key: Callable[[str, str], bool]) -> None:
+        super().__init__()
         self._shortest, self._is_end_of_key, self.recovery_key = shortest, is_end_of_key, ""
         self._missing = ""
         self._is_asking = False
-        self._missing_title = Text(look, tr("Your library is missing"), size=26, weight=SEMIBOLD, wraps=True)
-        self.missing_lead = Text(look, tone="ink2", wraps=True)
-        self.look_again = Button(look, tr("Search again"), ButtonKind.PRIMARY, None, tr("Enter"))
-        self.make_another = Button(look, tr("Create a new, empty library instead"), ButtonKind.QUIET, height=44)
-        self._title = Text(look, tr("Your library"), size=26, weight=SEMIBOLD, wraps=True)
+        self._missing_title = Text(tr("Your library is missing"), size=26, weight=SEMIBOLD, wraps=True)
+        self.missing_lead = Text(tone="ink2", wraps=True)
+        self.look_again = Button(tr("Search again"), ButtonKind.PRIMARY, None, tr("Enter"))
+        self.make_another = Button(tr("Create a new, empty library instead"), ButtonKind.QUIET, height=44)
+        self._title = Text(tr("Your library"), size=26, weight=SEMIBOLD, wraps=True)
         self._lead = Text(
-            look,
             tr("Patients and recordings stay on this computer, encrypted. The passphrase you choose here opens them."),
             tone="ink2",
             wraps=True,
         )
-        self.code = Field(look, tr("Your code, for example your initials"), is_code=True)
-        self.name = Field(look, tr("Your name, as shown on reports"))
-        self.passphrase = Field(look, tr("Passphrase"), is_secret=True)
-        self._strength = Text(look, tone="ink2", wraps=True)
-        self.again = Field(look, tr("Repeat passphrase"), is_secret=True)
-        self.make = Button(look, tr("Create library"), ButtonKind.PRIMARY, None, tr("Enter"))
-        self.demonstration = Button(look, tr("View the demonstration first"), ButtonKind.QUIET, Icon.PLAY, height=44)
-        self.join = Button(look, tr("Join the clinic's library"), ButtonKind.QUIET, Icon.NEXT, height=44)
-        self._key_title = Text(look, tr("Your recovery key"), size=26, weight=SEMIBOLD, wraps=True)
+        self.code = Field(tr("Your code, for example your initials"), is_code=True)
+        self.name = Field(tr("Your name, as shown on reports"))
+        self.passphrase = Field(tr("Passphrase"), is_secret=True)
+        self._strength = Text(tone="ink2", wraps=True)
+        self.again = Field(tr("Repeat passphrase"), is_secret=True)
+        self.make = Button(tr("Create library"), ButtonKind.PRIMARY, None, tr("Enter"))
+        self.demonstration = Button(tr("View the demonstration first"), ButtonKind.QUIET, Icon.PLAY, height=44)
+        self.join = Button(tr("Join the clinic's library"), ButtonKind.QUIET, Icon.NEXT, height=44)
+        self._key_title = Text(tr("Your recovery key"), size=26, weight=SEMIBOLD, wraps=True)
         self._key_lead = Text(
-            look,
             tr(
                 "It is the only way to open the library if the passphrase is forgotten. Nobody has a copy. It "
                 "is shown only once: print it or write it down. Keep it away from this computer."
@@ -74,7 +72,6 @@ class FirstStartPage(EntryPage):
             wraps=True,
         )
         self._asking_lead = Text(
-            look,
             tr(
                 "This key was created but never confirmed, so it may be lost. It is the only way to open the "
                 "library if the passphrase is forgotten. Type it from the printout or the file. If you cannot "
@@ -83,17 +80,17 @@ class FirstStartPage(EntryPage):
             tone="ink2",
             wraps=True,
         )
-        self._key_words = KeyGroups(look)
-        self.print = Button(look, tr("Print"), ButtonKind.SECONDARY, Icon.PRINT)
-        self.save = Button(look, tr("Save as a file"), ButtonKind.SECONDARY, Icon.IMPORT)
-        self.typed = Field(look, "", is_code=True)
-        self.go = Button(look, tr("Continue"), ButtonKind.PRIMARY, None, tr("Enter"))
-        self.renew = Button(look, tr("Create a new recovery key"))
-        self.later = Button(look, tr("Later: ask at next login"), ButtonKind.QUIET, height=44)
+        self._key_words = KeyGroups()
+        self.print = Button(tr("Print"), ButtonKind.SECONDARY, Icon.PRINT)
+        self.save = Button(tr("Save as a file"), ButtonKind.SECONDARY, Icon.IMPORT)
+        self.typed = Field("", is_code=True)
+        self.go = Button(tr("Continue"), ButtonKind.PRIMARY, None, tr("Enter"))
+        self.renew = Button(tr("Create a new recovery key"))
+        self.later = Button(tr("Later: ask at next login"), ButtonKind.QUIET, height=44)
         self._build()
         self._connect()
         self._show()
-        self._on_look_changed()
+        self._apply_theme()
 
     @property
     def tab_order(self) -> list[QWidget]:
@@ -166,7 +163,7 @@ class FirstStartPage(EntryPage):
 
     def _fit(self) -> None:
         """The other ways stand beside each other where there is the room."""
-        px = self._look.theme.px
+        px = current_theme().px
         room = min(px(COLUMN), self.width() - px(48))
         needed = self.join.sizeHint().width() + self.demonstration.sizeHint().width() + px(4)
         way = QBoxLayout.Direction.LeftToRight if needed <= room else QBoxLayout.Direction.TopToBottom
@@ -177,14 +174,14 @@ class FirstStartPage(EntryPage):
         (key_part or (self.look_again if self._missing else self.code)).setFocus()
 
     def _build(self) -> None:
-        self._first = Card(self._look, padding=24, spacing=16)
+        self._first = Card(padding=24, spacing=16)
         for part in (self.code, self.name, self.passphrase, self._strength, self.again, self.make):
             self._first.column.addWidget(part)
         self._other_ways = QBoxLayout(QBoxLayout.Direction.LeftToRight)
         for way in (self.join, self.demonstration):
             self._other_ways.addWidget(way, 0, Qt.AlignmentFlag.AlignLeft)
         self._other_ways.addStretch(1)
-        self._second = Card(self._look, padding=24, spacing=16)
+        self._second = Card(padding=24, spacing=16)
         self._keep_row = QBoxLayout(QBoxLayout.Direction.LeftToRight)
         self._keep_row.addWidget(self.print, 1)
         self._keep_row.addWidget(self.save, 1)
@@ -194,7 +191,7 @@ class FirstStartPage(EntryPage):
         self._second.column.addWidget(self.go)
         self._second.column.addWidget(self.renew)
         self._second.column.addWidget(self.later)
-        self._missing_card = Card(self._look, padding=24, spacing=16)
+        self._missing_card = Card(padding=24, spacing=16)
         self._missing_card.column.addWidget(self.look_again)
         self._missing_card.column.addWidget(self.make_another)
         for one in (self._missing_title, self.missing_lead, self._missing_card):
@@ -298,8 +295,8 @@ class FirstStartPage(EntryPage):
         self.typed.set_text("")
         self.done.emit()
 
-    def _on_look_changed(self) -> None:
-        super()._on_look_changed()
-        self._keep_row.setSpacing(self._look.theme.px(12))
-        self._other_ways.setSpacing(self._look.theme.px(4))
+    def _apply_theme(self) -> None:
+        super()._apply_theme()
+        self._keep_row.setSpacing(px(12))
+        self._other_ways.setSpacing(px(4))
         self._fit()

@@ -8,8 +8,8 @@ from PySide6.QtGui import QAccessible, QAccessibleAnnouncementEvent
 from PySide6.QtWidgets import QHBoxLayout, QWidget
 
 from app.home.login.typed_entry import EntryPage
+from app.theme.current import px
 from app.theme.icons import Icon
-from app.theme.notifier import ThemeNotifier
 from app.widgets.button import Button, ButtonKind
 from app.widgets.card import Card
 from app.widgets.server_fields import ServerFields
@@ -23,13 +23,12 @@ class JoinPage(EntryPage):
     left = Signal()
     demonstration_requested = Signal()
 
-    def __init__(self, look: ThemeNotifier) -> None:
-        super().__init__(look)
-        self._title = Text(look, size=26, weight=SEMIBOLD, wraps=True)
-        self.lead = Text(look, tone="ink2", wraps=True)
-        self.server = ServerFields(look, tr("Shared storage, path on this computer"), self, is_place_optional=True)
+    def __init__(self) -> None:
+        super().__init__()
+        self._title = Text(size=26, weight=SEMIBOLD, wraps=True)
+        self.lead = Text(tone="ink2", wraps=True)
+        self.server = ServerFields(tr("Shared storage, path on this computer"), self, is_place_optional=True)
         self._hint = Text(
-            look,
             tr(
                 "Enter the shared storage only if its path on this computer differs from other workstations. "
                 "Log in with your passphrase for the clinic's library."
@@ -37,14 +36,14 @@ class JoinPage(EntryPage):
             tone="ink2",
             wraps=True,
         )
-        self.join = Button(look, tr("Join"), ButtonKind.PRIMARY, None, tr("Enter"))
-        self.again = Button(look, tr("Try again"), ButtonKind.PRIMARY, None, tr("Enter"))
-        self.back = Button(look, tr("Back"), ButtonKind.QUIET, Icon.BACK, height=44)
-        self.demonstration = Button(look, tr("View the demonstration first"), ButtonKind.QUIET, Icon.PLAY, height=44)
+        self.join = Button(tr("Join"), ButtonKind.PRIMARY, None, tr("Enter"))
+        self.again = Button(tr("Try again"), ButtonKind.PRIMARY, None, tr("Enter"))
+        self.back = Button(tr("Back"), ButtonKind.QUIET, Icon.BACK, height=44)
+        self.demonstration = Button(tr("View the demonstration first"), ButtonKind.QUIET, Icon.PLAY, height=44)
         self._build()
         self._connect()
         self.ask()
-        self._on_look_changed()
+        self._apply_theme()
 
     @property
     def tab_order(self) -> list[QWidget]:
@@ -87,7 +86,7 @@ class JoinPage(EntryPage):
         (self.server.address if self.again.isHidden() else self.again).setFocus()
 
     def _build(self) -> None:
-        self._card = Card(self._look, padding=24, spacing=16)
+        self._card = Card(padding=24, spacing=16)
         for part in (*self.server.fields, self._hint, self.join):
             self._card.column.addWidget(part)
         self._quiet = QHBoxLayout()
@@ -116,6 +115,6 @@ class JoinPage(EntryPage):
         if self.join.isEnabled() and self.server.is_complete:
             self.joined.emit(*self.server.reported)
 
-    def _on_look_changed(self) -> None:
-        super()._on_look_changed()
-        self._quiet.setSpacing(self._look.theme.px(12))
+    def _apply_theme(self) -> None:
+        super()._apply_theme()
+        self._quiet.setSpacing(px(12))

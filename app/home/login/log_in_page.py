@@ -11,8 +11,8 @@ from PySide6.QtWidgets import QHBoxLayout, QVBoxLayout, QWidget
 
 from app.home.login.typed_entry import EntryPage
 from app.system.passphrases import REFUSED, strength_in_words, strength_of
+from app.theme.current import current_theme
 from app.theme.icons import Icon
-from app.theme.notifier import ThemeNotifier
 from app.widgets.button import Button, ButtonKind
 from app.widgets.card import Card
 from app.widgets.choice import Choice
@@ -34,44 +34,43 @@ class LogInPage(EntryPage):
     left = Signal()  # another operator, from the cover or instead of choosing an own passphrase
     demonstration_requested = Signal()
 
-    def __init__(self, look: ThemeNotifier, shortest: int) -> None:
-        super().__init__(look)
+    def __init__(self, shortest: int) -> None:
+        super().__init__()
         self._shortest, self._left_s = shortest, 0.0
         self._is_cover = self._is_recording = self._is_recovering = self._is_busy = self._can_remember = False
         self._is_asked_for = False  # the cover, by whoever is logged in
         self._can_work_away = self._must_choose_own = False
         self._remembered: tuple[str, ...] = ()
-        self._title = Text(look, size=26, weight=SEMIBOLD, wraps=True)
-        self.library = Text(look, tone="ink2", wraps=True)
+        self._title = Text(size=26, weight=SEMIBOLD, wraps=True)
+        self.library = Text(tone="ink2", wraps=True)
         self._why_own = Text(
-            look,
             tr("Another person chose your passphrase and knows it. Choose one that only you know."),
             tone="ink2",
             wraps=True,
         )
         self._recording = QWidget()
-        self._recording_words = Text(look, tr("Recording continues"), size=20, weight=SEMIBOLD, wraps=True)
-        self.operator_label = Text(look, tr("User"), weight=MEDIUM)
-        self.operator = Choice(look, tr("User"))
-        self.recovery_key = Field(look, tr("Recovery key"), is_code=True)
-        self.passphrase = Field(look, tr("Passphrase"), is_secret=True)
-        self.new_passphrase = Field(look, tr("New passphrase"), is_secret=True)
-        self.again = Field(look, tr("Repeat new passphrase"), is_secret=True)
-        self._strength = Text(look, tone="ink2", wraps=True)
-        self.remember = Toggle(look, tr("Remember on this computer"), "", is_on=False)
-        self.go = Button(look, tr("Open"), ButtonKind.PRIMARY, None, tr("Enter"))
-        self.work_away = Button(look, tr("Work without the server"), ButtonKind.SECONDARY)
-        self.use_remembered = Button(look, tr("Open with this computer's keyring"), ButtonKind.SECONDARY)
-        self.use_recovery = Button(look, tr("Use the recovery key"), ButtonKind.QUIET, height=44)
-        self.leave = Button(look, tr("Another user"), ButtonKind.QUIET, height=44)
-        self.demonstration = Button(look, tr("Open demonstration"), ButtonKind.QUIET, Icon.PLAY, height=44)
+        self._recording_words = Text(tr("Recording continues"), size=20, weight=SEMIBOLD, wraps=True)
+        self.operator_label = Text(tr("User"), weight=MEDIUM)
+        self.operator = Choice(tr("User"))
+        self.recovery_key = Field(tr("Recovery key"), is_code=True)
+        self.passphrase = Field(tr("Passphrase"), is_secret=True)
+        self.new_passphrase = Field(tr("New passphrase"), is_secret=True)
+        self.again = Field(tr("Repeat new passphrase"), is_secret=True)
+        self._strength = Text(tone="ink2", wraps=True)
+        self.remember = Toggle(tr("Remember on this computer"), "", is_on=False)
+        self.go = Button(tr("Open"), ButtonKind.PRIMARY, None, tr("Enter"))
+        self.work_away = Button(tr("Work without the server"), ButtonKind.SECONDARY)
+        self.use_remembered = Button(tr("Open with this computer's keyring"), ButtonKind.SECONDARY)
+        self.use_recovery = Button(tr("Use the recovery key"), ButtonKind.QUIET, height=44)
+        self.leave = Button(tr("Another user"), ButtonKind.QUIET, height=44)
+        self.demonstration = Button(tr("Open demonstration"), ButtonKind.QUIET, Icon.PLAY, height=44)
         self._second = QTimer(self)
         self._second.setInterval(SECOND_MS)
         self._build()
         self._connect()
         self.show_library("")
         self._show()
-        self._on_look_changed()
+        self._apply_theme()
 
     @property
     def tab_order(self) -> list[QWidget]:
@@ -177,9 +176,9 @@ class LogInPage(EntryPage):
     def _build(self) -> None:
         row = QHBoxLayout(self._recording)
         row.setContentsMargins(0, 0, 0, 0)
-        row.addWidget(IconMark(self._look, Icon.RECORDING, 24))
+        row.addWidget(IconMark(Icon.RECORDING, 24))
         row.addWidget(self._recording_words, 1)
-        self._card = Card(self._look, padding=24, spacing=16)
+        self._card = Card(padding=24, spacing=16)
         who = QVBoxLayout()
         who.addWidget(self.operator_label)
         who.addWidget(self.operator)
@@ -318,8 +317,8 @@ class LogInPage(EntryPage):
             self._second.stop()
         self._show_go()
 
-    def _on_look_changed(self) -> None:
-        super()._on_look_changed()
-        px = self._look.theme.px
+    def _apply_theme(self) -> None:
+        super()._apply_theme()
+        px = current_theme().px
         self._who.setSpacing(px(6))
         self._quiet.setSpacing(px(4))

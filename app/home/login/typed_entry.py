@@ -4,7 +4,7 @@ from PySide6.QtCore import Qt
 from PySide6.QtGui import QColor, QPainter, QPaintEvent
 from PySide6.QtWidgets import QFrame, QHBoxLayout, QScrollArea, QVBoxLayout, QWidget
 
-from app.theme.notifier import ThemeNotifier
+from app.theme.current import current_theme
 from app.widgets.banner import Banner
 from app.widgets.header import ProductMark
 from app.widgets.text import SEMIBOLD, Text
@@ -17,14 +17,13 @@ ABOVE = 48
 class EntryPage(Themed):
     """`column` is what a page fills, under the program's mark and name."""
 
-    def __init__(self, look: ThemeNotifier) -> None:
+    def __init__(self) -> None:
         super().__init__()
-        self._look = look
-        self._name = Text(look, "Gaitwright", size=18, weight=SEMIBOLD)
+        self._name = Text("Gaitwright", size=18, weight=SEMIBOLD)
         self._mark_row = QHBoxLayout()
-        self._mark_row.addWidget(ProductMark(look))
+        self._mark_row.addWidget(ProductMark())
         self._mark_row.addWidget(self._name, 1)
-        self.banner = Banner(look)
+        self.banner = Banner()
         self._inside = QWidget()
         self.column = QVBoxLayout(self._inside)
         self.column.addWidget(self.banner)
@@ -45,10 +44,10 @@ class EntryPage(Themed):
         outer.addWidget(scroll)
 
     def paintEvent(self, _event: QPaintEvent) -> None:
-        QPainter(self).fillRect(self.rect(), QColor(self._look.theme.colours.ground))
+        QPainter(self).fillRect(self.rect(), QColor(current_theme().colours.ground))
 
-    def _on_look_changed(self) -> None:
-        px = self._look.theme.px
+    def _apply_theme(self) -> None:
+        px = current_theme().px
         self._inside.setMaximumWidth(px(COLUMN + 48))
         self.column.setContentsMargins(px(24), px(ABOVE), px(24), px(24))
         self.column.setSpacing(px(16))

@@ -10,7 +10,6 @@ from PySide6.QtCore import QObject, Signal
 from PySide6.QtWidgets import QWidget
 
 from app.home.patients.deletion_dialog import DeletionDialog
-from app.theme.notifier import ThemeNotifier
 from app.wording.translation import tr
 from app.workers.library_controller import LibraryController
 
@@ -41,9 +40,9 @@ class Deleting(QObject):
     undone = Signal(object)
     refused = Signal(str, str)
 
-    def __init__(self, look: ThemeNotifier, controller: LibraryController, parent: QWidget) -> None:
+    def __init__(self, controller: LibraryController, parent: QWidget) -> None:
         super().__init__(parent)
-        self._look, self._controller, self._window = look, controller, parent
+        self._controller, self._window = controller, parent
         self.dialog: DeletionDialog | None = None
         self._goes: WhatGoes | None = None  # of the patient whom the dialog is about
         self._asked: deque[_Asked] = deque()  # and not answered yet, oldest first
@@ -69,7 +68,7 @@ class Deleting(QObject):
         if not self._window.isVisible():  # it was locked meanwhile
             return
         self._goes = goes
-        self.dialog = DeletionDialog(self._look, goes, datetime.datetime.now().astimezone(), self._window)
+        self.dialog = DeletionDialog(goes, datetime.datetime.now().astimezone(), self._window)
         self.dialog.confirmed.connect(self._on_confirmed)
         self.dialog.finished.connect(self._on_finished)
         self.dialog.open()

@@ -8,8 +8,8 @@ from PySide6.QtWidgets import QDialog, QHBoxLayout, QVBoxLayout, QWidget
 
 from app.editing.words import by_words
 from app.storage.stored import KEPT_DELETED, WhatGoes
+from app.theme.current import current_theme
 from app.theme.icons import Icon
-from app.theme.notifier import ThemeNotifier
 from app.widgets.button import Button, ButtonKind
 from app.widgets.notice import Notice
 from app.widgets.text import SEMIBOLD, Text
@@ -24,25 +24,24 @@ class DeletionDialog(QDialog):
 
     confirmed = Signal()
 
-    def __init__(self, look: ThemeNotifier, goes: WhatGoes, now: datetime.datetime, parent: QWidget) -> None:
+    def __init__(self, goes: WhatGoes, now: datetime.datetime, parent: QWidget) -> None:
         super().__init__(parent)
-        self._look = look
         title = tr("Delete patient {code}?").format(code=goes.code)
         self.setWindowTitle(title)
         self.setAttribute(Qt.WidgetAttribute.WA_DeleteOnClose)
-        self._title = Text(look, title, size=20, weight=SEMIBOLD, wraps=True)
-        self.goes = Text(look, _what_goes(goes), wraps=True)
+        self._title = Text(title, size=20, weight=SEMIBOLD, wraps=True)
+        self.goes = Text(_what_goes(goes), wraps=True)
         until = tr(
             "You can undo the deletion right afterwards, or restore the data in Settings until {day}. "
             "After that, the data are destroyed."
         ).format(day=date((now + KEPT_DELETED).date()))
-        self.until = Text(look, f"{until} {tr('Earlier backups keep the data longer.')}", wraps=True)
-        self.others = Notice(look, 16)
+        self.until = Text(f"{until} {tr('Earlier backups keep the data longer.')}", wraps=True)
+        self.others = Notice(16)
         self.others.setVisible(bool(words := _others(goes, now)))
         if words:
             self.others.show_message(Icon.WARNING, words, tr("Ask the other users before you delete."), is_caution=True)
-        self.delete = Button(look, tr("Delete patient"), ButtonKind.SECONDARY, Icon.DELETE)
-        self.cancel = Button(look, tr("Cancel"), ButtonKind.PRIMARY, key=tr("Esc"))
+        self.delete = Button(tr("Delete patient"), ButtonKind.SECONDARY, Icon.DELETE)
+        self.cancel = Button(tr("Cancel"), ButtonKind.PRIMARY, key=tr("Esc"))
         self._build(parent)
         self.delete.clicked.connect(self._on_delete)
         self.cancel.clicked.connect(self.reject)
@@ -57,7 +56,7 @@ class DeletionDialog(QDialog):
         for part in (self._title, self.goes, self.others, self.until):
             column.addWidget(part)
         column.addLayout(buttons)
-        px, colours = self._look.theme.px, self._look.theme.colours
+        px, colours = current_theme().px, current_theme().colours
         column.setContentsMargins(px(EDGE), px(20), px(EDGE), px(20))
         column.setSpacing(px(12))
         palette = self.palette()

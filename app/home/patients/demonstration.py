@@ -15,7 +15,6 @@ from uuid import UUID
 
 from PySide6.QtCore import QObject, Signal
 
-from app.theme.notifier import ThemeNotifier
 from app.widgets.progress_strip import ProgressStrip
 from app.wording.translation import tr, tr_n
 from app.workers.library_controller import LibraryController
@@ -59,10 +58,10 @@ class FillingDemonstration(QObject):
     reported = Signal(str, str)
     _answered = Signal(object)  # from the threads that wait for the processes
 
-    def __init__(self, look: ThemeNotifier, controller: LibraryController, parent: QObject) -> None:
+    def __init__(self, controller: LibraryController, parent: QObject) -> None:
         super().__init__(parent)
         self._controller = controller
-        self.strip = ProgressStrip(look)
+        self.strip = ProgressStrip()
         self._executor: ProcessExecutor | None = None
         self._number = 0  # of the libraries so far
         self._waiting: deque[SimulatedVisit] = deque()

@@ -4,8 +4,8 @@ from PySide6.QtCore import QPointF, QRectF, QSize, Qt
 from PySide6.QtGui import QFontMetrics, QPainter, QPaintEvent
 from PySide6.QtWidgets import QBoxLayout, QGridLayout, QHBoxLayout, QSizePolicy, QVBoxLayout, QWidget
 
+from app.theme.current import current_theme, px
 from app.theme.icons import Icon
-from app.theme.notifier import ThemeNotifier
 from app.widgets.button import Button, ButtonKind
 from app.widgets.card import Card
 from app.widgets.heard_order import hear_as_laid_out
@@ -26,14 +26,14 @@ WIDEST_WORDS = 600
 class EmptyLibrary(Card):
     """Passive: whoever holds it connects its buttons."""
 
-    def __init__(self, look: ThemeNotifier) -> None:
+    def __init__(self) -> None:
         self._ways, self._needs = QBoxLayout(QBoxLayout.Direction.LeftToRight), QGridLayout()
         self._edge = EDGE
-        super().__init__(look)
-        self.new_patient = Button(look, tr("New patient"), ButtonKind.PRIMARY, Icon.ADD, tr("Ctrl N"), height=56)
-        self.demonstration = Button(look, tr("Open demonstration"), ButtonKind.SECONDARY, Icon.PLAY, height=56)
-        self.importing = Button(look, tr("Import recordings"), ButtonKind.SECONDARY, Icon.IMPORT, height=56)
-        self.steps = StepsPreview(look)
+        super().__init__()
+        self.new_patient = Button(tr("New patient"), ButtonKind.PRIMARY, Icon.ADD, tr("Ctrl N"), height=56)
+        self.demonstration = Button(tr("Open demonstration"), ButtonKind.SECONDARY, Icon.PLAY, height=56)
+        self.importing = Button(tr("Import recordings"), ButtonKind.SECONDARY, Icon.IMPORT, height=56)
+        self.steps = StepsPreview()
         begin = tr(
             "Start with a code instead of a name. A first session takes about five minutes. The "
             "demonstration guides you through one, without sensors."
@@ -47,15 +47,15 @@ class EmptyLibrary(Card):
             self._need(Icon.CHECK, tr("No poses, no tape measure"), tr("the patient moves the legs freely")),
         ]
         self.column.addStretch(2)
-        self.column.addWidget(Text(look, tr("No patients yet"), size=38, weight=SEMIBOLD, wraps=True))
-        self._begin = Text(look, begin, size=16, tone="ink2", wraps=True)
+        self.column.addWidget(Text(tr("No patients yet"), size=38, weight=SEMIBOLD, wraps=True))
+        self._begin = Text(begin, size=16, tone="ink2", wraps=True)
         begin_row = QHBoxLayout()  # which knows how high the words are at their greatest width
         begin_row.addWidget(self._begin, 1)
         begin_row.addStretch(0)
         self.column.addLayout(begin_row)
         self.column.addLayout(self._ways)
         self.column.addStretch(2)
-        self.column.addWidget(Text(look, tr("What a session needs"), size=16, weight=SEMIBOLD, wraps=True))
+        self.column.addWidget(Text(tr("What a session needs"), size=16, weight=SEMIBOLD, wraps=True))
         self.column.addLayout(self._needs)
         self.column.addStretch(1)
         self.column.addWidget(self.steps)
@@ -68,7 +68,7 @@ class EmptyLibrary(Card):
 
     def set_room(self, width: float) -> None:
         """Lay out for a page of this width, in px of the design."""
-        px = self._look.theme.px
+        px = current_theme().px
         self._edge = EDGE if width >= WIDE_FROM else NARROW_EDGE
         room = px(width - 2 * PAGE_EDGE) - 2 * px(self._edge)
         beside = sum(button.sizeHint().width() for button in self.buttons) + (len(self.buttons) - 1) * px(GAP)
@@ -80,7 +80,7 @@ class EmptyLibrary(Card):
         hear_as_laid_out(self)
         self.steps.set_room(room)
         self._begin.setMaximumWidth(px(WIDEST_WORDS))
-        self._on_look_changed()
+        self._apply_theme()
 
     def _need(self, icon: Icon, what: str, more: str) -> QWidget:
         part = QWidget()
@@ -88,15 +88,15 @@ class EmptyLibrary(Card):
         row.setContentsMargins(0, 0, 0, 0)
         words = QVBoxLayout()
         words.setSpacing(0)
-        words.addWidget(Text(self._look, what, weight=SEMIBOLD, wraps=True))
-        words.addWidget(Text(self._look, more, tone="ink2", wraps=True))
-        row.addWidget(IconMark(self._look, icon, size=24), 0, Qt.AlignmentFlag.AlignTop)
+        words.addWidget(Text(what, weight=SEMIBOLD, wraps=True))
+        words.addWidget(Text(more, tone="ink2", wraps=True))
+        row.addWidget(IconMark(icon, size=24), 0, Qt.AlignmentFlag.AlignTop)
         row.addLayout(words, 1)
         return part
 
-    def _on_look_changed(self) -> None:
-        super()._on_look_changed()
-        px = self._look.theme.px
+    def _apply_theme(self) -> None:
+        super()._apply_theme()
+        px = current_theme().px
         self.column.setContentsMargins(px(self._edge), px(24), px(self._edge), px(24))
         self.column.setSpacing(px(GAP))
         self._ways.setSpacing(px(GAP))
@@ -106,9 +106,9 @@ class EmptyLibrary(Card):
 class StepsPreview(Themed):
     """The seven steps of a session on a line, and how long each takes."""
 
-    def __init__(self, look: ThemeNotifier) -> None:
+    def __init__(self) -> None:
         super().__init__()
-        self._look, self._rows = look, 1
+        self._rows = 1
         self.steps = (
             (tr("Patient"), tr("{count} s").format(count=30)),
             (tr("Sensors"), tr("{count} s").format(count=90)),
@@ -125,17 +125,17 @@ class StepsPreview(Themed):
     def set_room(self, width: int) -> None:
         """Take as many rows as the words need in a width, in px of the screen."""
         self._rows = next((rows for rows in (1, 2, 4) if self._wide(rows) <= width), len(self.steps))
-        self._on_look_changed()
+        self._apply_theme()
 
     def sizeHint(self) -> QSize:
-        px = self._look.theme.px
+        px = current_theme().px
         return QSize(self._wide(self._rows), self._rows * px(CIRCLE + 8 + 2 * LINE) + (self._rows - 1) * px(12))
 
     def minimumSizeHint(self) -> QSize:
         return self.sizeHint()
 
     def painted_texts(self) -> list[PaintedText]:
-        theme, texts = self._look.theme, []
+        theme, texts = current_theme(), []
         width, circle, line = self.width() / self._in_row, theme.px(CIRCLE), theme.px(LINE)
         for number, (name, time) in enumerate(self.steps):
             left, top = self._place(number).x(), self._place(number).y()
@@ -149,7 +149,7 @@ class StepsPreview(Themed):
         return texts
 
     def paintEvent(self, _event: QPaintEvent) -> None:
-        theme, half = self._look.theme, self._look.theme.px(CIRCLE) / 2
+        theme, half = current_theme(), px(CIRCLE) / 2
         painter = QPainter(self)
         painter.setRenderHint(QPainter.RenderHint.Antialiasing)
         painter.setPen(theme.pen(theme.colours.control, 1.25))
@@ -164,8 +164,8 @@ class StepsPreview(Themed):
 
     def _wide(self, rows: int) -> int:
         """How wide so many rows are."""
-        metrics = QFontMetrics(self._look.theme.font(14, SEMIBOLD))
-        widest = max(metrics.horizontalAdvance(name) for name, _ in self.steps) + self._look.theme.px(12)
+        metrics = QFontMetrics(current_theme().font(14, SEMIBOLD))
+        widest = max(metrics.horizontalAdvance(name) for name, _ in self.steps) + px(12)
         return widest * -(-len(self.steps) // rows)
 
     @property
@@ -175,9 +175,9 @@ class StepsPreview(Themed):
     def _place(self, number: int) -> QPointF:
         """The upper left corner of a step."""
         row, column = divmod(number, self._in_row)
-        px = self._look.theme.px
+        px = current_theme().px
         return QPointF(column * self.width() / self._in_row, row * px(CIRCLE + 8 + 2 * LINE + 12))
 
-    def _on_look_changed(self) -> None:
+    def _apply_theme(self) -> None:
         self.updateGeometry()
         self.update()

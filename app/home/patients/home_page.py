@@ -21,8 +21,8 @@ from app.home.patients.home_empty import EmptyLibrary
 from app.home.patients.patient_panel import PatientPanel
 from app.summary.course_lanes import CourseVisit
 from app.summary.course_words import NextStep
+from app.theme.current import current_theme, px
 from app.theme.icons import Icon, paint_icon
-from app.theme.notifier import ThemeNotifier
 from app.widgets.line_list import PATIENT_ROW, Line, LineList, PatientLine, SessionLine
 from app.widgets.segmented import Segmented
 from app.widgets.text import MEDIUM, SEMIBOLD, Text
@@ -56,27 +56,26 @@ class HomePage(Themed):
     patient_deleted = Signal(object)  # UUID: by key or menu
     session_deleted = Signal(object)
 
-    def __init__(self, look: ThemeNotifier) -> None:
+    def __init__(self) -> None:
         super().__init__()
-        self._look = look
         self._patients: Sequence[PatientLine] | None = None  # not read yet
         self._is_single, self._list_width = False, LIST
-        self._title = Text(look, tr("Patients"), size=26, weight=SEMIBOLD)
-        self._count = Text(look, tone="ink2")
-        self.search = _Search(look)
-        self.patients = LineList(look, tr("Patients"), row=PATIENT_ROW, chosen_on="surface")
-        self.nobody = Text(look, tr("No patient found. Shorten the search, or add a new patient."), wraps=True)
-        self.empty = EmptyLibrary(look)
-        self.panel = PatientPanel(look)
+        self._title = Text(tr("Patients"), size=26, weight=SEMIBOLD)
+        self._count = Text(tone="ink2")
+        self.search = _Search()
+        self.patients = LineList(tr("Patients"), row=PATIENT_ROW, chosen_on="surface")
+        self.nobody = Text(tr("No patient found. Shorten the search, or add a new patient."), wraps=True)
+        self.empty = EmptyLibrary()
+        self.panel = PatientPanel()
         self._panel_room = _PanelRoom(self.panel)
-        self.view = Segmented(look, tr("View"), [(PATIENTS, tr("Patients"), ""), (PATIENT, tr("Patient"), "")])
+        self.view = Segmented(tr("View"), [(PATIENTS, tr("Patients"), ""), (PATIENT, tr("Patient"), "")])
         self._build()
         self._connect()
         for before, after in pairwise(self.tab_order):
             self.setTabOrder(before, after)
         self.forget_patients()
         self.show_patient("", "")
-        self._on_look_changed()
+        self._apply_theme()
 
     @property
     def patient_id(self) -> UUID | None:
@@ -154,7 +153,7 @@ class HomePage(Themed):
         self._list_width = WIDE_LIST if width >= WIDE_FROM else LIST
         inside = width - 2 * EDGE
         self.panel.set_room(inside if self._is_single else inside - GUTTER - self._list_width)
-        self._on_look_changed()
+        self._apply_theme()
         self._show_parts()
 
     def event(self, event: QEvent) -> bool:
@@ -206,7 +205,7 @@ class HomePage(Themed):
         self._columns.setContentsMargins(0, 0, 0, 0)
         self._columns.addWidget(self._left_room)
         self._columns.addWidget(self._panel_room, 1)
-        self._empty_title = Text(self._look, tr("Patients"), size=26, weight=SEMIBOLD)
+        self._empty_title = Text(tr("Patients"), size=26, weight=SEMIBOLD)
         self._page = QVBoxLayout(self)
         self._page.addWidget(self.view, 0, Qt.AlignmentFlag.AlignLeft)
         self._page.addWidget(self._empty_title)
@@ -281,8 +280,8 @@ class HomePage(Themed):
         if line is not None:
             self.session_deleted.emit(line.id)
 
-    def _on_look_changed(self) -> None:
-        px = self._look.theme.px
+    def _apply_theme(self) -> None:
+        px = current_theme().px
         self._page.setContentsMargins(px(EDGE), px(12), px(EDGE), px(12))
         self._page.setSpacing(px(12))
         self._columns.setSpacing(px(GUTTER))
@@ -316,25 +315,28 @@ class _PanelRoom(QScrollArea):
 class _Search(QLineEdit):
     """The search, with its sign and its key inside."""
 
-    def __init__(self, look: ThemeNotifier) -> None:
+    def __init__(self) -> None:
         super().__init__()
-        self._look = look
         self.setAccessibleName(tr("Search patients"))
         self.setPlaceholderText(tr("Code, year, device"))
         self.setSizePolicy(QSizePolicy.Policy.Expanding, QSizePolicy.Policy.Fixed)
-        look.changed.connect(self._on_look_changed)
-        self.textChanged.connect(self._on_look_changed)
-        self._on_look_changed()
+        self.textChanged.connect(self._apply_theme)
+        self._apply_theme()
+
+    def changeEvent(self, event: QEvent) -> None:
+        super().changeEvent(event)
+        if event.type() is QEvent.Type.StyleChange:
+            self._apply_theme()
 
     def sizeHint(self) -> QSize:
-        return QSize(self._look.theme.px(200), self._look.theme.px(SEARCH_HEIGHT))
+        return QSize(px(200), px(SEARCH_HEIGHT))
 
     def minimumSizeHint(self) -> QSize:
         return self.sizeHint()
 
     def paintEvent(self, event: QPaintEvent) -> None:
         super().paintEvent(event)
-        theme = self._look.theme
+        theme = current_theme()
         c, px = theme.colours, theme.px
         painter = QPainter(self)
         side = px(22)
@@ -344,15 +346,15 @@ class _Search(QLineEdit):
 
     def _cap(self) -> QRectF | None:
         """The place of the key cap, where it leaves room for the words."""
-        theme = self._look.theme
+        theme = current_theme()
         width = QFontMetrics(theme.font(12, MEDIUM)).horizontalAdvance(tr("Ctrl F")) + theme.px(16)
         words = QFontMetrics(theme.font(16)).horizontalAdvance(self.placeholderText())
         if self.text() or self.width() < words + width + theme.px(84):
             return None
         return QRectF(self.width() - width - theme.px(14), (self.height() - theme.px(22)) / 2, width, theme.px(22))
 
-    def _on_look_changed(self) -> None:
-        theme = self._look.theme
+    def _apply_theme(self) -> None:
+        theme = current_theme()
         self.setFont(theme.font(16))
         self.setTextMargins(theme.px(44) - 1, 0, theme.px(12) - 1, 0)  # the frame of a line is 1 px wide
         self.updateGeometry()

@@ -3,7 +3,6 @@
 from PySide6.QtCore import QObject, Signal
 
 from app.home.login.controller import ADMINISTRATOR
-from app.theme.notifier import ThemeNotifier
 from app.widgets.banner import Banner
 from app.wording.translation import tr, tr_n
 from app.workers.library_controller import LibraryController
@@ -25,11 +24,11 @@ class LibraryNotices(QObject):
     log_in_requested = Signal()
     refused = Signal(str, str)
 
-    def __init__(self, look: ThemeNotifier, controller: LibraryController, parent: QObject) -> None:
+    def __init__(self, controller: LibraryController, parent: QObject) -> None:
         super().__init__(parent)
         self._controller = controller
         self._state: OpenedState | None = None
-        self.rollback, self.away = Banner(look), Banner(look)
+        self.rollback, self.away = Banner(), Banner()
         self.rollback.acted.connect(self._on_accepted)
         self.away.acted.connect(self.log_in_requested)
         controller.server_back.connect(self._on_server_back)

@@ -22,8 +22,8 @@ from app.summary.course_lanes import (
 from app.summary.course_words import NextKind, NextStep, value_in_words
 from app.summary.progress_words import progress_words
 from app.summary.visits import condition_in_words
+from app.theme.current import current_theme
 from app.theme.icons import Icon
-from app.theme.notifier import ThemeNotifier
 from app.widgets.button import Button, ButtonKind
 from app.widgets.card import Card
 from app.widgets.choice import Choice
@@ -65,39 +65,38 @@ class PatientPanel(TallPage):
     delete_patient_requested = Signal()
     delete_session_requested = Signal()
 
-    def __init__(self, look: ThemeNotifier) -> None:
+    def __init__(self) -> None:
         super().__init__()
-        self._look = look
         self._visits: tuple[CourseVisit, ...] = ()
         self._lines: tuple[SessionLine, ...] = ()
         self._agreed: tuple[Goal, ...] = ()
         self._next: NextStep | None = None
-        self.code = Text(look, size=26, weight=SEMIBOLD, is_code=True, wraps=True)
-        self.person = Text(look, tone="ink2", wraps=True)
-        self.simulated = Tag(look, tr("SIMULATED"))
-        self.more = Button(look, tr("More"), ButtonKind.QUIET, height=36)
+        self.code = Text(size=26, weight=SEMIBOLD, is_code=True, wraps=True)
+        self.person = Text(tone="ink2", wraps=True)
+        self.simulated = Tag(tr("SIMULATED"))
+        self.more = Button(tr("More"), ButtonKind.QUIET, height=36)
         self.menu = QMenu(self)
         self.delete_patient = QAction(tr("Delete patient"), self.menu)
         self.delete_session = QAction(tr("Delete session"), self.menu)
         self.analyse_again = QAction(tr("Analyse sessions again"), self.menu)
         self.menu.addActions([self.analyse_again, self.delete_session, self.delete_patient])
-        self.sentence = Text(look, size=22, weight=SEMIBOLD, wraps=True)
-        self.second = Text(look, tone="ink2", wraps=True)
-        self.go = Button(look, "", ButtonKind.SECONDARY, Icon.EDIT, tr("W"), height=44)
-        self.reason = Text(look, tone="ink2", wraps=True)
-        self.shown = Segmented(look, tr("Progress of"), [(WALKING, tr("Walking"), ""), (TESTS, tr("Timed tests"), "")])
-        self.condition = Choice(look, tr("Condition"))
+        self.sentence = Text(size=22, weight=SEMIBOLD, wraps=True)
+        self.second = Text(tone="ink2", wraps=True)
+        self.go = Button("", ButtonKind.SECONDARY, Icon.EDIT, tr("W"), height=44)
+        self.reason = Text(tone="ink2", wraps=True)
+        self.shown = Segmented(tr("Progress of"), [(WALKING, tr("Walking"), ""), (TESTS, tr("Timed tests"), "")])
+        self.condition = Choice(tr("Condition"))
         self.condition.let_shrink(100, 200)
         self.condition.set_height(CONDITION)
-        self.count = Text(look, size=12, tone="ink2", wraps=True)
-        self.goals = Button(look, tr("Goals"), ButtonKind.QUIET, Icon.GOAL, height=36)
-        self.course = CourseCard(look)
-        self.sessions = LineList(look, tr("Visits"), is_opened_by_click=True, row=VISIT_ROW, head=VISIT_HEAD)
-        self.none_yet = Text(look, tone="ink2", wraps=True)
+        self.count = Text(size=12, tone="ink2", wraps=True)
+        self.goals = Button(tr("Goals"), ButtonKind.QUIET, Icon.GOAL, height=36)
+        self.course = CourseCard()
+        self.sessions = LineList(tr("Visits"), is_opened_by_click=True, row=VISIT_ROW, head=VISIT_HEAD)
+        self.none_yet = Text(tone="ink2", wraps=True)
         self.none_yet.setText(tr("No visit yet."))
         self._build()
         self._connect()
-        self._on_look_changed()
+        self._apply_theme()
 
     @property
     def tab_order(self) -> list[QWidget]:
@@ -184,14 +183,14 @@ class PatientPanel(TallPage):
         self._next_row.addWidget(self.go)
         self._next_row.addWidget(self.reason, 1)
         head = self.course.head
-        title = Text(self._look, tr("Progress"), size=16, weight=SEMIBOLD)
+        title = Text(tr("Progress"), size=16, weight=SEMIBOLD)
         for number, part in enumerate((title, self.shown, self.condition, self.count, self.goals)):
             head.insertWidget(number, part, int(part is self.count))
         hear_as_laid_out(self.course)
         self.sessions.setVerticalScrollBarPolicy(Qt.ScrollBarPolicy.ScrollBarAlwaysOff)
         self.sessions.setSizePolicy(QSizePolicy.Policy.Expanding, QSizePolicy.Policy.Fixed)
         self.sessions.fitted.connect(self._fit_sessions)
-        self.visits_card = Card(self._look, padding=0)
+        self.visits_card = Card(padding=0)
         self.visits_card.column.addWidget(self.sessions)
         self.visits_card.column.addWidget(self.none_yet, 0, Qt.AlignmentFlag.AlignHCenter)
         self._statement = QVBoxLayout()
@@ -205,8 +204,8 @@ class PatientPanel(TallPage):
         self.column.addWidget(self.visits_card)
         self.column.addStretch(1)
 
-    def _on_look_changed(self) -> None:
-        px = self._look.theme.px
+    def _apply_theme(self) -> None:
+        px = current_theme().px
         self.column.setSpacing(px(12))
         self._statement.setSpacing(px(2))
         for row in (self._who, self._next_row):

@@ -14,7 +14,6 @@ from app.storage.error_figures import choose_study, chosen_study, figures_of
 from app.summary.error_figures import error_figures_in_words
 from app.system.progress import Report
 from app.theme.icons import Icon
-from app.theme.notifier import ThemeNotifier
 from app.widgets.action_bar import BarAction, BarState
 from app.wizard.resuming import sessions_of_condition
 from app.wording.translation import filled, tr
@@ -50,13 +49,13 @@ class Repeatability(QObject):
     done = Signal()
     chosen = Signal()
 
-    def __init__(self, look: ThemeNotifier, controller: LibraryController, parent: QObject) -> None:
+    def __init__(self, controller: LibraryController, parent: QObject) -> None:
         super().__init__(parent)
         self._controller = controller
         self._dialog: QFileDialog | None = None
         self._is_demonstration = False
         self.is_working = False
-        self.page = RepeatabilityPage(look)
+        self.page = RepeatabilityPage()
 
     @property
     def bar(self) -> BarState:

@@ -8,8 +8,8 @@ from PySide6.QtWidgets import QVBoxLayout
 from app.cohort.repeatability.people import CONDITION
 from app.cohort.repeatability.table import ATTACHED_AGAIN, BETWEEN_LEGS, RepeatabilityRow, rows_of
 from app.summary.report_dates import day
+from app.theme.current import current_theme
 from app.theme.icons import Icon
-from app.theme.notifier import ThemeNotifier
 from app.widgets.card import Card
 from app.widgets.notice import Notice
 from app.widgets.table import CellTable, TableColumn, TableRow
@@ -25,22 +25,21 @@ MARGIN, GAP = 24, 12
 class RepeatabilityPage(Themed):
     """Shows one study at a time, and the figures in use."""
 
-    def __init__(self, look: ThemeNotifier) -> None:
+    def __init__(self) -> None:
         super().__init__()
-        self._look = look
         self.own: OwnFigures | None = None
-        self._title = Text(look, tr("Repeatability"), size=26, weight=SEMIBOLD)
+        self._title = Text(tr("Repeatability"), size=26, weight=SEMIBOLD)
         lead = tr(
             "Healthy people measured twice show the measurement error of your own clinic. Record each of them twice, "
             "with the condition “{condition}”. At least {least} people, 20 are recommended."
         )
-        self._lead = Text(look, lead.format(condition=CONDITION, least=MIN_PEOPLE), tone="ink2", wraps=True)
-        self.used = Text(look, weight=MEDIUM, wraps=True)
-        self.refusal = Notice(look, size=16)
-        self.sentence = Text(look, size=18, weight=SEMIBOLD, wraps=True)
-        self.notes = Text(look, tone="ink2", wraps=True)
-        self.table = CellTable(look, tr("Repeatability"))
-        self._card = Card(look)
+        self._lead = Text(lead.format(condition=CONDITION, least=MIN_PEOPLE), tone="ink2", wraps=True)
+        self.used = Text(weight=MEDIUM, wraps=True)
+        self.refusal = Notice(size=16)
+        self.sentence = Text(size=18, weight=SEMIBOLD, wraps=True)
+        self.notes = Text(tone="ink2", wraps=True)
+        self.table = CellTable(tr("Repeatability"))
+        self._card = Card()
         for part in (self.sentence, self.notes, self.table):
             self._card.column.addWidget(part)
         self._column = QVBoxLayout(self)
@@ -49,7 +48,7 @@ class RepeatabilityPage(Themed):
         self._column.addStretch(1)
         self.setFocusPolicy(Qt.FocusPolicy.NoFocus)
         self.forget()
-        self._on_look_changed()
+        self._apply_theme()
 
     def focus(self) -> None:
         if self.own is not None:
@@ -80,8 +79,8 @@ class RepeatabilityPage(Themed):
         self.table.setAccessibleDescription(self.sentence.text())
         self._card.show()
 
-    def _on_look_changed(self) -> None:
-        px = self._look.theme.px
+    def _apply_theme(self) -> None:
+        px = current_theme().px
         self._column.setContentsMargins(px(MARGIN), px(16), px(MARGIN), px(GAP))
         self._column.setSpacing(px(GAP))
 

@@ -8,7 +8,6 @@ from PySide6.QtWidgets import QWidget
 
 from app.home.settings.settings_card import SettingsCard
 from app.theme.icons import Icon
-from app.theme.notifier import ThemeNotifier
 from app.widgets.button import Button, ButtonKind
 from app.widgets.server_fields import ServerFields
 from app.widgets.text import MEDIUM, Text
@@ -34,14 +33,13 @@ class StationCard(SettingsCard):
     stop_requested = Signal()
     back_requested = Signal()
 
-    def __init__(self, look: ThemeNotifier) -> None:
-        super().__init__(look, tr("Clinic's server"))
+    def __init__(self) -> None:
+        super().__init__(tr("Clinic's server"))
         self._is_copying = self._may_bring_back = False
-        self.server = Text(look, wraps=True)
-        self.place = Text(look, wraps=True)
-        self.waiting = Text(look, weight=MEDIUM, wraps=True)
+        self.server = Text(wraps=True)
+        self.place = Text(wraps=True)
+        self.waiting = Text(weight=MEDIUM, wraps=True)
         self._copy_hint = Text(
-            look,
             tr(
                 "The server's administrator backs up the library with the server's own tools. First pg_dump "
                 "saves the database. Then the shared storage of the recordings is copied. A copy in a folder "
@@ -50,10 +48,9 @@ class StationCard(SettingsCard):
             tone="ink2",
             wraps=True,
         )
-        self.copy_stated = Text(look, weight=MEDIUM, wraps=True)
-        self.copy = Button(look, tr("Copy to a folder"))
+        self.copy_stated = Text(weight=MEDIUM, wraps=True)
+        self.copy = Button(tr("Copy to a folder"))
         self._back_hint = Text(
-            look,
             tr(
                 "The library can also be moved back from the server. It is then on this computer only, as "
                 "before. No other workstation can open it."
@@ -61,10 +58,10 @@ class StationCard(SettingsCard):
             tone="ink2",
             wraps=True,
         )
-        self.back_stated = Text(look, weight=MEDIUM, wraps=True)
-        self.back = Button(look, tr("Move back to a folder"))
-        self.sure = Button(look, tr("Move library back, close to all others"))
-        self.keep = Button(look, tr("Cancel"), ButtonKind.QUIET)
+        self.back_stated = Text(weight=MEDIUM, wraps=True)
+        self.back = Button(tr("Move back to a folder"))
+        self.sure = Button(tr("Move library back, close to all others"))
+        self.keep = Button(tr("Cancel"), ButtonKind.QUIET)
         self.fill(self.server, self.place, self.waiting, self._copy_hint, self.copy_stated)
         self.add_left(self.copy)
         self.fill(self._back_hint, self.back_stated)
@@ -141,10 +138,9 @@ class MoreStationsCard(SettingsCard):
     move_requested = Signal(str, str, str)  # address, password, place
     place_requested = Signal()
 
-    def __init__(self, look: ThemeNotifier) -> None:
-        super().__init__(look, tr("Several workstations"))
+    def __init__(self) -> None:
+        super().__init__(tr("Several workstations"))
         self._hint = Text(
-            look,
             tr(
                 "Several computers can share this library on your clinic's PostgreSQL server. The server's "
                 "administrator can then read patient codes, user names and entered text. Recordings stay "
@@ -155,10 +151,10 @@ class MoreStationsCard(SettingsCard):
             wraps=True,
         )
         place = tr("Shared storage that all workstations can reach")
-        self.server = ServerFields(look, place, self, is_place_optional=False)
-        self.choose = Button(look, tr("Choose the folder"), ButtonKind.QUIET, Icon.FOLDER)
-        self.stated = Text(look, weight=MEDIUM, wraps=True)
-        self.move_there = Button(look, tr("Move to the clinic's server"))
+        self.server = ServerFields(place, self, is_place_optional=False)
+        self.choose = Button(tr("Choose the folder"), ButtonKind.QUIET, Icon.FOLDER)
+        self.stated = Text(weight=MEDIUM, wraps=True)
+        self.move_there = Button(tr("Move to the clinic's server"))
         self.fill(self._hint, *self.server.fields)
         self.add_left(self.choose)
         self.fill(self.stated)

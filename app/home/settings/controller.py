@@ -25,7 +25,7 @@ from app.storage.operators import CLINIC
 from app.storage.stored import KEPT_DELETED, Operator, Role
 from app.system.progress import Report
 from app.system.settings import Scheme, Settings
-from app.theme.notifier import ThemeNotifier
+from app.theme.current import current_theme
 from app.widgets.folder_dialog import ask_for_folder
 from app.wording.dates import date
 from app.wording.patients import person, when
@@ -47,12 +47,12 @@ class SettingsController(QObject):
     restored = Signal()  # something that was deleted
     moved = Signal(object)  # OpenedState: the library is at a clinic's server now, or no longer
 
-    def __init__(self, look: ThemeNotifier, controller: LibraryController, settings: Settings, parent: QWidget) -> None:
+    def __init__(self, controller: LibraryController, settings: Settings, parent: QWidget) -> None:
         super().__init__(parent)
-        self._look, self._controller, self._settings = look, controller, settings
+        self._controller, self._settings = controller, settings
         self._state: OpenedState | None = None
         self._backup_folder = ""
-        self.page = SettingsPage(look, SHORTEST, tuple(_roles().items()))
+        self.page = SettingsPage(SHORTEST, tuple(_roles().items()))
         self._clinic = ClinicSettings(controller, self.page)
         self._clinic.moved.connect(self._on_moved)
         self._sheet = KeySheet(self.page)
@@ -141,14 +141,13 @@ class SettingsController(QObject):
         page.clinic_named.connect(self._on_clinic_named)
         page.restore_requested.connect(self._on_restore_requested)
         self._settings.changed.connect(self._show_screen)
-        self._look.changed.connect(self._show_screen)
 
     def _show_screen(self) -> None:
         kept = self._settings
         self.page.show_screen(
             kept.language,
             kept.scheme,
-            self._look.theme.scale,
+            current_theme().scale,
             is_from_behind=kept.is_from_behind,
             has_sound=kept.has_sound,
             has_prompts=kept.has_prompts,

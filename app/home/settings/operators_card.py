@@ -8,8 +8,8 @@ from PySide6.QtWidgets import QHBoxLayout, QVBoxLayout, QWidget
 
 from app.home.settings.settings_card import SettingsCard
 from app.system.passphrases import REFUSED, strength_in_words, strength_of
+from app.theme.current import px
 from app.theme.icons import Icon
-from app.theme.notifier import ThemeNotifier
 from app.widgets.button import Button, ButtonKind
 from app.widgets.choice import Choice
 from app.widgets.field import Field
@@ -36,25 +36,25 @@ class OperatorsCard(SettingsCard):
     added = Signal(str, str, str, str)  # code, name, role, passphrase
     removed = Signal(str)  # code
 
-    def __init__(self, look: ThemeNotifier, shortest: int, roles: Sequence[tuple[str, str]], clinic: Field) -> None:
+    def __init__(self, shortest: int, roles: Sequence[tuple[str, str]], clinic: Field) -> None:
         self._shortest, self._clinic = shortest, clinic
         self._leaving = ""
         self.rows = QVBoxLayout()
-        self.leaving_words = Text(look, wraps=True)
-        self.remove = Button(look, tr("Remove and change the key"))
-        self.keep = Button(look, tr("Cancel"), ButtonKind.QUIET)
-        self.code = Field(look, tr("Code of a new user"), is_code=True)
-        self.name = Field(look, tr("Name"))
-        self.role = Choice(look, tr("Role"))
+        self.leaving_words = Text(wraps=True)
+        self.remove = Button(tr("Remove and change the key"))
+        self.keep = Button(tr("Cancel"), ButtonKind.QUIET)
+        self.code = Field(tr("Code of a new user"), is_code=True)
+        self.name = Field(tr("Name"))
+        self.role = Choice(tr("Role"))
         for key, words in roles:
             self.role.addItem(words, key)
-        self.first = Field(look, tr("Initial passphrase, to be changed by the user"), is_secret=True)
-        self.add = Button(look, tr("Add user"), ButtonKind.SECONDARY, Icon.ADD)
-        super().__init__(look, tr("Users of this library"))
+        self.first = Field(tr("Initial passphrase, to be changed by the user"), is_secret=True)
+        self.add = Button(tr("Add user"), ButtonKind.SECONDARY, Icon.ADD)
+        super().__init__(tr("Users of this library"))
         self.column.addLayout(self.rows)
         self.fill(self.leaving_words)
         self.add_left(self.remove, self.keep)
-        self.fill(self.code, self.name, Text(look, tr("Role"), weight=MEDIUM))
+        self.fill(self.code, self.name, Text(tr("Role"), weight=MEDIUM))
         self.add_left(self.role)
         self.fill(self.first)
         self.add_left(self.add)
@@ -71,7 +71,7 @@ class OperatorsCard(SettingsCard):
                 widget.hide()
                 widget.deleteLater()
         for operator in operators:
-            row = _OperatorRow(self._look, operator)
+            row = _OperatorRow(operator)
             row.switched.connect(self._on_switched)
             self.rows.addWidget(row)
         hear_as_laid_out(self)
@@ -148,23 +148,22 @@ class OperatorsCard(SettingsCard):
             name = self.name.text.strip()
             self.added.emit(self.code.text.strip(), name, str(self.role.currentData()), self.first.text)
 
-    def _on_look_changed(self) -> None:
-        super()._on_look_changed()
-        self.rows.setSpacing(self._look.theme.px(4))
+    def _apply_theme(self) -> None:
+        super()._apply_theme()
+        self.rows.setSpacing(px(4))
 
 
 class _OperatorRow(QWidget):
     switched = Signal(object)  # OperatorLine
 
-    def __init__(self, look: ThemeNotifier, operator: OperatorLine) -> None:
+    def __init__(self, operator: OperatorLine) -> None:
         super().__init__()
         self._operator = operator
         row = QHBoxLayout(self)
         row.setContentsMargins(0, 0, 0, 0)
         words = ", ".join([operator.code, operator.name, operator.role])
-        row.addWidget(Text(look, words, size=15, wraps=True), 1)
+        row.addWidget(Text(words, size=15, wraps=True), 1)
         self.button = Button(
-            look,
             tr("Remove user")
             if operator.is_active
             else tr("Change the key now")

@@ -2,7 +2,6 @@
 
 from PySide6.QtWidgets import QHBoxLayout, QWidget
 
-from app.theme.notifier import ThemeNotifier
 from app.widgets.card import Card
 from app.widgets.text import SEMIBOLD, Text
 
@@ -10,9 +9,9 @@ PADDING, SPACING = 20, 10
 
 
 class SettingsCard(Card):
-    def __init__(self, look: ThemeNotifier, title: str) -> None:
-        super().__init__(look, padding=PADDING, spacing=SPACING)
-        self.fill(Text(look, title, size=16, weight=SEMIBOLD, wraps=True))
+    def __init__(self, title: str) -> None:
+        super().__init__(padding=PADDING, spacing=SPACING)
+        self.fill(Text(title, size=16, weight=SEMIBOLD, wraps=True))
 
     def fill(self, *parts: QWidget) -> None:
         """Put parts below each other, as wide as the card."""

@@ -11,8 +11,8 @@ from app.home.settings.clinic_cards import MoreStationsCard, StationCard
 from app.home.settings.operators_card import OperatorsCard
 from app.home.settings.settings_card import SettingsCard
 from app.system.passphrases import REFUSED, strength_in_words, strength_of
+from app.theme.current import SCALES, current_theme
 from app.theme.icons import Icon
-from app.theme.notifier import SCALES, ThemeNotifier
 from app.widgets.button import Button, ButtonKind
 from app.widgets.choice import Choice
 from app.widgets.field import Field
@@ -61,27 +61,27 @@ class SettingsPage(TallPage):
     clinic_named = Signal(str)
     restore_requested = Signal(object, bool)  # id, whether it is a patient's
 
-    def __init__(self, look: ThemeNotifier, shortest: int, roles: Sequence[tuple[str, str]]) -> None:
+    def __init__(self, shortest: int, roles: Sequence[tuple[str, str]]) -> None:
         super().__init__()
-        self._look, self._shortest = look, shortest
+        self._shortest = shortest
         self._own: tuple[str, ...] = ()
-        self._title = Text(look, tr("Settings"), size=26, weight=SEMIBOLD)
+        self._title = Text(tr("Settings"), size=26, weight=SEMIBOLD)
         self.column.addWidget(self._title)
         self._build_screen()
         self._build_access()
         self._build_backup()
-        self.station = StationCard(look)
-        self.more_stations = MoreStationsCard(look)
+        self.station = StationCard()
+        self.more_stations = MoreStationsCard()
         for card in (self.station, self.more_stations):
             self.column.addWidget(card)
         self._build_deleted()
         self._build_clinic()
-        self.operators = OperatorsCard(look, shortest, roles, self.clinic)
+        self.operators = OperatorsCard(shortest, roles, self.clinic)
         self.column.addWidget(self.operators)
         self._build_trouble()
         self.column.addStretch(1)
         self._connect()
-        self._on_look_changed()
+        self._apply_theme()
 
     @property
     def tab_order(self) -> list[QWidget]:
@@ -183,32 +183,27 @@ class SettingsPage(TallPage):
                 widget.hide()
                 widget.deleteLater()
         for line in lines:
-            row = _DeletedRow(self._look, line)
+            row = _DeletedRow(line)
             row.restored.connect(self.restore_requested)
             self.deleted_rows.addWidget(row)
         self.none_deleted.setVisible(not lines)
 
     def _build_screen(self) -> None:
-        look = self._look
-        self.language = Segmented(look, tr("Language"), [(key, LANGUAGES[key], "") for key in languages()])
+        self.language = Segmented(tr("Language"), [(key, LANGUAGES[key], "") for key in languages()])
         self.scheme = Segmented(
-            look,
             tr("Appearance"),
             [("system", tr("System setting"), ""), ("light", tr("Light"), ""), ("dark", tr("Dark"), "")],
         )
-        self.scale = Choice(look, tr("Display size"))
+        self.scale = Choice(tr("Display size"))
         for scale in SCALES:
             self.scale.addItem(tr("{percent} %").format(percent=round(scale * 100)), scale)
-        self.side = Segmented(
-            look, tr("Patient view"), [(FRONT, tr("From the front"), ""), (BEHIND, tr("From behind"), "")]
-        )
+        self.side = Segmented(tr("Patient view"), [(FRONT, tr("From the front"), ""), (BEHIND, tr("From behind"), "")])
         self.motion = Segmented(
-            look,
             tr("Screen animation"),
             [(AS_SYSTEM, tr("System setting"), ""), (LESS_MOTION, tr("Reduced"), "")],
         )
-        self.sound = Toggle(look, tr("Sounds"), "", is_on=True)
-        self.prompts = Toggle(look, tr("Spoken prompts"), "", is_on=False)
+        self.sound = Toggle(tr("Sounds"), "", is_on=True)
+        self.prompts = Toggle(tr("Spoken prompts"), "", is_on=False)
         self._screen = self._card(tr("Screen and sound"))
         for label, control in (
             (tr("Language"), self.language),
@@ -217,26 +212,24 @@ class SettingsPage(TallPage):
             (tr("Patient view"), self.side),
             (tr("Screen animation"), self.motion),
         ):
-            self._screen.fill(Text(look, label, weight=MEDIUM))
+            self._screen.fill(Text(label, weight=MEDIUM))
             self._screen.add_left(control)
         self._screen.add_left(self.sound)
         self._screen.add_left(self.prompts)
         hint = tr("Speaks each instruction, so you can watch the patient.")
-        self._screen.fill(Text(look, hint, tone="ink2", wraps=True))
+        self._screen.fill(Text(hint, tone="ink2", wraps=True))
 
     def _build_access(self) -> None:
-        look = self._look
         self.access_card = self._card(tr("Passphrase and recovery key"))
-        self.old = Field(look, tr("Current passphrase"), is_secret=True)
-        self.new = Field(look, tr("New passphrase"), is_secret=True)
-        self._strength = Text(look, strength_in_words("", self._shortest), tone="ink2", wraps=True)
-        self.again = Field(look, tr("Repeat new passphrase"), is_secret=True)
-        self.change = Button(look, tr("Change passphrase"))
-        self._stated = Text(look, tone="ink2", wraps=True)
-        self.renew = Button(look, tr("Create a new recovery key"))
-        self._key_words = Text(look, size=20, weight=SEMIBOLD, is_code=True, wraps=True)
+        self.old = Field(tr("Current passphrase"), is_secret=True)
+        self.new = Field(tr("New passphrase"), is_secret=True)
+        self._strength = Text(strength_in_words("", self._shortest), tone="ink2", wraps=True)
+        self.again = Field(tr("Repeat new passphrase"), is_secret=True)
+        self.change = Button(tr("Change passphrase"))
+        self._stated = Text(tone="ink2", wraps=True)
+        self.renew = Button(tr("Create a new recovery key"))
+        self._key_words = Text(size=20, weight=SEMIBOLD, is_code=True, wraps=True)
         self._key_hint = Text(
-            look,
             tr(
                 "The old recovery key opens only earlier backups. Print the new key or write it down; it is "
                 "not shown again. At your next login you enter it once to confirm."
@@ -244,8 +237,8 @@ class SettingsPage(TallPage):
             tone="ink2",
             wraps=True,
         )
-        self.print = Button(look, tr("Print"), ButtonKind.SECONDARY, Icon.PRINT)
-        self.save = Button(look, tr("Save as a file"), ButtonKind.SECONDARY, Icon.IMPORT)
+        self.print = Button(tr("Print"), ButtonKind.SECONDARY, Icon.PRINT)
+        self.save = Button(tr("Save as a file"), ButtonKind.SECONDARY, Icon.IMPORT)
         self.access_card.fill(self.old)
         self.access_card.fill(self.new)
         self.access_card.fill(self._strength)
@@ -259,50 +252,45 @@ class SettingsPage(TallPage):
         self.show_recovery_key("")
 
     def _build_backup(self) -> None:
-        look = self._look
         self._is_backing_up = False
         self.backup_card = self._card(tr("Backup"))
         hint = tr(
             "A backup is an encrypted copy of all patient data and recordings. It is best kept on another "
             "disk. Deleted data stay in older backups for up to 90 days."
         )
-        self.backup_folder = Text(look, tone="ink2", wraps=True)
-        self.backup_stated = Text(look, weight=MEDIUM, wraps=True)
-        self.back_up = Button(look, tr("Back up now"))
-        self.choose_folder = Button(look, tr("Choose the folder"), ButtonKind.QUIET, Icon.FOLDER)
-        self.backup_card.fill(Text(look, hint, tone="ink2", wraps=True))
+        self.backup_folder = Text(tone="ink2", wraps=True)
+        self.backup_stated = Text(weight=MEDIUM, wraps=True)
+        self.back_up = Button(tr("Back up now"))
+        self.choose_folder = Button(tr("Choose the folder"), ButtonKind.QUIET, Icon.FOLDER)
+        self.backup_card.fill(Text(hint, tone="ink2", wraps=True))
         self.backup_card.fill(self.backup_folder)
         self.backup_card.fill(self.backup_stated)
         self.backup_card.add_left(self.back_up, self.choose_folder)
         self.show_backup("", "")
 
     def _build_deleted(self) -> None:
-        look = self._look
         self.deleted_card = self._card(tr("Deleted in the last 30 days"))
         self.deleted_rows = QVBoxLayout()
-        self.none_deleted = Text(
-            look, tr("Nothing deleted. Deleted items can be restored here."), tone="ink2", wraps=True
-        )
+        self.none_deleted = Text(tr("Nothing deleted. Deleted items can be restored here."), tone="ink2", wraps=True)
         self.deleted_card.column.addLayout(self.deleted_rows)
         self.deleted_card.fill(self.none_deleted)
 
     def _build_clinic(self) -> None:
         self._clinic = self._card(tr("Clinic"))
-        self.clinic = Field(self._look, tr("Clinic name on reports"), is_optional=True)
+        self.clinic = Field(tr("Clinic name on reports"), is_optional=True)
         self._clinic.fill(self.clinic)
 
     def _build_trouble(self) -> None:
-        look = self._look
         self.trouble_card = self._card(tr("Error report"))
         hint = tr(
             "An error report contains software versions, the type of computer and the end of the log. It "
             "contains no codes, names, paths or typed text. It is saved as a readable text file; you "
             "decide whether to send it."
         )
-        self.trouble_card.fill(Text(look, hint, tone="ink2", wraps=True))
-        self.report_error = Button(look, tr("Save an error report"), ButtonKind.SECONDARY, Icon.IMPORT)
+        self.trouble_card.fill(Text(hint, tone="ink2", wraps=True))
+        self.report_error = Button(tr("Save an error report"), ButtonKind.SECONDARY, Icon.IMPORT)
         self.trouble_card.add_left(self.report_error)
-        self._trouble_stated = Text(look, tone="ink2", wraps=True)
+        self._trouble_stated = Text(tone="ink2", wraps=True)
         self.trouble_card.fill(self._trouble_stated)
         self._trouble_stated.hide()
 
@@ -347,7 +335,7 @@ class SettingsPage(TallPage):
         self.choose_folder.setEnabled(not is_running)
 
     def _card(self, title: str) -> SettingsCard:
-        card = SettingsCard(self._look, title)
+        card = SettingsCard(title)
         self.column.addWidget(card)
         return card
 
@@ -395,8 +383,8 @@ class SettingsPage(TallPage):
     def _known(self) -> tuple[str, ...]:
         return *self._own, self.clinic.text
 
-    def _on_look_changed(self) -> None:
-        px = self._look.theme.px
+    def _apply_theme(self) -> None:
+        px = current_theme().px
         self.setMaximumWidth(px(COLUMN + 48))
         self.column.setContentsMargins(px(24), px(16), px(24), px(20))
         self.column.setSpacing(px(16))
@@ -406,17 +394,17 @@ class SettingsPage(TallPage):
 class _DeletedRow(QWidget):
     restored = Signal(object, bool)
 
-    def __init__(self, look: ThemeNotifier, line: DeletedLine) -> None:
+    def __init__(self, line: DeletedLine) -> None:
         super().__init__()
         self._line = line
         row = QHBoxLayout(self)
         row.setContentsMargins(0, 0, 0, 0)
         words = QVBoxLayout()
         words.setSpacing(0)
-        words.addWidget(Text(look, line.words, size=15, wraps=True))
-        words.addWidget(Text(look, line.details, size=14, tone="ink2", wraps=True))
+        words.addWidget(Text(line.words, size=15, wraps=True))
+        words.addWidget(Text(line.details, size=14, tone="ink2", wraps=True))
         row.addLayout(words, 1)
-        self.button = Button(look, tr("Restore"), height=44)
+        self.button = Button(tr("Restore"), height=44)
         self.button.setAccessibleName(f"{self.button.text()}, {line.words}")
         self.button.setAccessibleDescription(line.details)
         self.button.clicked.connect(self._on_clicked)

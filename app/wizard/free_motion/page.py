@@ -12,8 +12,8 @@ from PySide6.QtCore import QPointF, Signal
 from PySide6.QtGui import QColor, QPainter, QPaintEvent, QPolygonF
 from PySide6.QtWidgets import QGridLayout, QHBoxLayout, QVBoxLayout, QWidget
 
+from app.theme.current import current_theme, px
 from app.theme.icons import Icon
-from app.theme.notifier import ThemeNotifier
 from app.widgets.action_bar import BarAction
 from app.widgets.body_figure import BodyFigure, SensorMark
 from app.widgets.button import Button, ButtonKind
@@ -72,16 +72,15 @@ class FreeMotionPage(Themed):
     answered = Signal(int)
     pressed = Signal(object)
 
-    def __init__(self, look: ThemeNotifier) -> None:
+    def __init__(self) -> None:
         super().__init__()
-        self._look = look
         self._is_compact = False
-        self.question = _Question(look)
-        self.band = HintBand(look)
-        self.swapped = SwapBanner(look)
-        self.gauges = {joint: Gauge(look, joint) for joint in LEG_JOINTS}
-        self.hips = {hip_of(side): HipGauge(look, hip_of(side)) for side in Side}
-        self.figure = BodyFigure(look, legs_only=True)
+        self.question = _Question()
+        self.band = HintBand()
+        self.swapped = SwapBanner()
+        self.gauges = {joint: Gauge(joint) for joint in LEG_JOINTS}
+        self.hips = {hip_of(side): HipGauge(hip_of(side)) for side in Side}
+        self.figure = BodyFigure(legs_only=True)
         self._hips, self._grid = QHBoxLayout(), QGridLayout()
         for hip in self.hips.values():
             hip.hide()
@@ -99,7 +98,7 @@ class FreeMotionPage(Themed):
         self._column.addLayout(self._grid, 1)
         self.question.answered.connect(self.answered)
         self.swapped.pressed.connect(self.pressed)
-        self._on_look_changed()
+        self._apply_theme()
 
     @property
     def tab_order(self) -> list[QWidget]:
@@ -128,7 +127,7 @@ class FreeMotionPage(Themed):
         for hip in self.hips.values():
             hip.set_compact(is_compact)
         self.figure.setVisible(not is_compact)
-        self._on_look_changed()
+        self._apply_theme()
 
     def ask(self, what: str, then: str = "", answers: tuple[str, ...] = (), *, is_understood: bool = False) -> None:
         """Say what the motion contradicts, or cannot show, and offer one or two answers; empty takes it back.
@@ -164,19 +163,19 @@ class FreeMotionPage(Themed):
 
     def paintEvent(self, event: QPaintEvent) -> None:
         """Lead a line from each card to its joint."""
-        middle = self.figure.geometry().adjusted(-self._look.theme.px(8), 0, self._look.theme.px(8), 0)
+        middle = self.figure.geometry().adjusted(-px(8), 0, px(8), 0)
         if self._is_compact or not event.rect().intersects(middle):
             return
         painter = QPainter(self)
         painter.setRenderHint(QPainter.RenderHint.Antialiasing)
-        painter.setPen(self._look.theme.pen(self._look.theme.colours.control, 1))
+        painter.setPen(current_theme().pen(current_theme().colours.control, 1))
         for joint, gauge in self.gauges.items():
             place = gauge.geometry()
             is_left_of_figure = place.right() < self.figure.geometry().center().x()
             edge = float(place.right() + 1 if is_left_of_figure else place.left())
             start = QPointF(edge, place.center().y())
             end = QPointF(self.figure.pos()) + self.figure.joint_anchor(joint)
-            inwards = self._look.theme.px(1) if is_left_of_figure else -self._look.theme.px(1)
+            inwards = px(1) if is_left_of_figure else -px(1)
             bends = [start + QPointF(14 * inwards, 0), end - QPointF(24 * inwards, 0)]
             painter.drawPolyline(QPolygonF([start, *bends, end]))
 
@@ -188,8 +187,8 @@ class FreeMotionPage(Themed):
             self._hips.removeWidget(self.hips[hip_of(side)])
             self._hips.addWidget(self.hips[hip_of(side)])
 
-    def _on_look_changed(self) -> None:
-        px = self._look.theme.px
+    def _apply_theme(self) -> None:
+        px = current_theme().px
         across, down = (16, 12) if self._is_compact else (24, 16)
         self._column.setContentsMargins(px(across), px(down), px(across), px(down))
         self._column.setSpacing(px(12 if self._is_compact else 16))
@@ -205,14 +204,13 @@ class _Question(Themed):
 
     answered = Signal(int)
 
-    def __init__(self, look: ThemeNotifier) -> None:
+    def __init__(self) -> None:
         super().__init__()
-        self._look = look
         self._is_understood = False
-        self.notice = Notice(look, size=14)
+        self.notice = Notice(size=14)
         self.buttons = (
-            Button(look, "", ButtonKind.PRIMARY, height=44),
-            Button(look, "", ButtonKind.SECONDARY, height=44),
+            Button("", ButtonKind.PRIMARY, height=44),
+            Button("", ButtonKind.SECONDARY, height=44),
         )
         self._row = QHBoxLayout(self)
         self._row.addWidget(self.notice, 1)
@@ -220,7 +218,7 @@ class _Question(Themed):
             self._row.addWidget(button)
         self.buttons[0].clicked.connect(self._on_first_clicked)
         self.buttons[1].clicked.connect(self._on_second_clicked)
-        self._on_look_changed()
+        self._apply_theme()
         self.hide()
 
     def ask(self, what: str, then: str, answers: tuple[str, ...], *, is_understood: bool) -> None:
@@ -237,7 +235,7 @@ class _Question(Themed):
         self.update()
 
     def paintEvent(self, _event: QPaintEvent) -> None:
-        theme = self._look.theme
+        theme = current_theme()
         painter = QPainter(self)
         painter.setRenderHint(QPainter.RenderHint.Antialiasing)
         colours = theme.colours
@@ -246,8 +244,8 @@ class _Question(Themed):
         radius = theme.px(8)
         painter.drawRoundedRect(self.rect().adjusted(0, 0, -1, -1), radius, radius)
 
-    def _on_look_changed(self) -> None:
-        px = self._look.theme.px
+    def _apply_theme(self) -> None:
+        px = current_theme().px
         self._row.setContentsMargins(px(6), px(6), px(10), px(6))
         self._row.setSpacing(px(12))
 

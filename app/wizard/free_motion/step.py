@@ -13,7 +13,6 @@ from app.system import sounds
 from app.system.prompts import prompter
 from app.system.sounds import Sound
 from app.theme.icons import Icon
-from app.theme.notifier import ThemeNotifier
 from app.widgets.action_bar import BarAction, BarState
 from app.widgets.gauge import CLOSED
 from app.widgets.hint import Hint
@@ -66,8 +65,8 @@ class FreeMotionStep(Step):
 
     id = StepId.FREE_MOTION
 
-    def __init__(self, look: ThemeNotifier, visit: "Visit", parent: QObject | None = None) -> None:
-        super().__init__(look, visit, parent)
+    def __init__(self, visit: "Visit", parent: QObject | None = None) -> None:
+        super().__init__(visit, parent)
         self._page: FreeMotionPage | None = None
         self._estimator: FreeMotionEstimator | UnplacedFreeMotionEstimator | None = None
         self._unplaced: UnplacedFreeMotionEstimator | None = None  # the same, where it has to find the sites
@@ -104,7 +103,7 @@ class FreeMotionStep(Step):
     @property
     def page(self) -> FreeMotionPage:
         if self._page is None:
-            self._page = FreeMotionPage(self._look)
+            self._page = FreeMotionPage()
             self._page.answered.connect(self.labels.answer)
             self._page.pressed.connect(self._on_pressed)
         return self._page

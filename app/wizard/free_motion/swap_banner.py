@@ -12,8 +12,8 @@ from PySide6.QtGui import (
 )
 from PySide6.QtWidgets import QBoxLayout, QHBoxLayout, QSizePolicy, QVBoxLayout, QWidget
 
+from app.theme.current import current_theme, px
 from app.theme.icons import Icon, paint_icon
-from app.theme.notifier import ThemeNotifier
 from app.theme.theme import CARD_RADIUS
 from app.widgets.action_bar import BarAction, VerbButton
 from app.widgets.button import ButtonKind
@@ -41,14 +41,14 @@ class SwapBanner(Themed):
 
     pressed = Signal(object)
 
-    def __init__(self, look: ThemeNotifier) -> None:
+    def __init__(self) -> None:
         super().__init__()
-        self._look, self._is_compact = look, False
+        self._is_compact = False
         self.setSizePolicy(QSizePolicy.Policy.Expanding, QSizePolicy.Policy.Minimum)
-        self._what = Text(look, size=SENTENCES[0], weight=SEMIBOLD, tone="caution_ink", wraps=True)
-        self._then = Text(look, size=15, tone="caution_ink", wraps=True)
-        self.use = VerbButton(look, self, is_primary=True)
-        self.check = VerbButton(look, self)
+        self._what = Text(size=SENTENCES[0], weight=SEMIBOLD, tone="caution_ink", wraps=True)
+        self._then = Text(size=15, tone="caution_ink", wraps=True)
+        self.use = VerbButton(self, is_primary=True)
+        self.check = VerbButton(self)
         words = QVBoxLayout()
         words.setSpacing(0)
         words.addStretch(1)
@@ -62,7 +62,7 @@ class SwapBanner(Themed):
         self._row = QHBoxLayout(self)
         self._row.addLayout(words, 1)
         self._row.addLayout(self._beside)
-        self._on_look_changed()
+        self._apply_theme()
         self.hide()
 
     @property
@@ -90,20 +90,20 @@ class SwapBanner(Themed):
 
     def set_compact(self, is_compact: bool) -> None:
         self._is_compact = is_compact
-        self._on_look_changed()
+        self._apply_theme()
 
     def resizeEvent(self, event: QResizeEvent) -> None:
         super().resizeEvent(event)
-        is_stacked = self.width() < self._look.theme.px(STACKED_BELOW)
+        is_stacked = self.width() < px(STACKED_BELOW)
         self._row.setDirection(QBoxLayout.Direction.TopToBottom if is_stacked else QBoxLayout.Direction.LeftToRight)
         self._fit_sentence()
 
     def minimumSizeHint(self) -> QSize:
         hint = super().minimumSizeHint()
-        return QSize(hint.width(), max(hint.height(), self._look.theme.px(self._height)))
+        return QSize(hint.width(), max(hint.height(), px(self._height)))
 
     def paintEvent(self, _event: QPaintEvent) -> None:
-        theme = self._look.theme
+        theme = current_theme()
         c, px = theme.colours, theme.px
         painter = QPainter(self)
         box = QRectF(self.rect()).adjusted(0.5, 0.5, -0.5, -0.5)
@@ -132,7 +132,7 @@ class SwapBanner(Themed):
         return 16 if self._is_compact else 24
 
     def _fit_sentence(self) -> None:
-        theme, margins = self._look.theme, self._row.contentsMargins()
+        theme, margins = current_theme(), self._row.contentsMargins()
         room = self.width() - margins.left() - margins.right()
         if self._row.direction() is QBoxLayout.Direction.LeftToRight:
             room -= self._row.spacing() + max(button.sizeHint().width() for button in self.buttons)
@@ -148,8 +148,8 @@ class SwapBanner(Themed):
         assert isinstance(button, VerbButton)
         self.pressed.emit(button.verb)
 
-    def _on_look_changed(self) -> None:
-        px = self._look.theme.px
+    def _apply_theme(self) -> None:
+        px = current_theme().px
         self._then.set_size(14 if self._is_compact else 15)
         left = self._inset + self._mark + (16 if self._is_compact else 20)
         down = 6 if self._is_compact else 10

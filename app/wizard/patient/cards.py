@@ -6,8 +6,8 @@ from PySide6.QtCore import QPointF, QRectF, QSize, Qt
 from PySide6.QtGui import QColor, QPainter, QPaintEvent, QPolygonF
 from PySide6.QtWidgets import QGridLayout, QHBoxLayout, QSizePolicy, QWidget
 
+from app.theme.current import current_theme, px
 from app.theme.icons import Icon
-from app.theme.notifier import ThemeNotifier
 from app.widgets.button import Button, ButtonKind
 from app.widgets.card import Card
 from app.widgets.heard_order import hear_as_laid_out
@@ -30,20 +30,20 @@ class LastVisit:
 class BandCard(Card):
     """The group that the patient's curves will lie on, and whether the patient is like them."""
 
-    def __init__(self, look: ThemeNotifier, curves: ReferenceCurves) -> None:
+    def __init__(self, curves: ReferenceCurves) -> None:
         self._advice = QHBoxLayout()
-        super().__init__(look, padding=20, spacing=6)
+        super().__init__(padding=20, spacing=6)
         self._ages_years = curves.ages_years
         group = tr("{n} young adults, barefoot on a treadmill at {speed} m/s. Fukuchi 2018.").format(
             n=curves.n, speed=figure_text(curves.speed_m_s, ".2f")
         )
-        self._mark = IconMark(look, Icon.INFO)
-        self._words = Text(look, size=14, wraps=True)
+        self._mark = IconMark(Icon.INFO)
+        self._words = Text(size=14, wraps=True)
         self._advice.addWidget(self._mark, 0, Qt.AlignmentFlag.AlignTop)
         self._advice.addWidget(self._words, 1)
-        self.column.addWidget(Text(look, tr("Reference"), size=16, weight=SEMIBOLD))
-        self.column.addWidget(Text(look, group, size=14, wraps=True))
-        self.column.addWidget(_BandDrawing(look, curves))
+        self.column.addWidget(Text(tr("Reference"), size=16, weight=SEMIBOLD))
+        self.column.addWidget(Text(group, size=14, wraps=True))
+        self.column.addWidget(_BandDrawing(curves))
         self.column.addLayout(self._advice)
 
     def judge(self, age: int | None) -> None:
@@ -65,17 +65,17 @@ class BandCard(Card):
             )
         self._words.setText(words)
 
-    def _on_look_changed(self) -> None:
-        super()._on_look_changed()
-        self._advice.setSpacing(self._look.theme.px(10))
+    def _apply_theme(self) -> None:
+        super()._apply_theme()
+        self._advice.setSpacing(px(10))
 
 
 class _BandDrawing(QWidget):
     """The knee of the group over one stride: one and two standard deviations in two greys."""
 
-    def __init__(self, look: ThemeNotifier, curves: ReferenceCurves) -> None:
+    def __init__(self, curves: ReferenceCurves) -> None:
         super().__init__()
-        self._look, self._curves = look, curves
+        self._curves = curves
         self.setSizePolicy(QSizePolicy.Policy.Expanding, QSizePolicy.Policy.Fixed)
         self.setAccessibleName(self._title())
         peak = int(curves.knee_mean_deg.argmax())
@@ -86,14 +86,14 @@ class _BandDrawing(QWidget):
         )
 
     def sizeHint(self) -> QSize:
-        px = self._look.theme.px
+        px = current_theme().px
         return QSize(px(200), px(DRAWING_HEIGHT))
 
     def minimumSizeHint(self) -> QSize:
         return self.sizeHint()
 
     def paintEvent(self, _event: QPaintEvent) -> None:
-        theme = self._look.theme
+        theme = current_theme()
         c, px = theme.colours, theme.px
         painter = QPainter(self)
         painter.setRenderHint(QPainter.RenderHint.Antialiasing)
@@ -126,10 +126,10 @@ class _BandDrawing(QWidget):
 class TakenCard(Card):
     """The patient who has the code that was typed."""
 
-    def __init__(self, look: ThemeNotifier) -> None:
-        super().__init__(look, padding=20, spacing=12)
-        self._title = Text(look, size=16, weight=SEMIBOLD, wraps=True)
-        self.open = Button(look, tr("Open this patient"), ButtonKind.SECONDARY, Icon.FOLDER)
+    def __init__(self) -> None:
+        super().__init__(padding=20, spacing=12)
+        self._title = Text(size=16, weight=SEMIBOLD, wraps=True)
+        self.open = Button(tr("Open this patient"), ButtonKind.SECONDARY, Icon.FOLDER)
         self.column.addWidget(self._title)
         self.column.addWidget(self.open)
 
@@ -141,11 +141,11 @@ class TakenCard(Card):
 class LastVisitCard(Card):
     """What was worn and recorded last time, and the way to have the same again."""
 
-    def __init__(self, look: ThemeNotifier) -> None:
+    def __init__(self) -> None:
         self._facts = QGridLayout()
-        super().__init__(look, padding=20, spacing=10)
-        self._title = Text(look, size=16, weight=SEMIBOLD, wraps=True)
-        self.same = Button(look, tr("Use last visit's set-up"), ButtonKind.SECONDARY, Icon.REPEAT)
+        super().__init__(padding=20, spacing=10)
+        self._title = Text(size=16, weight=SEMIBOLD, wraps=True)
+        self.same = Button(tr("Use last visit's set-up"), ButtonKind.SECONDARY, Icon.REPEAT)
         self._facts.setColumnStretch(1, 1)
         self._shown: list[Text] = []
         self.column.addWidget(self._title)
@@ -162,16 +162,16 @@ class LastVisitCard(Card):
         for row, (label, value) in enumerate(visit.facts):
             for column, text in enumerate(
                 (
-                    Text(self._look, label, size=14, tone="ink2"),
-                    Text(self._look, value, size=14, weight=MEDIUM, wraps=True),
+                    Text(label, size=14, tone="ink2"),
+                    Text(value, size=14, weight=MEDIUM, wraps=True),
                 )
             ):
                 self._facts.addWidget(text, row, column, Qt.AlignmentFlag.AlignTop)
                 self._shown.append(text)
         hear_as_laid_out(self)
 
-    def _on_look_changed(self) -> None:
-        super()._on_look_changed()
-        px = self._look.theme.px
+    def _apply_theme(self) -> None:
+        super()._apply_theme()
+        px = current_theme().px
         self._facts.setHorizontalSpacing(px(16))
         self._facts.setVerticalSpacing(px(8))

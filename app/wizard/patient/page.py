@@ -19,7 +19,7 @@ from PySide6.QtWidgets import (
 )
 
 from app.summary.reference_bands import reference_curves
-from app.theme.notifier import ThemeNotifier
+from app.theme.current import current_theme
 from app.widgets.card import Card
 from app.widgets.chips import Chips
 from app.widgets.field import Field, NumberField
@@ -70,31 +70,28 @@ class PatientPage(Themed):
     open_pressed = Signal(str)
     same_set_up_pressed = Signal()
 
-    def __init__(self, look: ThemeNotifier, today: date | None = None) -> None:
+    def __init__(self, today: date | None = None) -> None:
         super().__init__()
-        self._look = look
         self._year = (today or date.today()).year
         self._shown = PatientDraft()
         self._taken_code = ""
         self._is_compact = False
-        self._title = Text(look, tr("Patient details"), size=26, weight=SEMIBOLD, wraps=True)
+        self._title = Text(tr("Patient details"), size=26, weight=SEMIBOLD, wraps=True)
         self._subtitle = Text(
-            look,
             tr("Only the code is required. The other entries select the reference and are printed."),
             size=15,
             tone="ink2",
             wraps=True,
         )
-        self._saved = Text(look, size=14, tone="ink2")
-        self.code = Field(look, tr("Patient code"), is_code=True, most=MOST_OF_CODE)
+        self._saved = Text(size=14, tone="ink2")
+        self.code = Field(tr("Patient code"), is_code=True, most=MOST_OF_CODE)
         self.sex = Segmented(
-            look, tr("Sex"), [("female", tr("Female"), ""), ("male", tr("Male"), ""), ("", tr("Not recorded"), "")]
+            tr("Sex"), [("female", tr("Female"), ""), ("male", tr("Male"), ""), ("", tr("Not recorded"), "")]
         )
-        self.birth_year = NumberField(look, tr("Birth year"), low=1900, high=self._year, is_optional=True)
-        self.height_cm = NumberField(look, tr("Height"), low=30, high=280, decimals=1, unit=tr("cm"), is_optional=True)
-        self.mass_kg = NumberField(look, tr("Weight"), low=1, high=500, decimals=1, unit=tr("kg"), is_optional=True)
+        self.birth_year = NumberField(tr("Birth year"), low=1900, high=self._year, is_optional=True)
+        self.height_cm = NumberField(tr("Height"), low=30, high=280, decimals=1, unit=tr("cm"), is_optional=True)
+        self.mass_kg = NumberField(tr("Weight"), low=1, high=500, decimals=1, unit=tr("kg"), is_optional=True)
         self.side = Segmented(
-            look,
             tr("Affected or prosthetic side"),
             [
                 ("none", tr("Neither"), ""),
@@ -104,24 +101,24 @@ class PatientPage(Themed):
             ],
         )
         self.limb = Segmented(
-            look, tr("This side is"), [("affected", tr("Affected"), ""), ("prosthetic", tr("Prosthetic"), "")]
+            tr("This side is"), [("affected", tr("Affected"), ""), ("prosthetic", tr("Prosthetic"), "")]
         )
-        self.device = Field(look, tr("Device"), is_optional=True, most=MOST_OF_DEVICE)
+        self.device = Field(tr("Device"), is_optional=True, most=MOST_OF_DEVICE)
         self.ankles = {
-            Side.LEFT: Chips(look, tr("Left prosthetic foot"), [("none", tr("Left foot has no ankle joint"))]),
-            Side.RIGHT: Chips(look, tr("Right prosthetic foot"), [("none", tr("Right foot has no ankle joint"))]),
+            Side.LEFT: Chips(tr("Left prosthetic foot"), [("none", tr("Left foot has no ankle joint"))]),
+            Side.RIGHT: Chips(tr("Right prosthetic foot"), [("none", tr("Right foot has no ankle joint"))]),
         }
         aids = [(aid, tr(words)) for aid, words in AIDS.items()]
-        self.aids = Chips(look, tr("Aids and footwear"), aids, rivals=("shoes", "barefoot"))
-        self._band = BandCard(look, reference_curves())
-        self._taken = TakenCard(look)
-        self._last = LastVisitCard(look)
+        self.aids = Chips(tr("Aids and footwear"), aids, rivals=("shoes", "barefoot"))
+        self._band = BandCard(reference_curves())
+        self._taken = TakenCard()
+        self._last = LastVisitCard()
         self._build()
         self._connect()
         self.show_draft(PatientDraft())
         self.show_last_visit(None)
         self._taken.hide()
-        self._on_look_changed()
+        self._apply_theme()
 
     @property
     def draft(self) -> PatientDraft:
@@ -172,7 +169,7 @@ class PatientPage(Themed):
         """Lay the cards below one another where the window is small."""
         self._is_compact = is_compact
         self._cards.setDirection(_DOWN if is_compact else _ACROSS)
-        self._on_look_changed()
+        self._apply_theme()
 
     def resizeEvent(self, event: QResizeEvent) -> None:
         super().resizeEvent(event)
@@ -225,22 +222,21 @@ class PatientPage(Themed):
         self._fit()
 
     def _build(self) -> None:
-        self._limb_box = _Captioned(self._look, self.limb, tr("This side is"))
+        self._limb_box = _Captioned(self.limb, tr("This side is"))
         ankles = QWidget()
         self._ankle_row = QBoxLayout(_ACROSS, ankles)
         self._ankle_row.setContentsMargins(0, 0, 0, 0)
         for chips in self.ankles.values():
             self._ankle_row.addWidget(chips, 1)
         self._ankle_box = _Captioned(
-            self._look,
             ankles,
             tr("Prosthetic foot"),
             tr("without ankle joint, the angle is called “foot relative to shank”"),
         )
-        sex = _Captioned(self._look, self.sex, tr("Sex"))
-        side = _Captioned(self._look, self.side, tr("Affected or prosthetic side"))
-        aids = _Captioned(self._look, self.aids, tr("Aids and footwear"), tr("choose all that apply"))
-        self._form = Card(self._look, padding=24, spacing=16)
+        sex = _Captioned(self.sex, tr("Sex"))
+        side = _Captioned(self.side, tr("Affected or prosthetic side"))
+        aids = _Captioned(self.aids, tr("Aids and footwear"), tr("choose all that apply"))
+        self._form = Card(padding=24, spacing=16)
         self._rows = [
             self._row(self.code, side),  # the side decides what results, report and bands are about
             self._row(self._limb_box, self.device),
@@ -251,7 +247,7 @@ class PatientPage(Themed):
         ]
         for number, row in enumerate(self._rows):
             if number == 2:
-                self._form.column.addWidget(_FieldLine(self._look))
+                self._form.column.addWidget(_FieldLine())
             self._form.column.addLayout(row)
         self._form.column.addStretch(1)
         self._beside = QWidget()
@@ -315,7 +311,7 @@ class PatientPage(Themed):
 
     def _fit(self) -> None:
         """Set the fields of a row below one another where they would be too narrow."""
-        scale, px = self._look.theme.scale, self._look.theme.px
+        scale, px = current_theme().scale, current_theme().px
         side = max(px(24), (self.width() - px(WIDEST)) // 2)
         self._column.setContentsMargins(side, px(20), side, px(20))
         room = self.width() / scale - 48 - (0 if self._is_compact else BAND_CARD_WIDTH + 16)
@@ -343,8 +339,8 @@ class PatientPage(Themed):
     def _on_open_clicked(self) -> None:
         self.open_pressed.emit(self._taken_code)
 
-    def _on_look_changed(self) -> None:
-        px = self._look.theme.px
+    def _apply_theme(self) -> None:
+        px = current_theme().px
         self._column.setSpacing(px(4))
         self._words.setContentsMargins(0, 0, 0, px(12))
         self._words.setSpacing(px(16))
@@ -359,26 +355,25 @@ class PatientPage(Themed):
 class _Captioned(Themed):
     """A control under its label, as a field has it, with a few words at the label's right."""
 
-    def __init__(self, look: ThemeNotifier, content: QWidget, caption: str, note: str = "") -> None:
+    def __init__(self, content: QWidget, caption: str, note: str = "") -> None:
         super().__init__()
-        self._look = look
         self.setSizePolicy(QSizePolicy.Policy.Expanding, QSizePolicy.Policy.Maximum)
-        self._note = Text(look, note, size=12, tone="ink2", wraps=True)
+        self._note = Text(note, size=12, tone="ink2", wraps=True)
         self._note.setAlignment(Qt.AlignmentFlag.AlignRight | Qt.AlignmentFlag.AlignBottom)
         self._above = QHBoxLayout()
-        self._above.addWidget(Text(look, caption, size=14, weight=MEDIUM))
+        self._above.addWidget(Text(caption, size=14, weight=MEDIUM))
         self._above.addWidget(self._note, 1)
         self._column = QVBoxLayout(self)
         self._column.setContentsMargins(0, 0, 0, 0)
         self._column.addLayout(self._above)
         self._column.addWidget(content)
-        self._on_look_changed()
+        self._apply_theme()
 
     def set_note(self, note: str) -> None:
         self._note.setText(note)
 
-    def _on_look_changed(self) -> None:
-        px = self._look.theme.px
+    def _apply_theme(self) -> None:
+        px = current_theme().px
         self._column.setSpacing(px(6))
         self._above.setSpacing(px(8))
 
@@ -386,16 +381,15 @@ class _Captioned(Themed):
 class _FieldLine(QWidget):
     """A hairline between what the session is about and what chooses the reference."""
 
-    def __init__(self, look: ThemeNotifier) -> None:
+    def __init__(self) -> None:
         super().__init__()
-        self._look = look
         self.setSizePolicy(QSizePolicy.Policy.Expanding, QSizePolicy.Policy.Fixed)
 
     def sizeHint(self) -> QSize:
         return QSize(0, 1)
 
     def paintEvent(self, _event: QPaintEvent) -> None:
-        QPainter(self).fillRect(self.rect(), QColor(self._look.theme.colours.line))
+        QPainter(self).fillRect(self.rect(), QColor(current_theme().colours.line))
 
 
 def _typed(line: NumberField, before: float | None) -> float | None:

@@ -7,7 +7,6 @@ from typing import TYPE_CHECKING
 import numpy as np
 from PySide6.QtCore import QObject
 
-from app.theme.notifier import ThemeNotifier
 from app.widgets.action_bar import BarAction, BarState
 from app.widgets.rail_row import StepState
 from app.wizard.patient.cards import LastVisit
@@ -33,8 +32,8 @@ class PatientStep(Step):
 
     id = StepId.PATIENT
 
-    def __init__(self, look: ThemeNotifier, visit: "Visit", parent: QObject | None = None) -> None:
-        super().__init__(look, visit, parent)
+    def __init__(self, visit: "Visit", parent: QObject | None = None) -> None:
+        super().__init__(visit, parent)
         self._page: PatientPage | None = None
         self._shown_id: UUID | None = None  # whose facts fill the page
         self._last: StoredSession | None = None
@@ -52,7 +51,7 @@ class PatientStep(Step):
     @property
     def page(self) -> PatientPage:
         if self._page is None:
-            page = self._page = PatientPage(self._look)
+            page = self._page = PatientPage()
             page.edited.connect(self._on_edited)
             page.code_committed.connect(self._on_code_committed)
             page.open_pressed.connect(self._on_open_pressed)

@@ -6,8 +6,8 @@ from PySide6.QtCore import QEvent, QObject, QSignalBlocker, Qt, QTimer, Signal
 from PySide6.QtGui import QKeyEvent
 from PySide6.QtWidgets import QPlainTextEdit, QVBoxLayout
 
+from app.theme.current import current_theme
 from app.theme.icons import Icon
-from app.theme.notifier import ThemeNotifier
 from app.widgets.button import Button, ButtonKind
 from app.widgets.text import SEMIBOLD, Text
 from app.widgets.themed import Themed
@@ -43,20 +43,20 @@ class CommentEditor(Themed):
     confirmed = Signal(str)
     left = Signal()
 
-    def __init__(self, look: ThemeNotifier) -> None:
+    def __init__(self) -> None:
         super().__init__()
-        self._look, self.state, self._known = look, CommentState.EMPTY, ""
+        self.state, self._known = CommentState.EMPTY, ""
         self.field = QPlainTextEdit()
         self.field.setAccessibleName(tr("Clinical comment, optional, printed once confirmed"))
         self.field.setTabChangesFocus(True)
         self.field.installEventFilter(self)
-        self.note = Text(look, size=13, tone="ink2", wraps=True)
+        self.note = Text(size=13, tone="ink2", wraps=True)
         self.note.setAlignment(Qt.AlignmentFlag.AlignTop)
-        self.button = Button(look, tr("Confirm comment"), ButtonKind.SECONDARY, Icon.CHECK, tr("Ctrl Enter"))
+        self.button = Button(tr("Confirm comment"), ButtonKind.SECONDARY, Icon.CHECK, tr("Ctrl Enter"))
         column = QVBoxLayout(self)
         column.setContentsMargins(0, 0, 0, 0)
         for part in (
-            Text(look, tr("Clinical comment"), size=20, weight=SEMIBOLD), self.field, self.note, self.button,
+            Text(tr("Clinical comment"), size=20, weight=SEMIBOLD), self.field, self.note, self.button,
         ):  # fmt: skip
             column.addWidget(part)
         self._column = column
@@ -67,7 +67,7 @@ class CommentEditor(Themed):
         self.field.textChanged.connect(self._on_typed)
         self.button.clicked.connect(self._confirm)
         self.show_comment("", CommentState.EMPTY)
-        self._on_look_changed()
+        self._apply_theme()
 
     @property
     def words(self) -> str:
@@ -135,9 +135,9 @@ class CommentEditor(Themed):
     def _on_paused(self) -> None:
         self.edited.emit(self.words)
 
-    def _on_look_changed(self) -> None:
-        px = self._look.theme.px
+    def _apply_theme(self) -> None:
+        px = current_theme().px
         self._column.setSpacing(px(8))
         self.field.setFixedHeight(px(HEIGHT))
         self.note.setMinimumHeight(px(NOTE_HEIGHT))  # of two lines, so that nothing moves with the words
-        self.field.setFont(self._look.theme.font(14))
+        self.field.setFont(current_theme().font(14))

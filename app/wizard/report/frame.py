@@ -2,7 +2,6 @@
 
 from PySide6.QtWidgets import QStackedWidget
 
-from app.theme.notifier import ThemeNotifier
 from app.widgets.sentence_page import SentencePage
 from app.wizard.report.page import ReportPage
 
@@ -10,10 +9,10 @@ from app.wizard.report.page import ReportPage
 class ReportFrame(QStackedWidget):
     """The report, or what is in its place."""
 
-    def __init__(self, look: ThemeNotifier) -> None:
+    def __init__(self) -> None:
         super().__init__()
-        self.sentence = SentencePage(look)
-        self.report = ReportPage(look)
+        self.sentence = SentencePage()
+        self.report = ReportPage()
         for page in (self.sentence, self.report):
             self.addWidget(page)
 

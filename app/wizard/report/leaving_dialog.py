@@ -9,7 +9,7 @@ from PySide6.QtCore import Qt, Signal
 from PySide6.QtGui import QColor, QPalette
 from PySide6.QtWidgets import QDialog, QFrame, QGridLayout, QHBoxLayout, QVBoxLayout, QWidget
 
-from app.theme.notifier import ThemeNotifier
+from app.theme.current import current_theme, px
 from app.widgets.button import Button, ButtonKind
 from app.widgets.chips import Chips
 from app.widgets.reading_area import ReadingArea
@@ -25,14 +25,13 @@ class LeavingDialog(QDialog):
 
     confirmed = Signal(object)  # frozenset of keys: what was typed freely and leaves
 
-    def __init__(self, look: ThemeNotifier, previews: Mapping[frozenset[str], Rows], parent: QWidget) -> None:
+    def __init__(self, previews: Mapping[frozenset[str], Rows], parent: QWidget) -> None:
         super().__init__(parent)
-        self._look, self._previews = look, previews
+        self._previews = previews
         self.setWindowTitle(tr("Export without the name"))
         self.setAttribute(Qt.WidgetAttribute.WA_DeleteOnClose)
-        self._title = Text(look, tr("Export without the name"), size=20, weight=SEMIBOLD, wraps=True)
+        self._title = Text(tr("Export without the name"), size=20, weight=SEMIBOLD, wraps=True)
         self._lead = Text(
-            look,
             tr(
                 "Besides measured values, the XLSX, C3D, OpenSim and FHIR files contain only what is listed "
                 "here. The report saved with them shows the patient code and belongs in the patient's file. "
@@ -41,20 +40,20 @@ class LeavingDialog(QDialog):
             tone="ink2",
             wraps=True,
         )
-        self._also = Text(look, tr("Free text may contain a name: exported only if ticked"), weight=MEDIUM, wraps=True)
-        self.typed = Chips(look, tr("Export as typed"), self._options())
+        self._also = Text(tr("Free text may contain a name: exported only if ticked"), weight=MEDIUM, wraps=True)
+        self.typed = Chips(tr("Export as typed"), self._options())
         self._table = QWidget()
         self._grid = QGridLayout(self._table)
         self._grid.setColumnStretch(1, 1)
         self._grid.setContentsMargins(0, 0, 0, 0)
-        self.go = Button(look, tr("Choose the folder"), ButtonKind.PRIMARY)
-        self.cancel = Button(look, tr("Cancel"), ButtonKind.SECONDARY)
+        self.go = Button(tr("Choose the folder"), ButtonKind.PRIMARY)
+        self.cancel = Button(tr("Cancel"), ButtonKind.SECONDARY)
         self._build()
         self.typed.turned.connect(self._show)
         self.go.clicked.connect(self._on_go_clicked)
         self.cancel.clicked.connect(self.reject)
         self._show()
-        self.resize(look.theme.px(SIZE[0]), look.theme.px(SIZE[1]))
+        self.resize(px(SIZE[0]), px(SIZE[1]))
 
     @property
     def shown(self) -> list[tuple[str, str]]:
@@ -85,7 +84,7 @@ class LeavingDialog(QDialog):
             column.addWidget(part)
         column.addWidget(scroll, 1)
         column.addLayout(buttons)
-        px, colours = self._look.theme.px, self._look.theme.colours
+        px, colours = current_theme().px, current_theme().colours
         column.setContentsMargins(px(24), px(20), px(24), px(20))
         column.setSpacing(px(12))
         palette = self.palette()
@@ -98,8 +97,8 @@ class LeavingDialog(QDialog):
                 widget.hide()
                 widget.deleteLater()
         for row, (name, value) in enumerate(self._previews[frozenset(self.typed.chosen)]):
-            self._grid.addWidget(Text(self._look, tr(name), tone="ink2"), row, 0, Qt.AlignmentFlag.AlignTop)
-            self._grid.addWidget(Text(self._look, value, wraps=True), row, 1, Qt.AlignmentFlag.AlignTop)
+            self._grid.addWidget(Text(tr(name), tone="ink2"), row, 0, Qt.AlignmentFlag.AlignTop)
+            self._grid.addWidget(Text(value, wraps=True), row, 1, Qt.AlignmentFlag.AlignTop)
         self._grid.setRowStretch(self._grid.rowCount(), 1)
 
     def _word(self, row: int, column: int) -> str:

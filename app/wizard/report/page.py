@@ -6,7 +6,7 @@ from uuid import UUID
 from PySide6.QtCore import QEvent, Signal
 from PySide6.QtWidgets import QBoxLayout, QFrame, QHBoxLayout, QSizePolicy, QWidget
 
-from app.theme.notifier import ThemeNotifier
+from app.theme.current import current_theme, px
 from app.widgets.card import Card
 from app.widgets.chips import Chips
 from app.widgets.choice import Choice
@@ -40,19 +40,18 @@ class ReportPage(Themed):
     options_changed = Signal()
     sharper_required = Signal()
 
-    def __init__(self, look: ThemeNotifier) -> None:
+    def __init__(self) -> None:
         super().__init__()
-        self._look, self._is_narrow = look, False
-        self.sheets, self.small = Sheets(look), SmallSheets(look)
+        self._is_narrow = False
+        self.sheets, self.small = Sheets(), SmallSheets()
         self.reading = ReadingArea()
         self.reading.setFrameShape(QFrame.Shape.NoFrame)
         self.reading.setWidgetResizable(True)
         self.reading.setWidget(self.sheets)
         self.reading.setAccessibleName(tr("Report pages"))
-        self.editor = CommentEditor(look)
+        self.editor = CommentEditor()
         self.comment = self.editor.field
         self.formats = Chips(
-            look,
             tr("Files to export"),
             [
                 ("csv", tr("CSV")),
@@ -65,22 +64,22 @@ class ReportPage(Themed):
             ],
         )
         self.formats.choose(FIRST_CHOICE)
-        self.paper = Segmented(look, tr("Paper"), [("a4", tr("A4"), ""), ("letter", tr("Letter"), "")])
-        self.earlier = Choice(look, tr("Compare with"))
+        self.paper = Segmented(tr("Paper"), [("a4", tr("A4"), ""), ("letter", tr("Letter"), "")])
+        self.earlier = Choice(tr("Compare with"))
         self.earlier.let_shrink(WORDS_WIDTH - 2 * PADDING, WORDS_WIDTH - 2 * PADDING)  # conditions are typed
         self.earlier.setSizePolicy(QSizePolicy.Policy.Preferred, QSizePolicy.Policy.Fixed)  # as wide as its card
-        self._earlier_title = Text(look, tr("Compare with"), size=16, weight=SEMIBOLD)
-        self._also = Text(look, tr("Files to export"), size=16, weight=SEMIBOLD)
-        self._sheet = Text(look, tr("Paper"), size=16, weight=SEMIBOLD)
-        self.added = Chips(look, tr("Extra pages"), [("course", tr("Progress so far"))])
+        self._earlier_title = Text(tr("Compare with"), size=16, weight=SEMIBOLD)
+        self._also = Text(tr("Files to export"), size=16, weight=SEMIBOLD)
+        self._sheet = Text(tr("Paper"), size=16, weight=SEMIBOLD)
+        self.added = Chips(tr("Extra pages"), [("course", tr("Progress so far"))])
         self.added.choose(("course",))
-        self._added_title = Text(look, tr("Extra pages"), size=16, weight=SEMIBOLD)
-        self._language_title = Text(look, tr("Patient letter"), size=16, weight=SEMIBOLD)
+        self._added_title = Text(tr("Extra pages"), size=16, weight=SEMIBOLD)
+        self._language_title = Text(tr("Patient letter"), size=16, weight=SEMIBOLD)
         languages = [(key, name, "") for key, name in LANGUAGES.items()]
-        self.language = Segmented(look, tr("Language of the patient letter"), languages)
+        self.language = Segmented(tr("Language of the patient letter"), languages)
         if spoken_language() in LANGUAGES:
             self.language.choose(spoken_language())
-        self._card = Card(look, padding=PADDING, spacing=12)
+        self._card = Card(padding=PADDING, spacing=12)
         above: list[QWidget] = [self.editor, self._earlier_title, self.earlier]
         for part in above:
             self._card.column.addWidget(part)
@@ -111,7 +110,7 @@ class ReportPage(Themed):
         self.earlier.activated.connect(self.options_changed)
         self.sheets.sharper_required.connect(self.sharper_required)
         self.show_visits([])
-        self._on_look_changed()
+        self._apply_theme()
 
     @property
     def tab_order(self) -> list[QWidget]:
@@ -129,7 +128,7 @@ class ReportPage(Themed):
         way = QBoxLayout.Direction.TopToBottom if is_narrow else QBoxLayout.Direction.LeftToRight
         self._row.setDirection(way)
         self.small.setVisible(not is_narrow)
-        self.reading.setMinimumHeight(self._look.theme.px(360) if is_narrow else 0)
+        self.reading.setMinimumHeight(px(360) if is_narrow else 0)
         self._fit_card()
 
     def event(self, event: QEvent) -> bool:
@@ -139,7 +138,7 @@ class ReportPage(Themed):
         return is_done
 
     def _fit_card(self) -> None:
-        words = max(self._look.theme.px(WORDS_WIDTH), self._card.minimumSizeHint().width())
+        words = max(px(WORDS_WIDTH), self._card.minimumSizeHint().width())
         self._card.setMinimumWidth(words)
         self._card.setMaximumWidth(QWIDGETSIZE_MAX if self._is_narrow else words)
 
@@ -183,8 +182,8 @@ class ReportPage(Themed):
         if begun and begun[-1] != self.small.number:
             self.small.mark(begun[-1])
 
-    def _on_look_changed(self) -> None:
-        px = self._look.theme.px
+    def _apply_theme(self) -> None:
+        px = current_theme().px
         self._row.setContentsMargins(px(24), px(16), px(24), px(16))
         self._row.setSpacing(px(16))
         self._pages.setSpacing(px(8))

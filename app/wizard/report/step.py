@@ -22,7 +22,6 @@ from app.summary.request import AnalysedVisit, ReportRequest, default_walks
 from app.system.logs import version_of
 from app.system.progress import Report
 from app.theme.icons import Icon
-from app.theme.notifier import ThemeNotifier
 from app.widgets.action_bar import BarAction, BarState
 from app.widgets.folder_dialog import ask_for_new_file, ask_for_new_folder
 from app.widgets.rail_row import StepState
@@ -57,10 +56,8 @@ MOST_LINES = 3  # of what was not written: a banner holds no more
 class ReportStep(Step):
     id = StepId.REPORT
 
-    def __init__(
-        self, look: ThemeNotifier, visit: "Visit", controller: LibraryController, parent: QObject | None = None
-    ) -> None:
-        super().__init__(look, visit, parent)
+    def __init__(self, visit: "Visit", controller: LibraryController, parent: QObject | None = None) -> None:
+        super().__init__(visit, parent)
         self._controller = controller
         self._frame: ReportFrame | None = None
         self.dialog: QFileDialog | None = None
@@ -84,7 +81,7 @@ class ReportStep(Step):
     @property
     def page(self) -> "ReportFrame":
         if self._frame is None:
-            self._frame = ReportFrame(self._look)
+            self._frame = ReportFrame()
             self.comments.show_on(self._frame.report.editor)
             self._frame.report.options_changed.connect(self._on_options_changed)
             self._frame.report.sharper_required.connect(self._draw)
@@ -173,7 +170,7 @@ class ReportStep(Step):
 
     def _on_previews(self, previews: "Mapping[frozenset[str], Rows]") -> None:
         """Show what leaves without the name before anybody states where to."""
-        dialog = LeavingDialog(self._look, previews, self.page)
+        dialog = LeavingDialog(previews, self.page)
         dialog.confirmed.connect(self._on_leaving_confirmed)
         dialog.open()
 

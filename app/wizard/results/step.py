@@ -17,7 +17,6 @@ from app.summary.course_lanes import CourseVisit
 from app.summary.report_dates import date_of
 from app.summary.visits import WalkedVisit, conditions_in_words, parts_of_visits, visits_by_condition
 from app.theme.icons import Icon
-from app.theme.notifier import ThemeNotifier
 from app.widgets.action_bar import BarAction, BarState
 from app.widgets.page_stack import PageStack
 from app.widgets.rail_row import StepState
@@ -55,8 +54,8 @@ class Shown(Enum):
 class ResultsStep(Step):
     id = StepId.RESULTS
 
-    def __init__(self, look: ThemeNotifier, visit: "Visit", parent: QObject | None = None) -> None:
-        super().__init__(look, visit, parent)
+    def __init__(self, visit: "Visit", parent: QObject | None = None) -> None:
+        super().__init__(visit, parent)
         self._frame: _ResultsFrame | None = None
         self._shown: Analysis | None = None
         self._held: tuple[object, Analysis] | None = None  # by the page of results, which may be out of sight
@@ -74,7 +73,7 @@ class ResultsStep(Step):
     @property
     def page(self) -> "_ResultsFrame":
         if self._frame is None:
-            self._frame = _ResultsFrame(self._look, self._visit)
+            self._frame = _ResultsFrame(self._visit)
             self._frame.sentence.pressed.connect(self._on_sentence_pressed)
             self._frame.behind.refused.connect(self.reported)
             self._frame.behind.writing.connect(self._on_figures_requested)
@@ -429,12 +428,11 @@ class ResultsStep(Step):
 class _ResultsFrame(PageStack):
     """The results, or what is in their place."""
 
-    def __init__(self, look: ThemeNotifier, visit: "Visit") -> None:
+    def __init__(self, visit: "Visit") -> None:
         super().__init__()
-        self._look = look
-        self.behind = DetailPages(look, self, visit.looking, visit.comparing, self)
-        self.sentence = SentencePage(look)
-        self.working = WorkingPage(look)
+        self.behind = DetailPages(self, visit.looking, visit.comparing, self)
+        self.sentence = SentencePage()
+        self.working = WorkingPage()
         self.working.stop.hide()  # an analysis takes a second; there is nothing to go back to
         self._parts: ResultParts | None = None
         self._results: ResultPage | None = None
@@ -450,7 +448,7 @@ class _ResultsFrame(PageStack):
             return False
         from app.results.result_parts import ResultParts
 
-        self._parts = self._parts or ResultParts(self._look)
+        self._parts = self._parts or ResultParts()
         if not self._parts.make_next():
             self.results()
         return True
@@ -463,14 +461,14 @@ class _ResultsFrame(PageStack):
         if self._results is None:
             from app.results.result_page import ResultPage  # its imports take a second
 
-            self._results = ResultPage(self._look, self._parts)
+            self._results = ResultPage(self._parts)
             self._results.set_room(*self._room)
             self.addWidget(self._results)
         return self._results
 
     def correct(self) -> CorrectPage:
         if self._correct is None:
-            self._correct = CorrectPage(self._look)
+            self._correct = CorrectPage()
             self._correct.set_room(*self._room)
             self.addWidget(self._correct)
         return self._correct

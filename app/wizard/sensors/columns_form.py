@@ -10,8 +10,8 @@ from enum import StrEnum
 from PySide6.QtCore import QSignalBlocker, Signal
 from PySide6.QtWidgets import QBoxLayout, QGridLayout, QHBoxLayout, QVBoxLayout, QWidget
 
+from app.theme.current import current_theme, px
 from app.theme.icons import Icon
-from app.theme.notifier import ThemeNotifier
 from app.widgets.button import Button, ButtonKind
 from app.widgets.card import Card
 from app.widgets.choice import Choice
@@ -70,11 +70,10 @@ class ColumnsForm(Themed):
     changed = Signal()
     back_pressed = Signal()
 
-    def __init__(self, look: ThemeNotifier) -> None:
+    def __init__(self) -> None:
         super().__init__()
-        self._look = look
-        self._title = Text(look, tr("Meaning of the columns"), 20, SEMIBOLD, wraps=True)
-        self._where = Text(look, size=14, tone="ink2", wraps=True)
+        self._title = Text(tr("Meaning of the columns"), 20, SEMIBOLD, wraps=True)
+        self._where = Text(size=14, tone="ink2", wraps=True)
         self._room = 0
         self.meanings: list[Choice] = []
         self._numbers: list[Text] = []
@@ -98,11 +97,11 @@ class ColumnsForm(Themed):
         )
         self.rate = self._choice(tr("Angular rate in"), {"deg/s": "deg/s", "rad/s": "rad/s", "mdeg/s": "mdeg/s"})
         self.force = self._choice(tr("Acceleration in"), {"g": "g", "m/s2": "m/s²", "mg": "mg"})
-        self.notice = Notice(look, size=16)
-        self.back = Button(look, tr("Other sources"), ButtonKind.QUIET)
+        self.notice = Notice(size=16)
+        self.back = Button(tr("Other sources"), ButtonKind.QUIET)
         self._build()
         self.back.clicked.connect(self.back_pressed)
-        self._on_look_changed()
+        self._apply_theme()
 
     @property
     def reported(self) -> ColumnsReported:
@@ -157,7 +156,7 @@ class ColumnsForm(Themed):
         self.notice.show_message(icon if what else None, what, then, is_caution=bool(what) and not is_right)
 
     def _choice(self, label: str, options: dict[str, str]) -> Choice:
-        choice = Choice(self._look, label)
+        choice = Choice(label)
         for key, words in options.items():
             choice.addItem(words, key)
         choice.activated.connect(self.changed)
@@ -174,7 +173,7 @@ class ColumnsForm(Themed):
         self._numbers, self._values, self.meanings = [], [], []
         for number in range(count):
             label = tr("Column {number}").format(number=number + 1)
-            name, value = Text(self._look, label, 15), Text(self._look, "", 15, SEMIBOLD)
+            name, value = Text(label, 15), Text("", 15, SEMIBOLD)
             choice = self._choice(label, _meanings())
             for place, widget in enumerate((name, value, choice)):
                 self._grid.addWidget(widget, number, place)
@@ -188,12 +187,12 @@ class ColumnsForm(Themed):
 
     def _fit(self) -> None:
         needed = self._grid.minimumSize().width() + self._units.minimumSize().width() + self._body.spacing()
-        is_narrow = needed > self._room - 2 * self._look.theme.px(PADDING)
+        is_narrow = needed > self._room - 2 * px(PADDING)
         way = QBoxLayout.Direction.TopToBottom if is_narrow else QBoxLayout.Direction.LeftToRight
         self._body.setDirection(way)
 
     def _build(self) -> None:
-        self._card = Card(self._look)
+        self._card = Card()
         self._heading = QVBoxLayout()
         self._heading.addWidget(self._title)
         self._heading.addWidget(self._where)
@@ -201,7 +200,7 @@ class ColumnsForm(Themed):
         self._grid.setColumnStretch(1, 1)
         self._units = QGridLayout()
         for number, choice in enumerate((self.time, self.wraps, self.rate, self.force)):
-            self._units.addWidget(Text(self._look, choice.accessibleName(), 15), number, 0)
+            self._units.addWidget(Text(choice.accessibleName(), 15), number, 0)
             self._units.addWidget(choice, number, 1)
         self._units.setRowStretch(4, 1)
         self._body = QBoxLayout(QBoxLayout.Direction.LeftToRight)
@@ -219,8 +218,8 @@ class ColumnsForm(Themed):
         self._column.addWidget(self._card, 1)
         self._column.addLayout(verbs)
 
-    def _on_look_changed(self) -> None:
-        px = self._look.theme.px
+    def _apply_theme(self) -> None:
+        px = current_theme().px
         self._column.setSpacing(px(12))
         self._heading.setSpacing(px(4))
         self._body.setSpacing(px(32))

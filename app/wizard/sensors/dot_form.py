@@ -11,8 +11,8 @@ from PySide6.QtCore import QModelIndex, QRectF, QSignalBlocker, Qt, Signal
 from PySide6.QtGui import QColor, QFontMetrics, QKeyEvent, QPainter
 from PySide6.QtWidgets import QBoxLayout, QHBoxLayout, QVBoxLayout, QWidget
 
+from app.theme.current import current_theme
 from app.theme.icons import Icon, paint_icon
-from app.theme.notifier import ThemeNotifier
 from app.theme.theme import Theme
 from app.widgets.button import Button, ButtonKind
 from app.widgets.card import Card
@@ -131,16 +131,16 @@ class DotForm(Themed):
     changed = Signal()
     back_pressed = Signal()
 
-    def __init__(self, look: ThemeNotifier) -> None:
+    def __init__(self) -> None:
         super().__init__()
-        self._look, self._is_narrow = look, False
+        self._is_narrow = False
         self._room, self._is_window_narrow = math.inf, False
         self._lines: tuple[DotLine, ...] = ()
-        self._title = Text(look, size=20, weight=SEMIBOLD, wraps=True)
-        self._lead = Text(look, size=14, tone="ink2", wraps=True)
-        self.list = DotList(look, tr("Sensors found"), row=ROW, head=HEAD, padding=PADDING, is_list=True)
+        self._title = Text(size=20, weight=SEMIBOLD, wraps=True)
+        self._lead = Text(size=14, tone="ink2", wraps=True)
+        self.list = DotList(tr("Sensors found"), row=ROW, head=HEAD, padding=PADDING, is_list=True)
         self.list.setAccessibleDescription(tr("Press Space to tick or untick a sensor, I to make its LED blink."))
-        self.identify = Button(look, tr("Identify"), ButtonKind.SECONDARY, Icon.LIGHT, key="I", height=44)
+        self.identify = Button(tr("Identify"), ButtonKind.SECONDARY, Icon.LIGHT, key="I", height=44)
         self.walks = self._choice(
             tr("Walks"),
             {
@@ -151,13 +151,13 @@ class DotForm(Themed):
         )
         self.rate = self._choice(tr("Live"), {60: tr("60 Hz"), 30: tr("30 Hz")})
         self.profile = self._choice(tr("Filter"), {0: tr("General"), 1: tr("Dynamic, for fast and jerky motion")})
-        self._consequence = Text(look, size=14, tone="ink2", wraps=True)
-        self.notice = Notice(look, size=16)
-        self.back = Button(look, tr("Other sources"), ButtonKind.QUIET)
+        self._consequence = Text(size=14, tone="ink2", wraps=True)
+        self.notice = Notice(size=16)
+        self.back = Button(tr("Other sources"), ButtonKind.QUIET)
         self._build()
         self._connect()
         self._show_consequence()
-        self._on_look_changed()
+        self._apply_theme()
 
     @property
     def tab_order(self) -> list[QWidget]:
@@ -225,7 +225,7 @@ class DotForm(Themed):
 
     def _fit(self) -> None:
         """See whether notes have the room beside the choices to wrap into two lines, which a row holds."""
-        metrics = QFontMetrics(self._look.theme.font(14))
+        metrics = QFontMetrics(current_theme().font(14))
         note = max((metrics.horizontalAdvance(line.note) for line in self._lines), default=0)
         least = self.list.minimumSizeHint().width() + NOTE_SHARE * note + self._choices.minimumSize().width()
         margins = self._card.column.contentsMargins()
@@ -237,7 +237,7 @@ class DotForm(Themed):
             self._body.setDirection(way)
 
     def _choice(self, label: str, options: dict[int, str]) -> Choice:
-        choice = Choice(self._look, label)
+        choice = Choice(label)
         for key, words in options.items():
             choice.addItem(words, key)
         return choice
@@ -255,7 +255,7 @@ class DotForm(Themed):
         return TableRow(cells, key=number)
 
     def _build(self) -> None:
-        self._card = Card(self._look)
+        self._card = Card()
         self._heading = QVBoxLayout()
         self._heading.addWidget(self._title)
         self._heading.addWidget(self._lead)
@@ -266,7 +266,7 @@ class DotForm(Themed):
         below.addStretch(1)
         left.addLayout(below)
         for choice in (self.walks, self.rate, self.profile):
-            self._choices.addWidget(Text(self._look, choice.accessibleName(), 14, tone="ink2"))
+            self._choices.addWidget(Text(choice.accessibleName(), 14, tone="ink2"))
             self._choices.addWidget(choice)
         self._choices.addWidget(self._consequence)
         self._choices.addStretch(1)
@@ -324,8 +324,8 @@ class DotForm(Themed):
         self._show_consequence()
         self.changed.emit()
 
-    def _on_look_changed(self) -> None:
-        px = self._look.theme.px
+    def _apply_theme(self) -> None:
+        px = current_theme().px
         self._column.setSpacing(px(12))
         self._heading.setSpacing(px(4))
         self._body.setSpacing(px(32))

@@ -6,8 +6,8 @@ from dataclasses import dataclass
 from PySide6.QtCore import Signal
 from PySide6.QtWidgets import QVBoxLayout, QWidget
 
+from app.theme.current import current_theme
 from app.theme.icons import Icon
-from app.theme.notifier import ThemeNotifier
 from app.widgets.card import Card
 from app.widgets.notice import Notice
 from app.widgets.table import CellTable, TableColumn, TableRow
@@ -41,15 +41,14 @@ class MemoriesForm(Themed):
 
     chosen = Signal()
 
-    def __init__(self, look: ThemeNotifier) -> None:
+    def __init__(self) -> None:
         super().__init__()
-        self._look = look
         self._lines: tuple[HeldLine, ...] = ()
-        self._title = Text(look, size=20, weight=SEMIBOLD, wraps=True)
-        self._lead = Text(look, size=14, tone="ink2", wraps=True)
-        self.list = CellTable(look, tr("Recordings in the sensors"), row=ROW, head=HEAD, padding=PADDING, is_list=True)
-        self.notice = Notice(look, size=16)
-        card = Card(look)
+        self._title = Text(size=20, weight=SEMIBOLD, wraps=True)
+        self._lead = Text(size=14, tone="ink2", wraps=True)
+        self.list = CellTable(tr("Recordings in the sensors"), row=ROW, head=HEAD, padding=PADDING, is_list=True)
+        self.notice = Notice(size=16)
+        card = Card()
         card.column.addWidget(self._title)
         card.column.addWidget(self._lead)
         card.column.addWidget(self.notice)
@@ -61,7 +60,7 @@ class MemoriesForm(Themed):
         self.list.chosen.connect(self._on_chosen)
         self.show_message("")
         self.show_lines(())
-        self._on_look_changed()
+        self._apply_theme()
 
     @property
     def tab_order(self) -> list[QWidget]:
@@ -116,8 +115,8 @@ class MemoriesForm(Themed):
     def _on_chosen(self, _number: object) -> None:
         self.chosen.emit()
 
-    def _on_look_changed(self) -> None:
-        px = self._look.theme.px
+    def _apply_theme(self) -> None:
+        px = current_theme().px
         self.list.setMinimumHeight(px(HEAD + AT_LEAST_ROWS * ROW))
 
 

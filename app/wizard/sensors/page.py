@@ -19,8 +19,8 @@ from PySide6.QtWidgets import (
     QWidget,
 )
 
+from app.theme.current import current_theme, px
 from app.theme.icons import Icon
-from app.theme.notifier import ThemeNotifier
 from app.widgets.body_figure import SensorMark
 from app.widgets.choice import Choice
 from app.widgets.notice import Notice
@@ -78,9 +78,9 @@ class SensorsPage(Themed):
     reconnect_pressed = Signal(str)
     stop_pressed = Signal()
 
-    def __init__(self, look: ThemeNotifier) -> None:
+    def __init__(self) -> None:
         super().__init__()
-        self._look, self._is_compact = look, False
+        self._is_compact = False
         self._sensors: tuple[SensorRow, ...] = ()
         self._doubt = ""
         self._names: tuple[str, ...] = ()
@@ -94,14 +94,13 @@ class SensorsPage(Themed):
         self._flash_end = QTimer(self)
         self._flash_end.setSingleShot(True)
         self._flash_end.setInterval(FLASH_MS)
-        self.title = Text(look, size=26, weight=SEMIBOLD, wraps=True)
-        self.subtitle = Text(look, "", 15, tone="ink2", wraps=True)
+        self.title = Text(size=26, weight=SEMIBOLD, wraps=True)
+        self.subtitle = Text("", 15, tone="ink2", wraps=True)
         self._name(has_pelvis=False)
-        self.sources = Choice(look, tr("Sensor source"))
+        self.sources = Choice(tr("Sensor source"))
         self.sources.setPlaceholderText(tr("Choose a source"))
-        self.places = SensorPlaces(look)
+        self.places = SensorPlaces()
         self.ways = Segmented(
-            look,
             tr("Sensor positions"),
             [
                 (Way.DRAG, tr("Drag"), tr("onto the figure")),
@@ -109,13 +108,13 @@ class SensorsPage(Themed):
                 (Way.MOTION, tr("Detect from movement"), tr("during free motion")),
             ],
         )
-        self.list = SensorList(look)
-        self.notice = Notice(look, size=16)
-        self.nothing = NoSource(look)
-        self.searching = Searching(look)
-        self.stored = SessionChooser(look)
-        self.columns = ColumnsForm(look)
-        self.dots, self.memories, self.progress = DotForm(look), MemoriesForm(look), SensorsProgress(look)
+        self.list = SensorList()
+        self.notice = Notice(size=16)
+        self.nothing = NoSource()
+        self.searching = Searching()
+        self.stored = SessionChooser()
+        self.columns = ColumnsForm()
+        self.dots, self.memories, self.progress = DotForm(), MemoriesForm(), SensorsProgress()
         self._build()
         self._connect()
         self.show_no_source()
@@ -366,7 +365,7 @@ class SensorsPage(Themed):
         self.list.identify_pressed.connect(self.identify_pressed)
         self.list.reconnect_pressed.connect(self.reconnect_pressed)
         self._flash_end.timeout.connect(self._end_flash)
-        self._on_look_changed()
+        self._apply_theme()
 
     def _show(self, page: QWidget) -> None:
         """Change over to `page`; a focus that was on the page before goes on with it."""
@@ -456,7 +455,7 @@ class SensorsPage(Themed):
 
     def _fit(self) -> None:
         """Lay figure and list side by side while both have room."""
-        px = self._look.theme.px
+        px = current_theme().px
         side = max(px(24), (self.width() - px(WIDEST)) // 2)
         above = px(12 if self._is_compact else 20)
         self._column.setContentsMargins(side, above, side, above)
@@ -511,12 +510,12 @@ class SensorsPage(Themed):
         """Bring the row into sight that keys mean now."""
         row = self.list.rows.get(name)
         if row is not None:
-            margin = self._look.theme.px(8)
+            margin = px(8)
             self._rows.ensureWidgetVisible(row, 0, margin)
             self._whole.ensureWidgetVisible(row, 0, margin)
 
-    def _on_look_changed(self) -> None:
-        px = self._look.theme.px
+    def _apply_theme(self) -> None:
+        px = current_theme().px
         self._column.setSpacing(px(16))
         self._words.setSpacing(px(4))
         self._head.setSpacing(px(16))

@@ -4,7 +4,7 @@ from PySide6.QtCore import QMimeData, QPoint, Qt
 from PySide6.QtGui import QColor, QDrag, QFontMetrics, QMouseEvent, QPainter, QPaintEvent
 from PySide6.QtWidgets import QApplication, QWidget
 
-from app.theme.notifier import ThemeNotifier
+from app.theme.current import current_theme, px
 from app.widgets.painted_button import PaintedButton
 from app.widgets.text import SEMIBOLD
 
@@ -14,8 +14,8 @@ DRAGGED = "application/x-gaitwright-sensor"
 class DraggedButton(PaintedButton):
     """`dragged`: the sensor that the mouse takes away from it; empty: none."""
 
-    def __init__(self, look: ThemeNotifier, parent: QWidget | None = None) -> None:
-        super().__init__(look, parent)
+    def __init__(self, parent: QWidget | None = None) -> None:
+        super().__init__(parent)
         self.dragged = ""
         self._pressed_at: QPoint | None = None
 
@@ -27,7 +27,7 @@ class DraggedButton(PaintedButton):
         if self.dragged and self._is_meant(event):
             self._pressed_at = None
             self.setDown(False)
-            drag_sensor(self, self._look, self.dragged)
+            drag_sensor(self, self.dragged)
             return
         super().mouseMoveEvent(event)
 
@@ -42,13 +42,13 @@ def sensor_in(data: QMimeData) -> str:
     return bytes(data.data(DRAGGED).data()).decode()
 
 
-def drag_sensor(source: QWidget, look: ThemeNotifier, sensor: str) -> None:
+def drag_sensor(source: QWidget, sensor: str) -> None:
     """Let the mouse carry `sensor` until it is let go; returns then."""
     data = QMimeData()
     data.setData(DRAGGED, sensor.encode())
     drag = QDrag(source)
     drag.setMimeData(data)
-    label = _Carried(look, sensor)
+    label = _Carried(sensor)
     drag.setPixmap(label.grab())
     drag.setHotSpot(QPoint(label.width() // 2, label.height() // 2))
     label.deleteLater()
@@ -58,14 +58,14 @@ def drag_sensor(source: QWidget, look: ThemeNotifier, sensor: str) -> None:
 class _Carried(QWidget):
     """What hangs at the mouse while a sensor is dragged."""
 
-    def __init__(self, look: ThemeNotifier, sensor: str) -> None:
+    def __init__(self, sensor: str) -> None:
         super().__init__()
-        self._look, self._sensor = look, sensor
-        width = QFontMetrics(look.theme.font(16, SEMIBOLD, is_code=True)).horizontalAdvance(sensor)
-        self.resize(width + look.theme.px(32), look.theme.px(40))
+        self._sensor = sensor
+        width = QFontMetrics(current_theme().font(16, SEMIBOLD, is_code=True)).horizontalAdvance(sensor)
+        self.resize(width + px(32), px(40))
 
     def paintEvent(self, _event: QPaintEvent) -> None:
-        theme = self._look.theme
+        theme = current_theme()
         painter = QPainter(self)
         painter.fillRect(self.rect(), QColor(theme.colours.inv))
         painter.setPen(QColor(theme.colours.inv_ink))

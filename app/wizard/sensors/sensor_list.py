@@ -6,7 +6,7 @@ from PySide6.QtCore import QRect, QRectF, QSize, Qt, Signal
 from PySide6.QtGui import QAccessible, QFont, QFontMetrics, QPainter, QPaintEvent
 from PySide6.QtWidgets import QSizePolicy, QVBoxLayout, QWidget
 
-from app.theme.notifier import ThemeNotifier
+from app.theme.current import current_theme, px
 from app.widgets.battery import WIDTH as CELL_WIDTH
 from app.widgets.painted_text import LEFT, RIGHT, PaintedText
 from app.widgets.text import MEDIUM, SEMIBOLD
@@ -42,21 +42,21 @@ class SensorList(Themed):
     identify_pressed = Signal(str)
     reconnect_pressed = Signal(str)
 
-    def __init__(self, look: ThemeNotifier) -> None:
+    def __init__(self) -> None:
         super().__init__()
-        self._look, self._is_narrow = look, False
+        self._is_narrow = False
         self.selection = ""
         self._places = LEG_SITES
         self._columns: tuple[int, dict[str, QRect]] | None = None  # measuring words takes longer than painting them
         self.rows: dict[str, SensorRowView] = {}
-        self._heading = _Heading(look, self)
+        self._heading = _Heading(self)
         self._column = QVBoxLayout(self)
         self._column.setContentsMargins(0, 0, 0, 0)
         self._column.addWidget(self._heading)
         self._column.addStretch(1)
         self.setSizePolicy(QSizePolicy.Policy.Expanding, QSizePolicy.Policy.Preferred)
         self.setAccessibleName(tr("Sensors"))
-        self._on_look_changed()
+        self._apply_theme()
 
     def show_sensors(self, sensors: Sequence[SensorRow], places: tuple[Site, ...] = LEG_SITES) -> None:
         """Show these in this order, to be worn at these places; a row that stays keeps its focus."""
@@ -99,7 +99,7 @@ class SensorList(Themed):
         """Show rate and battery in the second line, where there is no room for columns."""
         if is_narrow != self._is_narrow:
             self._is_narrow = is_narrow
-            self._on_look_changed()
+            self._apply_theme()
 
     def step(self, name: str, by: int) -> None:
         """Go on to the row above or below the one of `name`."""
@@ -116,7 +116,7 @@ class SensorList(Themed):
         return self._columns[1]
 
     def _measured(self, width: int) -> dict[str, QRect]:
-        theme = self._look.theme
+        theme = current_theme()
         px = theme.px
 
         def widest(font: QFont, words: list[str]) -> int:
@@ -168,7 +168,7 @@ class SensorList(Themed):
         return " · ".join(filter(None, [what or sensor.rate, charge]))
 
     def minimumSizeHint(self) -> QSize:
-        theme = self._look.theme
+        theme = current_theme()
         heading = QFontMetrics(theme.font(12)).horizontalAdvance(tr("Last 5 s")) + 1
         trace = max(theme.px(TRACE_AT_LEAST), heading)
         gap = theme.px(NARROW_GAP if self._is_narrow else COLUMN_GAP)
@@ -176,7 +176,7 @@ class SensorList(Themed):
         return QSize(width, super().minimumSizeHint().height())
 
     def _add_row(self, name: str) -> None:
-        row = self.rows[name] = SensorRowView(self._look, name, self.columns, self.second_line)
+        row = self.rows[name] = SensorRowView(name, self.columns, self.second_line)
         row.selected.connect(self.select)
         row.stepped.connect(self.step)
         row.assigned.connect(self.assigned)
@@ -196,29 +196,29 @@ class SensorList(Themed):
             row.arrange()
         self.updateGeometry()
 
-    def _on_look_changed(self) -> None:
-        self._column.setSpacing(self._look.theme.px(SPACING))
+    def _apply_theme(self) -> None:
+        self._column.setSpacing(px(SPACING))
         self._arrange()
 
 
 class _Heading(QWidget):
     """The names of the columns."""
 
-    def __init__(self, look: ThemeNotifier, sensors: SensorList) -> None:
+    def __init__(self, sensors: SensorList) -> None:
         super().__init__(sensors)
-        self._look, self._list = look, sensors
+        self._list = sensors
         self.setSizePolicy(QSizePolicy.Policy.Expanding, QSizePolicy.Policy.Fixed)
 
     def sizeHint(self) -> QSize:
-        return QSize(0, self._look.theme.px(HEADING - SPACING))
+        return QSize(0, px(HEADING - SPACING))
 
     def paintEvent(self, _event: QPaintEvent) -> None:
         painter = QPainter(self)
         for text in self.painted_texts():
-            text.paint(painter, self._look.theme.colours)
+            text.paint(painter, current_theme().colours)
 
     def painted_texts(self) -> list[PaintedText]:
-        font = self._look.theme.font(12)
+        font = current_theme().font(12)
         places = {**self._list.columns(self.width())}
         places["name"] = QRect(0, 0, places["name"].right(), 0)
         movement = tr("Movement, last 5 s")

@@ -20,8 +20,8 @@ from PySide6.QtGui import (
 )
 from PySide6.QtWidgets import QSizePolicy, QWidget
 
+from app.theme.current import current_theme, px
 from app.theme.leg_chip import paint_chip
-from app.theme.notifier import ThemeNotifier
 from app.theme.theme import CARD_RADIUS, CONTROL_RADIUS
 from app.widgets.body_figure import SENTENCE_ROOM, BodyFigure, SensorMark
 from app.widgets.painted_text import RIGHT, PaintedText
@@ -71,18 +71,18 @@ class SensorPlaces(Themed):
     hovered = Signal(str, object)
     pressed = Signal(Site)
 
-    def __init__(self, look: ThemeNotifier) -> None:
+    def __init__(self) -> None:
         super().__init__()
-        self._look, self._is_narrow, self._has_pelvis = look, False, False
+        self._is_narrow, self._has_pelvis = False, False
         self._hovered: Site | None = None
         self._next: Site | None = None
         self._names: tuple[str, ...] = ()
         self.setAcceptDrops(True)
         self.setSizePolicy(QSizePolicy.Policy.Expanding, QSizePolicy.Policy.Expanding)
-        self.figure = BodyFigure(look)
+        self.figure = BodyFigure()
         self.figure.setParent(self)
-        self._lines = _Lines(look, self)
-        self.tiles = {site: _Tile(look, site, self) for site in Site}
+        self._lines = _Lines(self)
+        self.tiles = {site: _Tile(site, self) for site in Site}
         self.tiles[Site.PELVIS].hide()
         for tile in self.tiles.values():
             tile.clicked.connect(self._on_tile_clicked)
@@ -133,7 +133,7 @@ class SensorPlaces(Themed):
         return self.figure.site_at(QPointF(self.figure.mapFrom(self, point)))
 
     def minimumSizeHint(self) -> QSize:
-        px = self._look.theme.px
+        px = current_theme().px
         return QSize(2 * self._beside_legs() + px(LEGS_AT_LEAST), px(300))
 
     def sizeHint(self) -> QSize:
@@ -144,7 +144,7 @@ class SensorPlaces(Themed):
         self._arrange()
 
     def paintEvent(self, _event: QPaintEvent) -> None:
-        theme = self._look.theme
+        theme = current_theme()
         painter = QPainter(self)
         painter.setRenderHint(QPainter.RenderHint.Antialiasing)
         painter.setPen(theme.pen(theme.colours.line, 1))
@@ -186,12 +186,12 @@ class SensorPlaces(Themed):
     @property
     def has_notes_below(self) -> bool:
         """Whether the names are so long that what is stated about a sensor goes under its name."""
-        metrics = QFontMetrics(self._look.theme.font(12, SEMIBOLD, is_code=True))
-        room = self._look.theme.px(TILE[0] - 2 * PADDING - 2)
+        metrics = QFontMetrics(current_theme().font(12, SEMIBOLD, is_code=True))
+        room = px(TILE[0] - 2 * PADDING - 2)
         return any(metrics.horizontalAdvance(" · ".join((name, _notes()[0]))) > room for name in self._names)
 
     def _tile_width(self) -> int:
-        theme = self._look.theme
+        theme = current_theme()
         least = theme.px(NARROW_TILE if self._is_narrow else TILE[0])
         metrics = QFontMetrics(theme.font(12, SEMIBOLD, is_code=True))
         lines = [tr("no sensor"), tr("shake it now"), tr("detected later"), *self._names]
@@ -201,20 +201,20 @@ class SensorPlaces(Themed):
         return max(least, widest, *(tile.first_line_width for tile in self.shown_tiles.values()))
 
     def _tile_height(self) -> int:
-        return self._look.theme.px(TILE[1] + (LINE if self.has_notes_below else 0))
+        return px(TILE[1] + (LINE if self.has_notes_below else 0))
 
     def _edge(self) -> int:
-        return self._look.theme.px(NARROW_EDGE if self._is_narrow else EDGE)
+        return px(NARROW_EDGE if self._is_narrow else EDGE)
 
     def _beside_legs(self) -> int:
-        return self._edge() + self._tile_width() + self._look.theme.px(BESIDE_LEGS)
+        return self._edge() + self._tile_width() + px(BESIDE_LEGS)
 
-    def _on_look_changed(self) -> None:
+    def _apply_theme(self) -> None:
         self._arrange()
 
     def _arrange(self) -> None:
         """Put the figure in the middle and each tile beside its place, none over another."""
-        px = self._look.theme.px
+        px = current_theme().px
         self.figure.keep_beside(self._beside_legs())
         self.figure.setGeometry(self.rect().adjusted(1, 1, -1, -1))
         width, height = self._tile_width(), self._tile_height()
@@ -245,13 +245,13 @@ class SensorPlaces(Themed):
 class _Lines(QWidget):
     """From each tile to its place on the figure; lies over both and takes no clicks."""
 
-    def __init__(self, look: ThemeNotifier, places: SensorPlaces) -> None:
+    def __init__(self, places: SensorPlaces) -> None:
         super().__init__(places)
-        self._look, self._places = look, places
+        self._places = places
         self.setAttribute(Qt.WidgetAttribute.WA_TransparentForMouseEvents)
 
     def paintEvent(self, _event: QPaintEvent) -> None:
-        theme = self._look.theme
+        theme = current_theme()
         painter = QPainter(self)
         painter.setRenderHint(QPainter.RenderHint.Antialiasing)
         painter.setPen(theme.pen(theme.colours.control, 1))
@@ -271,8 +271,8 @@ class _Lines(QWidget):
 class _Tile(DraggedButton):
     """The place in two lines: which it is, and who is there. A sensor can be dragged away from it."""
 
-    def __init__(self, look: ThemeNotifier, site: Site, places: SensorPlaces) -> None:
-        super().__init__(look, places)
+    def __init__(self, site: Site, places: SensorPlaces) -> None:
+        super().__init__(places)
         self.site, self._places = site, places
         self._place = PlaceShown()
         self._is_welcome = False
@@ -303,7 +303,7 @@ class _Tile(DraggedButton):
 
     @property
     def first_line_width(self) -> int:
-        theme = self._look.theme
+        theme = current_theme()
         word = QFontMetrics(theme.font(14, SEMIBOLD)).horizontalAdvance(segment_name(self.site.segment))
         return word + theme.px(self._chip_room + 18 + 2 * PADDING)  # chip before it, the key's figure behind it
 
@@ -312,7 +312,7 @@ class _Tile(DraggedButton):
         return CHIP + 6 if self.site.side is not None else 0
 
     def paintEvent(self, _event: QPaintEvent) -> None:
-        theme = self._look.theme
+        theme = current_theme()
         c, px = theme.colours, theme.px
         place = self._place
         painter = QPainter(self)
@@ -345,7 +345,7 @@ class _Tile(DraggedButton):
             text.paint(painter, c)
 
     def painted_texts(self) -> list[PaintedText]:
-        theme, place = self._look.theme, self._place
+        theme, place = current_theme(), self._place
         px = theme.px
         tone = second = "caution_ink"
         if place.mark not in (SensorMark.LOOK, SensorMark.SILENT):

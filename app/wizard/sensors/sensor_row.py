@@ -16,9 +16,9 @@ from PySide6.QtGui import (
 )
 from PySide6.QtWidgets import QMenu, QSizePolicy, QWidget
 
+from app.theme.current import current_theme, px
 from app.theme.icons import Icon, paint_icon
 from app.theme.leg_chip import paint_chip
-from app.theme.notifier import ThemeNotifier
 from app.theme.theme import CHIP_RADIUS, CONTROL_RADIUS
 from app.widgets.battery import HEIGHT as CELL_HEIGHT
 from app.widgets.battery import LOW, paint_battery
@@ -127,21 +127,20 @@ class SensorRowView(DraggedButton):
 
     def __init__(
         self,
-        look: ThemeNotifier,
         name: str,
         columns: Callable[[int], Mapping[str, QRect]],
         second_line: Callable[[SensorRow], str],
     ) -> None:
-        super().__init__(look)
+        super().__init__()
         self._columns, self._second_line = columns, second_line
         self._is_selected = False
         self._places_offered: tuple[Site, ...] = ()
         self.name = self.dragged = name
         self.sensor = SensorRow(name)
-        self.trace = Trace(look)
+        self.trace = Trace()
         self.trace.setParent(self)
-        self.worn = _WornOn(look, self)
-        self.identify = _Identify(look, self)
+        self.worn = _WornOn(self)
+        self.identify = _Identify(self)
         self.worn.clicked.connect(self.ask)
         self.identify.clicked.connect(self._on_identify_clicked)
         self.clicked.connect(self._on_clicked)
@@ -178,7 +177,7 @@ class SensorRowView(DraggedButton):
     @property
     def _ground(self) -> QColor:
         """What the row is filled with, the thin layer under the mouse included."""
-        theme = self._look.theme
+        theme = current_theme()
         ground = QColor(theme.colours.caution if self.sensor.wants_look else theme.colours.surface)
         if not (self.underMouse() or self.isDown()):
             return ground
@@ -201,24 +200,24 @@ class SensorRowView(DraggedButton):
     def ask(self) -> None:
         """Open the list of places under the button that names the present one."""
         self.selected.emit(self.name)
-        menu = _PlaceMenu(self._look, self.sensor.site, self._places_offered, self)
+        menu = _PlaceMenu(self.sensor.site, self._places_offered, self)
         menu.chosen.connect(self._on_place_chosen)
         menu.popup(self.worn.mapToGlobal(QPoint(0, self.worn.height())))
 
     def arrange(self) -> None:
         places = self._places()
-        inset = self._look.theme.px(8)
+        inset = px(8)
         self.trace.setGeometry(places["trace"].adjusted(0, inset, 0, -inset))
-        height = self._look.theme.px(44)
+        height = px(44)
         for child, key in ((self.worn, "worn"), (self.identify, "identify")):
             child.setGeometry(QRect(places[key].x(), (self.height() - height) // 2, places[key].width(), height))
         self.update()
 
     def sizeHint(self) -> QSize:
-        return QSize(0, self._look.theme.px(ROW))
+        return QSize(0, px(ROW))
 
     def minimumSizeHint(self) -> QSize:
-        return QSize(0, self._look.theme.px(ROW_AT_LEAST))
+        return QSize(0, px(ROW_AT_LEAST))
 
     def _places(self) -> dict[str, QRect]:
         """Where the columns lie, as high as the row."""
@@ -250,7 +249,7 @@ class SensorRowView(DraggedButton):
                 super().keyPressEvent(event)
 
     def paintEvent(self, _event: QPaintEvent) -> None:
-        theme = self._look.theme
+        theme = current_theme()
         c, px = theme.colours, theme.px
         sensor = self.sensor
         painter = QPainter(self)
@@ -275,7 +274,7 @@ class SensorRowView(DraggedButton):
             text.paint(painter, c)
 
     def painted_texts(self) -> list[PaintedText]:
-        theme, sensor = self._look.theme, self.sensor
+        theme, sensor = current_theme(), self.sensor
         px = theme.px
         places = self._places()
         name, is_caution = places["name"], sensor.wants_look
@@ -318,8 +317,8 @@ class _WornOn(PaintedButton):
 
     pressing_keys = (*PaintedButton.pressing_keys, Qt.Key.Key_Down)
 
-    def __init__(self, look: ThemeNotifier, row: SensorRowView) -> None:
-        super().__init__(look, row)
+    def __init__(self, row: SensorRowView) -> None:
+        super().__init__(row)
         self._row = row
         self._site: Site | None = None
 
@@ -328,7 +327,7 @@ class _WornOn(PaintedButton):
         self.update()
 
     def paintEvent(self, _event: QPaintEvent) -> None:
-        theme = self._look.theme
+        theme = current_theme()
         c, px = theme.colours, theme.px
         painter = QPainter(self)
         painter.setRenderHint(QPainter.RenderHint.Antialiasing)
@@ -343,7 +342,7 @@ class _WornOn(PaintedButton):
         paint_icon(painter, Icon.CHEVRON, middle, getattr(c, word.tone))
 
     def painted_texts(self) -> list[PaintedText]:
-        theme = self._look.theme
+        theme = current_theme()
         px = theme.px
         left = px(CHIP + 6) if self._site is not None and self._site.side is not None else 0
         return [
@@ -359,8 +358,8 @@ class _WornOn(PaintedButton):
 class _Identify(PaintedButton):
     """Lights the sensor's LED; where the sensor is silent, looks for it again."""
 
-    def __init__(self, look: ThemeNotifier, row: SensorRowView) -> None:
-        super().__init__(look, row)
+    def __init__(self, row: SensorRowView) -> None:
+        super().__init__(row)
         self._row = row
 
     def show_sensor(self, sensor: SensorRow) -> None:
@@ -372,7 +371,7 @@ class _Identify(PaintedButton):
         self.update()
 
     def paintEvent(self, _event: QPaintEvent) -> None:
-        theme = self._look.theme
+        theme = current_theme()
         c, px = theme.colours, theme.px
         painter = QPainter(self)
         painter.setRenderHint(QPainter.RenderHint.Antialiasing)
@@ -389,11 +388,11 @@ class _PlaceMenu(QMenu):
 
     chosen = Signal(object)
 
-    def __init__(self, look: ThemeNotifier, site: Site | None, places: tuple[Site, ...], parent: QWidget) -> None:
+    def __init__(self, site: Site | None, places: tuple[Site, ...], parent: QWidget) -> None:
         super().__init__(parent)
         self.setAttribute(Qt.WidgetAttribute.WA_DeleteOnClose)
         self.setAccessibleName(tr("Position"))
-        self.setFont(look.theme.font(16, SEMIBOLD))  # what the width is reckoned from
+        self.setFont(current_theme().font(16, SEMIBOLD))  # what the width is reckoned from
         group = QActionGroup(self)
         for one in (*places, None):
             words = tr("None") if one is None else f"&{number_of(one)}  {capitalised(name_of(one))}"

@@ -5,7 +5,7 @@ from PySide6.QtCore import QPointF, Qt
 from PySide6.QtGui import QColor, QFontMetrics, QPainter, QPaintEvent, QPen, QPolygonF
 from PySide6.QtWidgets import QWidget
 
-from app.theme.notifier import ThemeNotifier
+from app.theme.current import current_theme
 from app.widgets.text import SEMIBOLD
 from app.wording.translation import tr
 from core.samples import FloatArray
@@ -17,12 +17,11 @@ SPAN_DEG_S = 120.0  # what fills the trace's height, at least: a sensor at rest 
 class Trace(QWidget):
     """How a sensor turned in the last 5 s: flat at rest, and with a word where it has fallen silent."""
 
-    def __init__(self, look: ThemeNotifier) -> None:
+    def __init__(self) -> None:
         super().__init__()
-        self._look = look
         self._values: FloatArray = np.empty(0)
         self._silence = ""
-        self._ground = QColor(look.theme.colours.surface)
+        self._ground = QColor(current_theme().colours.surface)
         self.setAttribute(Qt.WidgetAttribute.WA_TransparentForMouseEvents)
         self.setAttribute(Qt.WidgetAttribute.WA_OpaquePaintEvent)  # so that the row is not painted ten times a second
 
@@ -49,7 +48,7 @@ class Trace(QWidget):
             self.update()
 
     def paintEvent(self, _event: QPaintEvent) -> None:
-        theme = self._look.theme
+        theme = current_theme()
         c = theme.colours
         painter = QPainter(self)
         painter.fillRect(self.rect(), self._ground)

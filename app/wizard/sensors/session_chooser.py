@@ -6,8 +6,8 @@ from uuid import UUID
 from PySide6.QtCore import Signal
 from PySide6.QtWidgets import QHBoxLayout, QSizePolicy, QStackedWidget, QVBoxLayout, QWidget
 
+from app.theme.current import current_theme
 from app.theme.icons import Icon
-from app.theme.notifier import ThemeNotifier
 from app.widgets.button import Button, ButtonKind
 from app.widgets.card import Card
 from app.widgets.line_list import LineList, PatientLine
@@ -39,27 +39,25 @@ class SessionChooser(Themed):
     folder_pressed = Signal()
     back_pressed = Signal()
 
-    def __init__(self, look: ThemeNotifier) -> None:
+    def __init__(self) -> None:
         super().__init__()
-        self._look = look
-        self._title = Text(look, tr("Choose a session to replay"), 20, SEMIBOLD, wraps=True)
+        self._title = Text(tr("Choose a session to replay"), 20, SEMIBOLD, wraps=True)
         self._why = Text(
-            look,
             tr("The session plays as if measured now, but it is a replay. All its results are marked SIMULATED."),
             14,
             tone="ink2",
             wraps=True,
         )
-        self.notice = Notice(look, size=16)
-        self.sessions = LineList(look, tr("Stored sessions"))
+        self.notice = Notice(size=16)
+        self.sessions = LineList(tr("Stored sessions"))
         self.sessions.setSizePolicy(QSizePolicy.Policy.Expanding, QSizePolicy.Policy.Ignored)  # it scrolls by itself
-        self._none = Text(look, tr("This library contains no other session with recordings."), 15, wraps=True)
-        self.folder = Button(look, tr("Choose a session folder"), ButtonKind.SECONDARY, Icon.FOLDER)
-        self.back = Button(look, tr("Other sources"), ButtonKind.QUIET)
+        self._none = Text(tr("This library contains no other session with recordings."), 15, wraps=True)
+        self.folder = Button(tr("Choose a session folder"), ButtonKind.SECONDARY, Icon.FOLDER)
+        self.back = Button(tr("Other sources"), ButtonKind.QUIET)
         self._lists = QStackedWidget()
         self._lists.addWidget(self.sessions)
         self._lists.addWidget(self._none)
-        self._card = Card(look, padding=0)
+        self._card = Card(padding=0)
         self._heading = QVBoxLayout()
         self._heading.addWidget(self._title)
         self._heading.addWidget(self._why)
@@ -78,7 +76,7 @@ class SessionChooser(Themed):
         self.sessions.opened.connect(self.opened)
         self.folder.clicked.connect(self.folder_pressed)
         self.back.clicked.connect(self.back_pressed)
-        self._on_look_changed()
+        self._apply_theme()
         self.show_sessions(())
         self.show_message("")
 
@@ -105,8 +103,8 @@ class SessionChooser(Themed):
         self.notice.show_message(Icon.WARNING if what else None, what, then, is_caution=bool(what))
         self.notice.setVisible(bool(what))
 
-    def _on_look_changed(self) -> None:
-        px = self._look.theme.px
+    def _apply_theme(self) -> None:
+        px = current_theme().px
         self._column.setSpacing(px(12))
         self._verbs.setSpacing(px(12))
         self._heading.setContentsMargins(px(24), px(16), px(24), px(4))

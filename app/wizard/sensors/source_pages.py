@@ -6,8 +6,8 @@ from dataclasses import dataclass
 from PySide6.QtCore import Qt, Signal
 from PySide6.QtWidgets import QProgressBar, QVBoxLayout
 
+from app.theme.current import current_theme
 from app.theme.icons import Icon
-from app.theme.notifier import ThemeNotifier
 from app.widgets.button import Button, ButtonKind
 from app.widgets.heard_order import hear_as_laid_out
 from app.widgets.notice import Notice
@@ -34,15 +34,14 @@ class NoSource(Themed):
 
     chosen = Signal(str)
 
-    def __init__(self, look: ThemeNotifier) -> None:
+    def __init__(self) -> None:
         super().__init__()
-        self._look = look
         self.buttons: list[Button] = []
         self._options: list[SourceOption] = []
-        self._sentence = Text(look, tr("No sensors yet. Choose where to search."), 20, SEMIBOLD, wraps=True)
+        self._sentence = Text(tr("No sensors yet. Choose where to search."), 20, SEMIBOLD, wraps=True)
         self._sentence.setAlignment(Qt.AlignmentFlag.AlignCenter)
-        self.notice = Notice(look, size=16)
-        self._left_out = Text(look, size=14, tone="ink2", wraps=True)
+        self.notice = Notice(size=16)
+        self._left_out = Text(size=14, tone="ink2", wraps=True)
         self._left_out.setAlignment(Qt.AlignmentFlag.AlignCenter)
         self._left_out.hide()
         self._row = QVBoxLayout()
@@ -53,7 +52,7 @@ class NoSource(Themed):
         self._column.addLayout(self._row)
         self._column.addWidget(self._left_out)
         self._column.addStretch(2)
-        self._on_look_changed()
+        self._apply_theme()
 
     def show_message(self, what: str, then: str) -> None:
         """Say why nothing is connected, above the sources that may be tried instead."""
@@ -80,7 +79,7 @@ class NoSource(Themed):
             button.deleteLater()
         self.buttons, self._options = [], list(options)
         for number, option in enumerate(options):
-            button = Button(self._look, option.name, ButtonKind.PRIMARY if number == 0 else ButtonKind.SECONDARY)
+            button = Button(option.name, ButtonKind.PRIMARY if number == 0 else ButtonKind.SECONDARY)
             button.clicked.connect(self._on_clicked)
             self._row.addWidget(button, 0, Qt.AlignmentFlag.AlignHCenter)
             button.show()  # at once: what is not in sight yet takes no focus
@@ -88,15 +87,15 @@ class NoSource(Themed):
             if option.key == focused_key:
                 button.setFocus()
         hear_as_laid_out(self)
-        self._on_look_changed()
+        self._apply_theme()
 
     def _on_clicked(self) -> None:
         button = self.sender()
         assert isinstance(button, Button)
         self.chosen.emit(self._options[self.buttons.index(button)].key)
 
-    def _on_look_changed(self) -> None:
-        px = self._look.theme.px
+    def _apply_theme(self) -> None:
+        px = current_theme().px
         self._column.setSpacing(px(24))
         self._row.setSpacing(px(12))
         for button in self.buttons:
@@ -106,28 +105,27 @@ class NoSource(Themed):
 class Searching(Themed):
     """What is looked for or read, and the way out."""
 
-    def __init__(self, look: ThemeNotifier) -> None:
+    def __init__(self) -> None:
         super().__init__()
-        self._look = look
-        self._sentence = Text(look, size=20, weight=SEMIBOLD, wraps=True)
+        self._sentence = Text(size=20, weight=SEMIBOLD, wraps=True)
         self._sentence.setAlignment(Qt.AlignmentFlag.AlignCenter)
         self._line = QProgressBar()
         self._line.setTextVisible(False)
         self._line.setRange(0, 0)
-        self.stop = Button(look, tr("Stop"), ButtonKind.SECONDARY, Icon.STOP)
+        self.stop = Button(tr("Stop"), ButtonKind.SECONDARY, Icon.STOP)
         self._column = QVBoxLayout(self)
         self._column.addStretch(1)
         self._column.addWidget(self._sentence)
         self._column.addWidget(self._line, 0, Qt.AlignmentFlag.AlignHCenter)
         self._column.addWidget(self.stop, 0, Qt.AlignmentFlag.AlignHCenter)
         self._column.addStretch(2)
-        self._on_look_changed()
+        self._apply_theme()
 
     def begin(self, sentence: str) -> None:
         self._sentence.setText(sentence)
         self._line.setAccessibleName(sentence)
 
-    def _on_look_changed(self) -> None:
-        px = self._look.theme.px
+    def _apply_theme(self) -> None:
+        px = current_theme().px
         self._column.setSpacing(px(20))
         self._line.setFixedSize(px(320), px(8))

@@ -6,7 +6,6 @@ from typing import TYPE_CHECKING
 from PySide6.QtCore import QObject
 
 from app.theme.icons import Icon
-from app.theme.notifier import ThemeNotifier
 from app.widgets.action_bar import BarAction, BarState
 from app.widgets.battery import LOW
 from app.widgets.rail_row import StepState
@@ -42,8 +41,8 @@ class SensorsStep(Step):
 
     id = StepId.SENSORS
 
-    def __init__(self, look: ThemeNotifier, visit: "Visit", parent: QObject | None = None) -> None:
-        super().__init__(look, visit, parent)
+    def __init__(self, visit: "Visit", parent: QObject | None = None) -> None:
+        super().__init__(visit, parent)
         self._page: SensorsPage | None = None
         self._estimator: PlacingEstimator | None = None
         self._shakes = self._ticks = 0
@@ -75,7 +74,7 @@ class SensorsStep(Step):
     @property
     def page(self) -> SensorsPage:
         if self._page is None:
-            page = self._page = SensorsPage(self._look)
+            page = self._page = SensorsPage()
             page.assigned.connect(self._visit.sensors.assign)
             page.way_chosen.connect(self._on_way_chosen)
             page.source_chosen.connect(self._on_source_chosen)

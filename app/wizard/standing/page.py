@@ -13,8 +13,8 @@ from PySide6.QtCore import QSize, Qt, Signal
 from PySide6.QtGui import QResizeEvent
 from PySide6.QtWidgets import QFrame, QGridLayout, QHBoxLayout, QScrollArea, QSizePolicy, QVBoxLayout, QWidget
 
+from app.theme.current import current_theme, px
 from app.theme.icons import Icon
-from app.theme.notifier import ThemeNotifier
 from app.widgets.button import Button
 from app.widgets.card import Card
 from app.widgets.field import NumberField
@@ -104,27 +104,26 @@ class StandStillPage(Themed):
     cannot_stand_pressed = Signal()
     can_stand_pressed = Signal()
 
-    def __init__(self, look: ThemeNotifier) -> None:
+    def __init__(self) -> None:
         super().__init__()
-        self._look = look
         self._view = StandStillView()
         self._is_compact = False
-        self._count = Card(look, padding=24, spacing=4)
-        self._title = Text(look, size=TITLE, weight=SEMIBOLD)
-        self._how = Text(look, size=20, tone="ink2", wraps=True)
-        self._ring = CountRing(look)
-        self._heading = Text(look, tr("Movement now"), size=14, weight=MEDIUM)
-        self._limit = Text(look, size=14, tone="ink2")
-        self.bars = MovementBars(look)
-        self.verdict = Notice(look)
+        self._count = Card(padding=24, spacing=4)
+        self._title = Text(size=TITLE, weight=SEMIBOLD)
+        self._how = Text(size=20, tone="ink2", wraps=True)
+        self._ring = CountRing()
+        self._heading = Text(tr("Movement now"), size=14, weight=MEDIUM)
+        self._limit = Text(size=14, tone="ink2")
+        self.bars = MovementBars()
+        self.verdict = Notice()
         self._build_count()
-        self.zero = _ZeroCard(look)
+        self.zero = _ZeroCard()
         self.zero.edited.connect(self.zero_edited)
         self.zero.button.clicked.connect(self._on_button_clicked)
         self._row = QHBoxLayout(self)
         self._row.addWidget(self._count, 1)
         self._row.addWidget(self.zero)
-        self._on_look_changed()
+        self._apply_theme()
         self._show()
 
     @property
@@ -145,7 +144,7 @@ class StandStillPage(Themed):
         self._is_compact = is_compact
         self.bars.set_compact(is_compact)
         self.zero.set_compact(is_compact)
-        self._on_look_changed()
+        self._apply_theme()
         self._show()
 
     def show_zero(self, zero_deg: Mapping[Joint, float]) -> None:
@@ -196,15 +195,15 @@ class StandStillPage(Themed):
         (self.can_stand_pressed if self._view.phase is StandPhase.SKIPPED else self.cannot_stand_pressed).emit()
 
     def _fit(self) -> None:
-        is_large = not self._is_compact and self.width() >= self._look.theme.px(LARGE_FROM)
+        is_large = not self._is_compact and self.width() >= px(LARGE_FROM)
         self._title.set_size(COMPACT_TITLE if self._is_compact else LARGE_TITLE if is_large else TITLE)
         self._how.set_size(16 if self._is_compact else 24 if is_large else 20)
         bars_width = COMPACT_BARS_WIDTH if self._is_compact else LARGE_BARS_WIDTH if is_large else BARS_WIDTH
         for one in (self.bars, self.verdict):
-            one.setFixedWidth(self._look.theme.px(bars_width))
+            one.setFixedWidth(px(bars_width))
 
-    def _on_look_changed(self) -> None:
-        px = self._look.theme.px
+    def _apply_theme(self) -> None:
+        px = current_theme().px
         across, down = (16, 10) if self._is_compact else (24, 20)
         self._row.setContentsMargins(px(across), px(down), px(across), px(down))
         self._row.setSpacing(px(12 if self._is_compact else 16))
@@ -227,22 +226,22 @@ class _ZeroCard(Card):
 
     edited = Signal(object, object)
 
-    def __init__(self, look: ThemeNotifier) -> None:
+    def __init__(self) -> None:
         self._headings: list[QHBoxLayout] = []
         self._inside = QWidget()
         self._column, self._grid = QVBoxLayout(self._inside), QGridLayout()
-        super().__init__(look, padding=20, spacing=12)
+        super().__init__(padding=20, spacing=12)
         self._is_compact = False
         self._view = StandStillView()
         self._worn: frozenset[Joint] = frozenset(LEG_JOINTS)
         self.fields: dict[Joint, NumberField] = {}
-        self._column.addWidget(Text(look, tr("Standing angle"), size=20, weight=SEMIBOLD))
+        self._column.addWidget(Text(tr("Standing angle"), size=20, weight=SEMIBOLD))
         explained = tr("Enter 0° if the joint is straight now. With a contracture, enter the goniometer value.")
-        self._column.addWidget(Text(look, explained, size=14, tone="ink2", wraps=True))
+        self._column.addWidget(Text(explained, size=14, tone="ink2", wraps=True))
         self._add_joint(tr("Knee"), tr("flexion is +"), tr("Knee flexion"), KNEE_DEG, is_knee=True)
         self._add_joint(tr("Ankle"), tr("dorsiflexion is +"), tr("Ankle dorsiflexion"), ANKLE_DEG, is_knee=False)
         self._column.addLayout(self._grid)
-        self._why = Text(look, size=14, tone="ink2", wraps=True)
+        self._why = Text(size=14, tone="ink2", wraps=True)
         self._column.addWidget(self._why)
         self._column.addStretch(1)
         self._scroll = _Fields()
@@ -251,12 +250,12 @@ class _ZeroCard(Card):
         self._scroll.setFrameShape(QFrame.Shape.NoFrame)
         self._scroll.setFocusPolicy(Qt.FocusPolicy.NoFocus)
         self._scroll.setHorizontalScrollBarPolicy(Qt.ScrollBarPolicy.ScrollBarAlwaysOff)
-        self.note = Notice(look, size=14)
-        self.button = Button(look, tr("Patient cannot stand still"))
+        self.note = Notice(size=14)
+        self.button = Button(tr("Patient cannot stand still"))
         self.column.addWidget(self._scroll, 1)
         self.column.addWidget(self.note)
         self.column.addWidget(self.button)
-        self._on_look_changed()
+        self._apply_theme()
         self._show()
 
     @property
@@ -271,13 +270,13 @@ class _ZeroCard(Card):
     @property
     def least_width(self) -> int:
         """What the fields, the button and their margins take at least."""
-        margins, bar = self.column.contentsMargins(), self._look.theme.px(SCROLL_BAR)
+        margins, bar = self.column.contentsMargins(), px(SCROLL_BAR)
         inside = max(self._inside.minimumSizeHint().width() + bar, self.button.sizeHint().width())
         return inside + margins.left() + margins.right()
 
     def set_compact(self, is_compact: bool) -> None:
         self._is_compact = is_compact
-        self._on_look_changed()
+        self._apply_theme()
         self._show()
 
     def show_zero(self, zero_deg: Mapping[Joint, float]) -> None:
@@ -310,20 +309,20 @@ class _ZeroCard(Card):
         row = self._grid.rowCount()
         heading = QHBoxLayout()
         self._headings.append(heading)
-        heading.addWidget(Text(self._look, name, size=14, weight=MEDIUM), 1)
-        heading.addWidget(Text(self._look, sign, size=12, tone="ink2"), 0, Qt.AlignmentFlag.AlignBottom)
+        heading.addWidget(Text(name, size=14, weight=MEDIUM), 1)
+        heading.addWidget(Text(sign, size=12, tone="ink2"), 0, Qt.AlignmentFlag.AlignBottom)
         self._grid.addLayout(heading, row, 0, 1, 2)
         for column, side in enumerate((Side.LEFT, Side.RIGHT)):
             joint = next(joint for joint in LEG_JOINTS if joint.side is side and joint.is_knee == is_knee)
             low, high = range_deg
-            one = _ZeroField(self._look, joint, label, low, high)
+            one = _ZeroField(joint, label, low, high)
             one.reported.connect(self.edited)
             self.fields[joint] = one
             self._grid.addWidget(one, row + 1, column, Qt.AlignmentFlag.AlignTop)
 
-    def _on_look_changed(self) -> None:
-        super()._on_look_changed()
-        px = self._look.theme.px
+    def _apply_theme(self) -> None:
+        super()._apply_theme()
+        px = current_theme().px
         self._column.setContentsMargins(0, 0, 0, 0)
         self._column.setSpacing(px(8))
         for heading in self._headings:
@@ -344,8 +343,8 @@ class _ZeroField(NumberField):
 
     reported = Signal(object, object)
 
-    def __init__(self, look: ThemeNotifier, joint: Joint, label: str, low: float, high: float) -> None:
-        super().__init__(look, label, low=low, high=high, decimals=1, unit="°", side=joint.side, has_label=False)
+    def __init__(self, joint: Joint, label: str, low: float, high: float) -> None:
+        super().__init__(label, low=low, high=high, decimals=1, unit="°", side=joint.side, has_label=False)
         self._joint = joint
         self.committed.connect(self._on_committed)
 

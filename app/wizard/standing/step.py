@@ -11,7 +11,6 @@ from app.system import sounds
 from app.system.prompts import prompter
 from app.system.sounds import Sound
 from app.theme.icons import Icon
-from app.theme.notifier import ThemeNotifier
 from app.widgets.action_bar import BarAction, BarState
 from app.widgets.rail_row import StepState
 from app.wizard.keys import Intent, KeyAction
@@ -36,8 +35,8 @@ class StandStillStep(Step):
 
     id = StepId.STAND_STILL
 
-    def __init__(self, look: ThemeNotifier, visit: "Visit", parent: QObject | None = None) -> None:
-        super().__init__(look, visit, parent)
+    def __init__(self, visit: "Visit", parent: QObject | None = None) -> None:
+        super().__init__(visit, parent)
         self._page: StandStillPage | None = None
         self._estimator: StandingEstimator | None = None
         self._phase = StandPhase.READY
@@ -58,7 +57,7 @@ class StandStillStep(Step):
     @property
     def page(self) -> StandStillPage:
         if self._page is None:
-            self._page = StandStillPage(self._look)
+            self._page = StandStillPage()
             self._page.zero_edited.connect(self._on_zero_edited)
             self._page.cannot_stand_pressed.connect(self._on_cannot_stand)
             self._page.can_stand_pressed.connect(self._on_can_stand)

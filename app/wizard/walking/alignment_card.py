@@ -8,7 +8,7 @@ from PySide6.QtCore import QRectF, QSize, Qt, Signal
 from PySide6.QtGui import QAccessible, QFontMetrics, QMouseEvent, QPainter, QPaintEvent, QResizeEvent
 from PySide6.QtWidgets import QFrame, QGridLayout, QHBoxLayout, QScrollArea, QSizePolicy, QVBoxLayout, QWidget
 
-from app.theme.notifier import ThemeNotifier
+from app.theme.current import current_theme, px
 from app.theme.theme import CHIP_RADIUS, CONTROL_RADIUS
 from app.widgets.card import Card
 from app.widgets.chip import Chip
@@ -60,24 +60,24 @@ class AlignmentCard(Card):
     chosen = Signal(int, bool)
     reported = Signal()
 
-    def __init__(self, look: ThemeNotifier, entry: ChangeEntry) -> None:
+    def __init__(self, entry: ChangeEntry) -> None:
         self._entry = entry
         self._rows: list[_AlignmentRow] = []
         self._list = QWidget()
         self._rows_column = QVBoxLayout(self._list)
         self._scroll = QScrollArea()
-        self.next_title = Text(look, size=14, weight=SEMIBOLD, wraps=True)
-        self.parts = Choice(look, tr("Part"))
-        self.steppers = {name: Stepper(look) for name in FIGURES}
-        self.words = Field(look, tr("In words"), has_label=False, placeholder=tr("Free text, optional"), most=MOST_TEXT)
-        self.written = Text(look, size=12, tone="ink2", wraps=True)
+        self.next_title = Text(size=14, weight=SEMIBOLD, wraps=True)
+        self.parts = Choice(tr("Part"))
+        self.steppers = {name: Stepper() for name in FIGURES}
+        self.words = Field(tr("In words"), has_label=False, placeholder=tr("Free text, optional"), most=MOST_TEXT)
+        self.written = Text(size=12, tone="ink2", wraps=True)
         self._grid = QGridLayout()
-        self.chip = Chip(look, Side.LEFT)  # until rows are shown
+        self.chip = Chip(Side.LEFT)  # until rows are shown
         self._head_row = QWidget()
         self._head = QHBoxLayout(self._head_row)
         self._head.setContentsMargins(0, 0, 0, 0)
-        self._side_word = Text(look, tr("prosthetic"), size=12, tone="ink2")
-        super().__init__(look)
+        self._side_word = Text(tr("prosthetic"), size=12, tone="ink2")
+        super().__init__()
         for part in ProsthesisPart:
             self.parts.addItem(part_name(part), part)
         self._build()
@@ -97,7 +97,7 @@ class AlignmentCard(Card):
         while len(self._rows) > len(rows):
             self._rows.pop().deleteLater()
         while len(self._rows) < len(rows):
-            row = _AlignmentRow(self._look, len(self._rows))
+            row = _AlignmentRow(len(self._rows))
             row.pressed.connect(self.chosen)
             self._rows_column.insertWidget(len(self._rows), row)
             self._rows.append(row)
@@ -115,7 +115,7 @@ class AlignmentCard(Card):
     def set_compact(self, is_compact: bool) -> None:
         """Show the entry of the change in two rows where the card has the width of the window, and little height."""
         self._head_row.setVisible(not is_compact)  # the tab shows it, and the sentence above names whose it is
-        self._scroll.setMinimumHeight(self._look.theme.px(LEAST_LIST_COMPACT if is_compact else LEAST_LIST))
+        self._scroll.setMinimumHeight(px(LEAST_LIST_COMPACT if is_compact else LEAST_LIST))
         steppers = [*self.steppers.values()]
         bottom = Qt.AlignmentFlag.AlignBottom
         for widget in (self.parts, *steppers, self.words, self.written):
@@ -157,7 +157,7 @@ class AlignmentCard(Card):
         self.written.setText(tr("Recorded as: {change}").format(change=line) if line else tr("Nothing changed yet."))
 
     def _build(self) -> None:
-        self._head.addWidget(Text(self._look, tr("Alignments"), size=16, weight=SEMIBOLD))
+        self._head.addWidget(Text(tr("Alignments"), size=16, weight=SEMIBOLD))
         self._head.addStretch(1)
         self._head.addWidget(self.chip)
         self._head.addWidget(self._side_word)
@@ -205,9 +205,9 @@ class _AlignmentRow(Themed):
 
     pressed = Signal(int, bool)
 
-    def __init__(self, look: ThemeNotifier, number: int) -> None:
+    def __init__(self, number: int) -> None:
         super().__init__()
-        self._look, self._number = look, number
+        self._number = number
         self.reported = AlignmentRow("", "", "", (), RowRole.NONE)
         self.setSizePolicy(QSizePolicy.Policy.Expanding, QSizePolicy.Policy.Fixed)
         self.setCursor(Qt.CursorShape.PointingHandCursor)
@@ -219,10 +219,10 @@ class _AlignmentRow(Themed):
         stated = [f"{reported.letter} {reported.title}", reported.note, lines, role]
         self.setAccessibleName(", ".join(filter(None, stated)))
         self.setAccessibleDescription(tr("Key {key}").format(key=str(self._number + 1)))
-        self._on_look_changed()
+        self._apply_theme()
 
     def sizeHint(self) -> QSize:
-        px = self._look.theme.px
+        px = current_theme().px
         height = px(2 * PADDING + 2 * LINE) + sum(self._line_heights())
         return QSize(px(200), height)
 
@@ -230,7 +230,7 @@ class _AlignmentRow(Themed):
         return self.sizeHint()
 
     def painted_texts(self) -> list[PaintedText]:
-        theme, px = self._look.theme, self._look.theme.px
+        theme, px = current_theme(), current_theme().px
         left, width = px(PADDING + BADGE + GAP), self.width()
         badge_tone = "inv_ink" if self.reported.role is RowRole.SHOWN else "ink"
         role = {RowRole.SHOWN: tr("shown"), RowRole.BESIDE: tr("compared"), RowRole.NONE: ""}[self.reported.role]
@@ -258,13 +258,13 @@ class _AlignmentRow(Themed):
 
     def resizeEvent(self, event: QResizeEvent) -> None:
         super().resizeEvent(event)
-        self._on_look_changed()  # its lines may wrap otherwise
+        self._apply_theme()  # its lines may wrap otherwise
 
     def mousePressEvent(self, event: QMouseEvent) -> None:
         self.pressed.emit(self._number, bool(event.modifiers() & Qt.KeyboardModifier.ShiftModifier))
 
     def paintEvent(self, _event: QPaintEvent) -> None:
-        theme = self._look.theme
+        theme = current_theme()
         c, painter = theme.colours, QPainter(self)
         is_shown = self.reported.role is RowRole.SHOWN
         if is_shown:
@@ -278,15 +278,15 @@ class _AlignmentRow(Themed):
         return [f"{name}: {words}" for name, words in self.reported.lines]
 
     def _line_heights(self) -> list[int]:
-        px, font = self._look.theme.px, self._look.theme.font(12)
+        px, font = current_theme().px, current_theme().font(12)
         width = max(self.width() - px(2 * PADDING + BADGE + GAP), px(140))
         return [max(px(LINE), height_for(words, font, width)) for words in self._line_words()]
 
     @property
     def _badge(self) -> QRectF:
-        px = self._look.theme.px
+        px = current_theme().px
         return QRectF(px(PADDING), px(PADDING + 4), px(BADGE), px(BADGE))
 
-    def _on_look_changed(self) -> None:
+    def _apply_theme(self) -> None:
         self.setFixedHeight(self.sizeHint().height())
         self.update()

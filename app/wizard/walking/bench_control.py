@@ -36,7 +36,7 @@ class Bench(QObject):
 
     changed = Signal()
 
-    def __init__(self, visit: "Visit", parent: QObject) -> None:
+    def __init__(self, visit: "Visit", parent: QObject | None = None) -> None:
         super().__init__(parent)
         self._visit = visit
         self.entry = ChangeEntry()

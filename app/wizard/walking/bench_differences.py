@@ -4,7 +4,7 @@ from app.results.compared_words import change_in_words, is_judged, why_not_repor
 from app.summary.comparison import Compared, Comparison
 from app.summary.measures import FITTED
 from app.summary.numbers_in_words import DAGGER, MARKS, judged_in_words
-from app.theme.notifier import ThemeNotifier
+from app.theme.current import px
 from app.widgets.card import Card
 from app.widgets.table import CellTable, TableColumn, TableRow
 from app.widgets.table_cells import CENTRE, EMPTY, RIGHT, ErrorStrip, TableCell, TextCell
@@ -27,11 +27,11 @@ MOST_FITTED = 3  # there is room for no more
 class BenchDifferences(Card):
     """Grey is the error; what is beyond it has a circle."""
 
-    def __init__(self, look: ThemeNotifier) -> None:
-        self.title = Text(look, size=16, weight=SEMIBOLD)
-        self.table = CellTable(look, tr("Differences"), row=ROW, head=HEAD)
-        self.no_proof = Text(look, tr(NO_PROOF), size=12, tone="ink2", wraps=True)
-        super().__init__(look, padding=PADDING)
+    def __init__(self) -> None:
+        self.title = Text(size=16, weight=SEMIBOLD)
+        self.table = CellTable(tr("Differences"), row=ROW, head=HEAD)
+        self.no_proof = Text(tr(NO_PROOF), size=12, tone="ink2", wraps=True)
+        super().__init__(padding=PADDING)
         self.column.addWidget(self.title)
         self.column.addWidget(self.table)
         self.column.addStretch(1)
@@ -40,7 +40,7 @@ class BenchDifferences(Card):
     @property
     def needed(self) -> int:
         """How wide it has to be, px of the screen."""
-        return self.table.minimumWidth() + self._look.theme.px(2 * PADDING + 2)
+        return self.table.minimumWidth() + px(2 * PADDING + 2)
 
     def show_pair(self, found: Comparison | None, prosthetic: Side, reported: str) -> None:
         """Show how the pair differs; None: one alignment was walked with, and nothing is beside it."""

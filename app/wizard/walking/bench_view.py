@@ -12,8 +12,8 @@ from app.results.compared_words import not_reported_in_words
 from app.summary.beside import changes_on_curves
 from app.summary.comparison import Comparison
 from app.summary.conditions import Part
+from app.theme.current import current_theme
 from app.theme.icons import Icon
-from app.theme.notifier import ThemeNotifier
 from app.widgets.focus_ring import NO_RING
 from app.widgets.icons import IconMark
 from app.widgets.segmented import Segmented
@@ -61,26 +61,25 @@ class BenchView(Themed):
     chosen = Signal(int, bool)
     reported = Signal()
 
-    def __init__(self, look: ThemeNotifier, entry: ChangeEntry) -> None:
+    def __init__(self, entry: ChangeEntry) -> None:
         super().__init__()
-        self._look, self._is_compact, self._room = look, False, 0
-        self._mark = IconMark(look, Icon.DIFFERENCE, size=24)
-        self.first = Text(look, size=20, weight=SEMIBOLD, wraps=True)
-        self.then = Text(look, tone="ink2", wraps=True)
+        self._is_compact, self._room = False, 0
+        self._mark = IconMark(Icon.DIFFERENCE, size=24)
+        self.first = Text(size=20, weight=SEMIBOLD, wraps=True)
+        self.then = Text(tone="ink2", wraps=True)
         self.tabs = Segmented(
-            look,
             tr("View"),
             [(ALIGNMENTS, tr("Alignments"), ""), (CURVES, tr("Curves"), ""), (CHANGES, tr("Differences"), "")],
         )
-        self.alignments = AlignmentCard(look, entry)
-        self.differences = BenchDifferences(look)
+        self.alignments = AlignmentCard(entry)
+        self.differences = BenchDifferences()
         self._curves = QWidget()
         self._frames: dict[tuple[Side, JointKind], ComparedFrame] = {}
         self._build()
         self.alignments.chosen.connect(self.chosen)
         self.alignments.reported.connect(self.reported)
         self.tabs.chosen.connect(self._arrange)
-        self._on_look_changed()
+        self._apply_theme()
         self._arrange()
 
     @property
@@ -109,7 +108,7 @@ class BenchView(Themed):
     def set_compact(self, is_compact: bool) -> None:
         self._is_compact = is_compact
         self.alignments.set_compact(is_compact)
-        self._on_look_changed()
+        self._apply_theme()
         self._arrange()
 
     def fit(self, room: int) -> None:
@@ -141,7 +140,7 @@ class BenchView(Themed):
 
     def _frame(self, side: Side, kind: JointKind) -> ComparedFrame:
         if (side, kind) not in self._frames:
-            frame = ComparedFrame(self._look, ComparedChart(self._look, kind), side, kind)
+            frame = ComparedFrame(ComparedChart(kind), side, kind)
             self._frames[side, kind] = frame
             self._curves_column.addWidget(frame, 1)
         return self._frames[side, kind]
@@ -170,7 +169,7 @@ class BenchView(Themed):
         self._column.addLayout(self._row, 1)
 
     def _arrange(self) -> None:
-        px, choice = self._look.theme.px, self.tabs.choice
+        px, choice = current_theme().px, self.tabs.choice
         list_width = max(px(LIST), self.alignments.minimumSizeHint().width())
         curves = max([px(CURVES_LEAST), *(frame.minimumSizeHint().width() for frame in self.frames)])
         changes = max(px(DIFFERENCES), self.differences.needed)
@@ -188,8 +187,8 @@ class BenchView(Themed):
             card.setMinimumWidth(width if is_fixed else 0)
             card.setMaximumWidth(width if is_fixed else ANY_WIDTH)
 
-    def _on_look_changed(self) -> None:
-        px = self._look.theme.px
+    def _apply_theme(self) -> None:
+        px = current_theme().px
         self.first.set_size(16 if self._is_compact else 20)
         self._column.setSpacing(px(12))
         self._row.setSpacing(px(BETWEEN))

@@ -7,7 +7,7 @@ from PySide6.QtCore import QSize, Qt
 from PySide6.QtGui import QAccessible
 from PySide6.QtWidgets import QBoxLayout, QHBoxLayout, QSizePolicy, QVBoxLayout
 
-from app.theme.notifier import ThemeNotifier
+from app.theme.current import current_theme, px
 from app.widgets.button import Button, ButtonKind
 from app.widgets.card import Card
 from app.widgets.chip import Chip
@@ -28,19 +28,19 @@ ACROSS, DOWN = QBoxLayout.Direction.LeftToRight, QBoxLayout.Direction.TopToBotto
 class WalkFigures(Card):
     """Strides and cadence, to be read from across the room."""
 
-    def __init__(self, look: ThemeNotifier) -> None:
-        self._strides = Text(look, NO_FIGURE, size=FIGURE, weight=SEMIBOLD)
-        self._cadence = Text(look, NO_FIGURE, size=FIGURE, weight=SEMIBOLD)
-        self._counts = {side: Text(look, "0", size=18, weight=MEDIUM) for side in Side}
-        self._chips = {side: Chip(look, side) for side in Side}
-        self._line = Hairline(look)
-        self._unit = Text(look, tr("steps/min"), size=14, tone="ink2")
+    def __init__(self) -> None:
+        self._strides = Text(NO_FIGURE, size=FIGURE, weight=SEMIBOLD)
+        self._cadence = Text(NO_FIGURE, size=FIGURE, weight=SEMIBOLD)
+        self._counts = {side: Text("0", size=18, weight=MEDIUM) for side in Side}
+        self._chips = {side: Chip(side) for side in Side}
+        self._line = Hairline()
+        self._unit = Text(tr("steps/min"), size=14, tone="ink2")
         self._stride_row, self._cadence_row, self._sides = QHBoxLayout(), QHBoxLayout(), QBoxLayout(DOWN)
         self._both = QBoxLayout(DOWN)
         self._pairs: list[QHBoxLayout] = []
         self._parts: list[QBoxLayout] = []
         self.in_words = ""
-        super().__init__(look, spacing=0)
+        super().__init__(spacing=0)
         self.setSizePolicy(QSizePolicy.Policy.Preferred, QSizePolicy.Policy.Fixed)
         for side in Side:
             pair = QHBoxLayout()
@@ -56,14 +56,14 @@ class WalkFigures(Card):
         self._cadence_row.addStretch(1)
         for title, row in ((tr("Strides"), self._stride_row), (tr("Cadence"), self._cadence_row)):
             part = QBoxLayout(DOWN)
-            part.addWidget(Text(look, title, size=14, tone="ink2"))
+            part.addWidget(Text(title, size=14, tone="ink2"))
             part.addLayout(row)
             self._parts.append(part)
         self._both.addLayout(self._parts[0], 1)
         self._both.addWidget(self._line)
         self._both.addLayout(self._parts[1], 1)
         self.column.addLayout(self._both)
-        self._on_look_changed()
+        self._apply_theme()
 
     def show_figures(self, strides: Mapping[Side, int], cadence_steps_min: float) -> None:
         shown = str(max(strides.values())) if strides else NO_FIGURE
@@ -88,7 +88,7 @@ class WalkFigures(Card):
         self._strides.set_size(size)
         self._cadence.set_size(size)
         self._reserve_room()
-        self._unit.setContentsMargins(0, 0, 0, self._look.theme.px(size * UNDER_FIGURES))
+        self._unit.setContentsMargins(0, 0, 0, px(size * UNDER_FIGURES))
 
     def set_compact(self, is_compact: bool, is_narrow: bool) -> None:
         """Stand in one line; where it is narrow, with the words above the figures."""
@@ -98,7 +98,7 @@ class WalkFigures(Card):
             part.setDirection(ACROSS if is_compact and not is_narrow else DOWN)
         self._line.setVisible(not is_compact)
         self._padding = 8.0 if is_compact else 16.0
-        self._on_look_changed()
+        self._apply_theme()
 
     def _reserve_room(self) -> None:
         """As wide as the figures get, so that nothing jumps."""
@@ -107,9 +107,9 @@ class WalkFigures(Card):
         for label in self._counts.values():
             label.setMinimumWidth(label.fontMetrics().horizontalAdvance("000"))
 
-    def _on_look_changed(self) -> None:
-        super()._on_look_changed()
-        px = self._look.theme.px
+    def _apply_theme(self) -> None:
+        super()._apply_theme()
+        px = current_theme().px
         for row in (self._stride_row, self._cadence_row, *self._pairs):
             row.setSpacing(px(8))
         self._sides.setSpacing(px(8))
@@ -122,13 +122,13 @@ class WalkFigures(Card):
 class StoppedCard(Card):
     """What was just recorded, and the one question about it."""
 
-    def __init__(self, look: ThemeNotifier) -> None:
-        self._title = Text(look, size=16, weight=SEMIBOLD, wraps=True)
-        self._facts = Text(look, size=14, tone="ink2", wraps=True)
-        self.keep = Button(look, "", ButtonKind.PRIMARY, key="I")
-        self.discard = Button(look, tr("Exclude"), ButtonKind.SECONDARY, key="X")
+    def __init__(self) -> None:
+        self._title = Text(size=16, weight=SEMIBOLD, wraps=True)
+        self._facts = Text(size=14, tone="ink2", wraps=True)
+        self.keep = Button("", ButtonKind.PRIMARY, key="I")
+        self.discard = Button(tr("Exclude"), ButtonKind.SECONDARY, key="X")
         self._row, self._verbs = QBoxLayout(ACROSS), QHBoxLayout()
-        super().__init__(look)
+        super().__init__()
         self.setSizePolicy(QSizePolicy.Policy.Preferred, QSizePolicy.Policy.Fixed)
         words = QVBoxLayout()
         words.setSpacing(0)
@@ -160,10 +160,10 @@ class StoppedCard(Card):
         """Put the buttons below the words where the width is too small for both."""
         self._row.setDirection(DOWN if is_narrow else ACROSS)
 
-    def _on_look_changed(self) -> None:
-        super()._on_look_changed()
+    def _apply_theme(self) -> None:
+        super()._apply_theme()
         for row in (self._row, self._verbs):
-            row.setSpacing(self._look.theme.px(12))
+            row.setSpacing(px(12))
 
 
 class EmptyCard(Card):
@@ -171,16 +171,15 @@ class EmptyCard(Card):
 
     accessible_role = QAccessible.Role.Note
 
-    def __init__(self, look: ThemeNotifier) -> None:
-        self._what = Text(look, tr("Choose a condition, then press Space."), size=26, weight=SEMIBOLD, wraps=True)
+    def __init__(self) -> None:
+        self._what = Text(tr("Choose a condition, then press Space."), size=26, weight=SEMIBOLD, wraps=True)
         self._then = Text(
-            look,
             tr("Stand still for two seconds first: ankle angles are then correct from the start."),
             size=16,
             tone="ink2",
             wraps=True,
         )
-        super().__init__(look)
+        super().__init__()
         self.setAccessibleName(f"{self._what.text()} {self._then.text()}")
         for text in (self._what, self._then):
             text.setAlignment(Qt.AlignmentFlag.AlignCenter)
@@ -193,11 +192,11 @@ class EmptyCard(Card):
 class NextCard(Card):
     """What the next walk is called and which test it is, beside the button that starts it."""
 
-    def __init__(self, look: ThemeNotifier) -> None:
-        self._title = Text(look, size=14, weight=MEDIUM, tone="ink2")
-        self.chooser = LabelChooser(look)
-        self.test = TimedChooser(look)
-        super().__init__(look)
+    def __init__(self) -> None:
+        self._title = Text(size=14, weight=MEDIUM, tone="ink2")
+        self.chooser = LabelChooser()
+        self.test = TimedChooser()
+        super().__init__()
         self.setSizePolicy(QSizePolicy.Policy.Preferred, QSizePolicy.Policy.Fixed)
         head = QHBoxLayout()
         head.addWidget(self._title, 1)

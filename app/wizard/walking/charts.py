@@ -8,7 +8,7 @@ from PySide6.QtWidgets import QHBoxLayout, QSizePolicy, QSpacerItem, QWidget
 
 from app.charts.axes import ANKLE_DEG, KNEE_DEG, degrees_in_words
 from app.plots.phase_lanes import Swatch
-from app.theme.notifier import ThemeNotifier
+from app.theme.current import current_theme, px
 from app.widgets.card import Card
 from app.widgets.chip import SideKey
 from app.widgets.text import MEDIUM, SEMIBOLD, Text
@@ -29,29 +29,29 @@ class WalkingCharts(Card):
 
     accessible_role = QAccessible.Role.Chart
 
-    def __init__(self, look: ThemeNotifier) -> None:
-        self.hip = LiveStrip(look, HIP_DEG, HIP_TICK_DEG)
-        self.knee = LiveStrip(look, KNEE_DEG, KNEE_TICK_DEG)
-        self.ankle = LiveStrip(look, ANKLE_DEG, ANKLE_TICK_DEG)
-        self.lanes = LiveLanes(look)
+    def __init__(self) -> None:
+        self.hip = LiveStrip(HIP_DEG, HIP_TICK_DEG)
+        self.knee = LiveStrip(KNEE_DEG, KNEE_TICK_DEG)
+        self.ankle = LiveStrip(ANKLE_DEG, ANKLE_TICK_DEG)
+        self.lanes = LiveLanes()
         self._simulated: list[Text] = []  # over each joint's curves and the phases: one may be cut out alone
-        self._provisional = Text(look, size=12, weight=MEDIUM, tone="ink2")
-        self._hip_note = Text(look, size=12, weight=MEDIUM, tone="ink2")
+        self._provisional = Text(size=12, weight=MEDIUM, tone="ink2")
+        self._hip_note = Text(size=12, weight=MEDIUM, tone="ink2")
         self._hip_head = QWidget()  # to be hidden at once
         self._has_hips = False
-        self._keys = {side: SideKey(look, side) for side in Side}
+        self._keys = {side: SideKey(side) for side in Side}
         self._is_compact = False
         self._legend_pairs: list[QHBoxLayout] = []
         self._legend_gaps: list[QSpacerItem] = []  # they give way where words are long
-        self._lines = Hairline(look), Hairline(look)
-        self._hip_line = Hairline(look)
+        self._lines = Hairline(), Hairline()
+        self._hip_line = Hairline()
         self._heads: list[QHBoxLayout] = []
         self._legend, self._key_row = QHBoxLayout(), QHBoxLayout()
-        self._phases_title = Text(look, tr("Gait phases"), size=14, tone="ink2")
-        super().__init__(look, spacing=4)
+        self._phases_title = Text(tr("Gait phases"), size=14, tone="ink2")
+        super().__init__(spacing=4)
         self.setSizePolicy(QSizePolicy.Policy.Expanding, QSizePolicy.Policy.Expanding)
         self._build()
-        self._on_look_changed()
+        self._apply_theme()
 
     def set_simulated(self, is_simulated: bool) -> None:
         for mark in self._simulated:
@@ -72,7 +72,7 @@ class WalkingCharts(Card):
         self._hip_line.setVisible(self._has_hips and not is_compact)
         self.lanes.set_compact(is_compact)
         self._padding, self._spacing = (8.0, 2.0) if is_compact else (16.0, 4.0)
-        self._on_look_changed()
+        self._apply_theme()
 
     def set_seconds(self, seconds: float) -> None:
         for chart in (self.hip, self.knee, self.ankle, self.lanes):
@@ -112,17 +112,17 @@ class WalkingCharts(Card):
             self._hip_note.setText(stated)
 
     def _build(self) -> None:
-        hip = self._head(Text(self._look, tr("Hip"), size=16, weight=SEMIBOLD), tr("flexion + (°)"))
+        hip = self._head(Text(tr("Hip"), size=16, weight=SEMIBOLD), tr("flexion + (°)"))
         hip.addStretch(1)
         hip.addWidget(self._hip_note)
         hip.setContentsMargins(0, 0, 0, 0)
         self._hip_head.setLayout(hip)
-        knee = self._head(Text(self._look, tr("Knee"), size=16, weight=SEMIBOLD), tr("flexion + (°)"))
+        knee = self._head(Text(tr("Knee"), size=16, weight=SEMIBOLD), tr("flexion + (°)"))
         knee.addStretch(1)
         knee.addLayout(self._key_row)
         for key in self._keys.values():
             self._key_row.addWidget(key)
-        ankle = self._head(Text(self._look, tr("Ankle"), size=16, weight=SEMIBOLD), tr("dorsiflexion + (°)"))
+        ankle = self._head(Text(tr("Ankle"), size=16, weight=SEMIBOLD), tr("dorsiflexion + (°)"))
         ankle.addStretch(1)
         ankle.addWidget(self._provisional)
         phases = self._head(self._phases_title, "")
@@ -135,8 +135,8 @@ class WalkingCharts(Card):
         )
         for phase, word in words:
             pair = QHBoxLayout()
-            pair.addWidget(Swatch(self._look, phase))
-            pair.addWidget(Text(self._look, word, size=12, tone="ink2"))
+            pair.addWidget(Swatch(phase))
+            pair.addWidget(Text(word, size=12, tone="ink2"))
             if self._legend_pairs:
                 self._legend_gaps.append(QSpacerItem(0, 0, QSizePolicy.Policy.Maximum))
                 self._legend.addItem(self._legend_gaps[-1])
@@ -161,16 +161,16 @@ class WalkingCharts(Card):
         head = QHBoxLayout()
         head.addWidget(title)
         if sign:
-            head.addWidget(Text(self._look, sign, size=12, tone="ink2"))
-        mark = Text(self._look, tr("SIMULATED"), size=12, weight=SEMIBOLD)
+            head.addWidget(Text(sign, size=12, tone="ink2"))
+        mark = Text(tr("SIMULATED"), size=12, weight=SEMIBOLD)
         head.addWidget(mark)
         self._simulated.append(mark)
         self._heads.append(head)
         return head
 
-    def _on_look_changed(self) -> None:
-        super()._on_look_changed()
-        px = self._look.theme.px
+    def _apply_theme(self) -> None:
+        super()._apply_theme()
+        px = current_theme().px
         for head in self._heads:
             head.setSpacing(px(8))
         self._key_row.setSpacing(px(20))
@@ -184,19 +184,18 @@ class WalkingCharts(Card):
 class Hairline(QWidget):
     """A line across, between things that belong together."""
 
-    def __init__(self, look: ThemeNotifier) -> None:
+    def __init__(self) -> None:
         super().__init__()
-        self._look = look
         self.setSizePolicy(QSizePolicy.Policy.Expanding, QSizePolicy.Policy.Fixed)
 
     def sizeHint(self) -> QSize:
-        return QSize(1, self._look.theme.px(9))
+        return QSize(1, px(9))
 
     def paintEvent(self, _event: QPaintEvent) -> None:
         painter = QPainter(self)
-        height = self._look.theme.px(1)
+        height = px(1)
         line = QRectF(0, (self.height() - height) // 2, self.width(), height)
-        painter.fillRect(line, QColor(self._look.theme.colours.line))
+        painter.fillRect(line, QColor(current_theme().colours.line))
 
 
 def last_angles_in_words(live: WalkingReadout) -> str:

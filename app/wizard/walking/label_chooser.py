@@ -4,7 +4,7 @@ from PySide6.QtCore import QRect, QRectF, QSize, Qt, Signal
 from PySide6.QtGui import QFontMetrics, QKeyEvent, QPainter, QPaintEvent, QResizeEvent
 from PySide6.QtWidgets import QAbstractButton, QSizePolicy, QWidget
 
-from app.theme.notifier import ThemeNotifier
+from app.theme.current import current_theme, px
 from app.theme.theme import CHIP_RADIUS
 from app.widgets.chips import flow
 from app.widgets.field import Field
@@ -25,12 +25,11 @@ class LabelChooser(Themed):
 
     chosen = Signal(str)  # by the user
 
-    def __init__(self, look: ThemeNotifier) -> None:
+    def __init__(self) -> None:
         super().__init__()
-        self._look = look
         self._options: list[_Option] = []
         self._choice = ""
-        self.own = Field(look, tr("Other condition for the next walk"), placeholder=tr("Other"), has_label=False)
+        self.own = Field(tr("Other condition for the next walk"), placeholder=tr("Other"), has_label=False)
         self.own.setParent(self)
         # it was made before the labels: Tab would come to its box in its place
         self.own.setFocusProxy(None)  # type: ignore[arg-type]  # the stubs know no None, which takes the proxy away
@@ -57,7 +56,7 @@ class LabelChooser(Themed):
         while len(self._options) > len(labels):
             self._options.pop().deleteLater()
         while len(self._options) < len(labels):
-            option = _Option(self._look, self)
+            option = _Option(self)
             option.clicked.connect(self._on_clicked)
             option.show()
             self._options.append(option)
@@ -87,7 +86,7 @@ class LabelChooser(Themed):
 
     def minimumSizeHint(self) -> QSize:
         widths = [option.sizeHint().width() for option in self._options]
-        return QSize(max([self._look.theme.px(FIELD_WIDTH), *widths]), self._look.theme.px(HEIGHT))
+        return QSize(max([px(FIELD_WIDTH), *widths]), px(HEIGHT))
 
     def resizeEvent(self, event: QResizeEvent) -> None:
         super().resizeEvent(event)
@@ -118,14 +117,14 @@ class LabelChooser(Themed):
 
     def _flow(self, width: int) -> list[QRect]:
         """Where each label lies, and the field last, in lines of `width`."""
-        px = self._look.theme.px
+        px = current_theme().px
         required = [*(option.sizeHint().width() for option in self._options), px(FIELD_WIDTH)]
         return flow(required, width, px(GAP), px(HEIGHT))
 
     def _height_for(self, width: int) -> int:
         return self._flow(width)[-1].bottom() + 1
 
-    def _on_look_changed(self) -> None:
+    def _apply_theme(self) -> None:
         self._arrange()
 
     def _arrange(self) -> None:
@@ -148,9 +147,9 @@ class LabelChooser(Themed):
 class _Option(QAbstractButton):
     """A label with the digit that chooses it."""
 
-    def __init__(self, look: ThemeNotifier, chooser: LabelChooser) -> None:
+    def __init__(self, chooser: LabelChooser) -> None:
         super().__init__(chooser)
-        self._look, self._chooser, self._digit = look, chooser, ""
+        self._chooser, self._digit = chooser, ""
         self.setCheckable(True)
         self.setAttribute(Qt.WidgetAttribute.WA_Hover)
 
@@ -162,13 +161,13 @@ class _Option(QAbstractButton):
         self.update()
 
     def sizeHint(self) -> QSize:
-        px = self._look.theme.px
+        px = current_theme().px
         cap = px(GAP) + px(CAP) if self._digit else 0
         return QSize(2 * px(PADDING) + self._word_width + cap, px(HEIGHT))
 
     def painted_texts(self) -> list[PaintedText]:
         """Give what is painted now, each in its box."""
-        theme = self._look.theme
+        theme = current_theme()
         weight = SEMIBOLD if self.isChecked() else MEDIUM
         word = QRectF(theme.px(PADDING), 0, self._word_width, self.height())
         texts = [PaintedText(self.text(), word, theme.font(14, weight), "ink", LEFT)]
@@ -187,7 +186,7 @@ class _Option(QAbstractButton):
         """Leave it to the chooser, which marks one of all."""
 
     def paintEvent(self, _event: QPaintEvent) -> None:
-        theme = self._look.theme
+        theme = current_theme()
         c = theme.colours
         painter = QPainter(self)
         box = QRectF(self.rect()).adjusted(1, 1, -1, -1)
@@ -202,10 +201,10 @@ class _Option(QAbstractButton):
 
     @property
     def _cap(self) -> QRectF:
-        px = self._look.theme.px
+        px = current_theme().px
         return QRectF(self.width() - px(PADDING) - px(CAP), (self.height() - px(CAP)) / 2, px(CAP), px(CAP))
 
     @property
     def _word_width(self) -> int:
         """As wide as the word is when chosen, so that nothing moves."""
-        return QFontMetrics(self._look.theme.font(14, SEMIBOLD)).horizontalAdvance(self.text()) + 1
+        return QFontMetrics(current_theme().font(14, SEMIBOLD)).horizontalAdvance(self.text()) + 1

@@ -16,8 +16,8 @@ from PySide6.QtWidgets import QSizePolicy
 
 from app.charts.axes import AXIS_WIDTH, RIGHT_MARGIN
 from app.plots.phase_lanes import BETWEEN, GAP_PX, LANE, paint_phase
+from app.theme.current import current_theme
 from app.theme.leg_chip import CHIP, paint_chip
-from app.theme.notifier import ThemeNotifier
 from app.theme.theme import CHIP_RADIUS
 from app.widgets.text import MEDIUM
 from app.widgets.themed import Themed
@@ -36,9 +36,8 @@ LEAST_WIDTH = 320
 class LiveLanes(Themed):
     """Left above right over a time axis that ends now."""
 
-    def __init__(self, look: ThemeNotifier) -> None:
+    def __init__(self) -> None:
         super().__init__()
-        self._look = look
         self._between, self._axis_height = BETWEEN, AXIS_HEIGHT
         self._seconds = SHOWN_S
         self._now_s = 0.0
@@ -49,7 +48,7 @@ class LiveLanes(Themed):
         self.setSizePolicy(QSizePolicy.Policy.Expanding, QSizePolicy.Policy.Fixed)
 
     def sizeHint(self) -> QSize:
-        px = self._look.theme.px
+        px = current_theme().px
         return QSize(px(LEAST_WIDTH), 2 * px(LANE) + px(self._between) + px(self._axis_height))
 
     def minimumSizeHint(self) -> QSize:
@@ -58,7 +57,7 @@ class LiveLanes(Themed):
     def set_compact(self, is_compact: bool) -> None:
         self._between = BETWEEN_COMPACT if is_compact else BETWEEN
         self._axis_height = AXIS_HEIGHT_COMPACT if is_compact else AXIS_HEIGHT
-        self._on_look_changed()
+        self._apply_theme()
 
     def set_seconds(self, seconds: float) -> None:
         """Set how much time is in sight."""
@@ -101,12 +100,12 @@ class LiveLanes(Themed):
     @property
     def _place(self) -> QRectF:
         """Of the lanes, in px of the widget."""
-        px = self._look.theme.px
+        px = current_theme().px
         width = max(self.width() - px(AXIS_WIDTH) - px(RIGHT_MARGIN), 1)
         return QRectF(px(AXIS_WIDTH), 0, width, 2 * px(LANE) + px(self._between))
 
     def _top(self, side: Side) -> int:
-        px = self._look.theme.px
+        px = current_theme().px
         return 0 if side is Side.LEFT else px(LANE) + px(self._between)
 
     def _up_to_date(self, place: QRectF, ratio: float) -> ScrollingPicture:
@@ -125,7 +124,7 @@ class LiveLanes(Themed):
         if from_x < columns:
             painter = QPainter(picture.pixmap)
             painter.setClipRect(QRectF(from_x, 0, columns - from_x, rows))
-            painter.fillRect(picture.pixmap.rect(), QColor(self._look.theme.colours.surface))
+            painter.fillRect(picture.pixmap.rect(), QColor(current_theme().colours.surface))
             painter.setRenderHint(QPainter.RenderHint.Antialiasing)
             painter.scale(ratio, ratio)
             for side in self._lanes:
@@ -136,7 +135,7 @@ class LiveLanes(Themed):
 
     def _draw_lane(self, painter: QPainter, side: Side, picture: ScrollingPicture, from_x: int, ratio: float) -> None:
         """Draw the phases that reach beyond column `from_x`."""
-        theme = self._look.theme
+        theme = current_theme()
         full, pale = theme.curve(side), theme.soft(side)
         gap = GAP_PX * theme.scale / 2
         for span in self._lanes[side].spans:
@@ -150,7 +149,7 @@ class LiveLanes(Themed):
     def _paint_silent(
         self, painter: QPainter, side: Side, left: float, end_s: float | None, picture: ScrollingPicture, ratio: float
     ) -> None:
-        theme, place = self._look.theme, self._place
+        theme, place = current_theme(), self._place
         c = theme.colours
         right = (picture.columns if end_s is None else picture.x_of(end_s)) / ratio
         left = max(left, 0.0)
@@ -172,7 +171,7 @@ class LiveLanes(Themed):
 
     def _paint_frame(self, painter: QPainter) -> None:
         """Chips and time axis, which stand still."""
-        theme, place = self._look.theme, self._place
+        theme, place = current_theme(), self._place
         c, px = theme.colours, theme.px
         painter.fillRect(self.rect(), QColor(c.surface))
         chip = px(CHIP)
@@ -191,7 +190,7 @@ class LiveLanes(Themed):
             label = QRectF(left, top + px(TICK), width, self.height() - top - px(TICK))
             painter.drawText(label, Qt.AlignmentFlag.AlignCenter, stated)
 
-    def _on_look_changed(self) -> None:
+    def _apply_theme(self) -> None:
         self.updateGeometry()
         self.redraw()
 

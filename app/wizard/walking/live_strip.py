@@ -17,7 +17,7 @@ from PySide6.QtWidgets import QWidget
 
 from app.charts.axes import AXIS_WIDTH, RIGHT_MARGIN, range_for
 from app.plots.angle_chart import AngleAxis
-from app.theme.notifier import ThemeNotifier
+from app.theme.current import current_theme, px
 from app.widgets.text import MEDIUM
 from app.wizard.walking.readout import LiveTrace
 from app.wizard.walking.scrolling_picture import ScrollingPicture
@@ -53,9 +53,9 @@ class LiveStrip(pg.GraphicsView):  # type: ignore[misc]  # pyqtgraph has no type
     `tick_deg` is what two figures of the axis lie apart.
     """
 
-    def __init__(self, look: ThemeNotifier, fixed_deg: tuple[float, float], tick_deg: float) -> None:
+    def __init__(self, fixed_deg: tuple[float, float], tick_deg: float) -> None:
         super().__init__(useOpenGL=False)
-        self._look, self._tick_deg = look, tick_deg
+        self._tick_deg = tick_deg
         for part in (self, self.viewport()):
             part.setFocusPolicy(Qt.FocusPolicy.NoFocus)
         self._view = pg.ViewBox(enableMenu=False, enableMouse=False)
@@ -71,10 +71,10 @@ class LiveStrip(pg.GraphicsView):  # type: ignore[misc]  # pyqtgraph has no type
         self._base.setStyle(showValues=False)
         self._base.setTicks([])  # only its line
         self.setCentralItem(self._layout)
-        self._history = _History(look, fixed_deg, self.viewport())
+        self._history = _History(fixed_deg, self.viewport())
         self._view.sigResized.connect(self._on_view_resized)
         self._set_range()
-        self._on_look_changed()
+        self._apply_theme()
 
     @property
     def range_deg(self) -> tuple[float, float]:
@@ -86,7 +86,7 @@ class LiveStrip(pg.GraphicsView):  # type: ignore[misc]  # pyqtgraph has no type
         return self._history.missing
 
     def sizeHint(self) -> QSize:
-        px = self._look.theme.px
+        px = current_theme().px
         return QSize(px(LEAST_SIZE[0]), px(LEAST_SIZE[1]))
 
     def minimumSizeHint(self) -> QSize:
@@ -117,7 +117,7 @@ class LiveStrip(pg.GraphicsView):  # type: ignore[misc]  # pyqtgraph has no type
     def _set_range(self) -> None:
         lowest, highest = self.range_deg
         self._view.setYRange(lowest, highest, padding=0)
-        room = self._view.height() / self._look.theme.px(LEAST_BETWEEN_TICKS)
+        room = self._view.height() / px(LEAST_BETWEEN_TICKS)
         step = self._tick_deg
         while step < highest - lowest and (highest - lowest) / step > room:
             step *= 2
@@ -130,10 +130,10 @@ class LiveStrip(pg.GraphicsView):  # type: ignore[misc]  # pyqtgraph has no type
     def changeEvent(self, event: QEvent) -> None:
         super().changeEvent(event)
         if event.type() is QEvent.Type.StyleChange:
-            self._on_look_changed()
+            self._apply_theme()
 
-    def _on_look_changed(self) -> None:
-        theme = self._look.theme
+    def _apply_theme(self) -> None:
+        theme = current_theme()
         c = theme.colours
         self.setBackground(c.surface)
         self._axis.setWidth(theme.px(AXIS_WIDTH))
@@ -236,11 +236,10 @@ class _Trace:
 class _History(QWidget):
     """The moving part, over the view of the axes. Nothing is drawn while it is out of sight."""
 
-    def __init__(self, look: ThemeNotifier, fixed_deg: tuple[float, float], parent: QWidget) -> None:
+    def __init__(self, fixed_deg: tuple[float, float], parent: QWidget) -> None:
         super().__init__(parent)
         self.setAttribute(Qt.WidgetAttribute.WA_OpaquePaintEvent)  # the scene beneath is not painted for it
         self.setAttribute(Qt.WidgetAttribute.WA_TransparentForMouseEvents)
-        self._look = look
         self._fixed = self.range_deg = fixed_deg
         self._seconds = SHOWN_S
         self._pens: dict[tuple[Side, bool, float], QPen] = {}
@@ -313,7 +312,7 @@ class _History(QWidget):
         if self.missing != self._drawn:
             changed = set(self.missing).symmetric_difference(self._drawn)
             dirty_s = min(dirty_s, *(span.start_s for span in changed))
-        reach = CURVE_PX * self._look.theme.scale * ratio  # a line is half as wide to either side
+        reach = CURVE_PX * current_theme().scale * ratio  # a line is half as wide to either side
         if from_x > 0 and dirty_s < np.inf:
             from_x = int(min(max(np.floor(picture.x_of(dirty_s) - reach), 0), from_x))
         if from_x < columns:
@@ -326,7 +325,7 @@ class _History(QWidget):
 
     def _draw(self, painter: QPainter, picture: ScrollingPicture, from_x: float, ratio: float) -> None:
         """Draw all that lies right of `from_x`, as far as the painter's clip lets through."""
-        theme = self._look.theme
+        theme = current_theme()
         painter.fillRect(0, 0, picture.columns, picture.rows, QColor(theme.colours.surface))
         for span in self.missing:
             left, right = self._ends(span, picture)
@@ -344,7 +343,7 @@ class _History(QWidget):
 
     def _paint_words(self, painter: QPainter, picture: ScrollingPicture, ratio: float) -> None:
         """Say in each box who is missing, as far as the words have room; while it lasts they take it."""
-        theme = self._look.theme
+        theme = current_theme()
         px = theme.px
         painter.setFont(theme.font(12, MEDIUM))
         metrics = painter.fontMetrics()
@@ -389,7 +388,7 @@ class _History(QWidget):
         """Give the pen of a line of which `length_px` are drawn already."""
         key = (side, is_thin, ratio)
         if key not in self._pens:
-            self._pens[key] = self._look.theme.side_pen(side, (THIN_PX if is_thin else CURVE_PX) * ratio)
+            self._pens[key] = current_theme().side_pen(side, (THIN_PX if is_thin else CURVE_PX) * ratio)
         pen = QPen(self._pens[key])
         if pen.style() is Qt.PenStyle.CustomDashLine:
             pen.setDashOffset(length_px / pen.widthF())

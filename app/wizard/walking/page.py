@@ -19,8 +19,8 @@ from PySide6.QtWidgets import (
 )
 
 from app.patient_screen.controls import ControlsCard
+from app.theme.current import current_theme
 from app.theme.icons import Icon
-from app.theme.notifier import ThemeNotifier
 from app.widgets.focus_ring import NO_RING
 from app.widgets.notice import Notice
 from app.widgets.segmented import Segmented
@@ -76,35 +76,34 @@ class WalkingPage(Themed):
 
     keeps_place_for_messages = True
 
-    def __init__(self, look: ThemeNotifier, entry: ChangeEntry | None = None) -> None:
+    def __init__(self, entry: ChangeEntry | None = None) -> None:
         super().__init__()
-        self._look = look
         self._is_compact = self._has_bench = self._has_test = self._has_result = False
         self._has_memory = self._has_hips = False
-        self.bench = BenchView(look, entry or ChangeEntry())
+        self.bench = BenchView(entry or ChangeEntry())
         self.rows: tuple[WalkRow, ...] = ()
         self._asked: WalkRow | None = None
         self.live = WalkingReadout()
         self._described_s = -math.inf
-        self.notice = Notice(look, size=16)
+        self.notice = Notice(size=16)
         self._has_message = False
         self._message: tuple[str, str] | None = None
-        self.tabs = Segmented(look, tr("View"), [("walks", tr("Walks"), ""), ("curves", tr("Curves"), "")])
-        self.patient_controls = ControlsCard(look)  # in sight while the patient's screen is
-        self.stopped = StoppedCard(look)
-        self.empty = EmptyCard(look)
-        self.charts = WalkingCharts(look)
-        self.memory = SensorsProgress(look)
-        self.figures = WalkFigures(look)
-        self.walks = WalkList(look)
-        self.next = NextCard(look)
-        self.timed = TimedView(look)
-        self.timed_result = TimedResultView(look)
+        self.tabs = Segmented(tr("View"), [("walks", tr("Walks"), ""), ("curves", tr("Curves"), "")])
+        self.patient_controls = ControlsCard()  # in sight while the patient's screen is
+        self.stopped = StoppedCard()
+        self.empty = EmptyCard()
+        self.charts = WalkingCharts()
+        self.memory = SensorsProgress()
+        self.figures = WalkFigures()
+        self.walks = WalkList()
+        self.next = NextCard()
+        self.timed = TimedView()
+        self.timed_result = TimedResultView()
         self._inside = QWidget()
         self._scroll = QScrollArea()
         self._build()
         self._connect()
-        self._on_look_changed()
+        self._apply_theme()
         self._arrange()
 
     @property
@@ -242,7 +241,7 @@ class WalkingPage(Themed):
             self.walks.set_compact(is_compact)
             self.bench.set_compact(is_compact)
             self.timed.set_compact(is_compact)
-            self._on_look_changed()
+            self._apply_theme()
             self._arrange()
 
     def resizeEvent(self, event: QResizeEvent) -> None:
@@ -345,7 +344,7 @@ class WalkingPage(Themed):
             layout.insertWidget(index, widget)
 
     def _fit(self) -> None:
-        px = self._look.theme.px
+        px = current_theme().px
         is_wide = self.width() >= px(WIDE_FROM) and not self._is_compact
         self.charts.set_seconds(SECONDS_WIDE if is_wide else SECONDS)
         # between walks what comes next needs the room more
@@ -382,8 +381,8 @@ class WalkingPage(Themed):
         if self._asked is not None:
             self.discard_pressed.emit(self._asked.id)
 
-    def _on_look_changed(self) -> None:
-        px = self._look.theme.px
+    def _apply_theme(self) -> None:
+        px = current_theme().px
         between = px(BETWEEN_COMPACT if self._is_compact else BETWEEN)
         for layout in (self._column, self._left, self._right):
             layout.setSpacing(between)

@@ -19,7 +19,6 @@ from app.patient_screen.patient_view import SHOWN_STRIDES, PatientView
 from app.patient_screen.window import PatientWindow
 from app.system import sounds
 from app.system.sounds import Sound
-from app.theme.notifier import ThemeNotifier
 from app.wording.translation import tr
 from app.wording.verdicts import gate_sentence
 from core.body import LEG_SEGMENTS, Joint, Segment, Side, Site, knee_of
@@ -39,9 +38,9 @@ class PatientFeedback(QObject):
     run_requested = Signal()
     _news = Signal()
 
-    def __init__(self, look: ThemeNotifier, visit: "Visit", controls: ControlsCard, parent: QObject) -> None:
+    def __init__(self, visit: "Visit", controls: ControlsCard, parent: QObject) -> None:
         super().__init__(parent)
-        self._look, self._visit, self._controls = look, visit, controls
+        self._visit, self._controls = visit, controls
         self.window: PatientWindow | None = None
         self.target: Target | None = None
         self.metronome = Metronome(self)
@@ -74,7 +73,7 @@ class PatientFeedback(QObject):
             self.close()
             return
         self.show_reasons()
-        window = self.window = PatientWindow(self._look)
+        window = self.window = PatientWindow()
         window.closed.connect(self.close)
         window.run_requested.connect(self.run_requested)
         self._controls.setVisible(True)

@@ -9,7 +9,6 @@ from PySide6.QtCore import QObject, Slot
 
 from app.system import sounds
 from app.system.sounds import Sound
-from app.theme.notifier import ThemeNotifier
 from app.widgets.action_bar import BarState
 from app.widgets.rail_row import StepState
 from app.wizard.keys import Intent, KeyAction
@@ -43,8 +42,8 @@ WATCH_TICKS = 3  # of 30 a second: sensors are looked at ten times a second
 class WalkingStep(Step):
     id = StepId.WALKING
 
-    def __init__(self, look: ThemeNotifier, visit: "Visit", parent: QObject | None = None) -> None:
-        super().__init__(look, visit, parent)
+    def __init__(self, visit: "Visit", parent: QObject | None = None) -> None:
+        super().__init__(visit, parent)
         self._page: WalkingPage | None = None
         self.feedback: PatientFeedback | None = None  # made with the page
         self._tallies: dict[str, tuple[TargetTally, ...]] = {}  # of walks that are still to be read back
@@ -81,7 +80,7 @@ class WalkingStep(Step):
         if self._page is None:
             from app.wizard.walking.page import WalkingPage
 
-            page = self._page = WalkingPage(self._look, self.bench.entry)
+            page = self._page = WalkingPage(self.bench.entry)
             page.bench.chosen.connect(self.bench.choose)
             page.bench.reported.connect(self._on_change_reported)
             page.label_chosen.connect(self._on_label_chosen)
@@ -92,7 +91,7 @@ class WalkingStep(Step):
             page.renamed.connect(self._on_renamed)
             page.restrapped_pressed.connect(self._on_restrapped_pressed)
             page.memory.stop_pressed.connect(self.memory.stop)
-            self.feedback = PatientFeedback(self._look, self._visit, page.patient_controls, self)
+            self.feedback = PatientFeedback(self._visit, page.patient_controls, self)
             self.feedback.run_requested.connect(self.run)
             self._preview.renewed.connect(self.feedback.watch)
         return self._page

@@ -4,7 +4,7 @@ from PySide6.QtCore import QRectF, QSize, Qt, Signal
 from PySide6.QtGui import QAccessible, QFontMetrics, QKeyEvent, QMouseEvent, QPainter, QPaintEvent
 from PySide6.QtWidgets import QSizePolicy, QWidget
 
-from app.theme.notifier import ThemeNotifier
+from app.theme.current import current_theme, px
 from app.widgets.painted_text import CENTRE, LEFT, PaintedText
 from app.widgets.text import MEDIUM, SEMIBOLD
 from app.wording.numbers import MINUS
@@ -23,9 +23,9 @@ class Stepper(QWidget):
 
     stepped = Signal(int)
 
-    def __init__(self, look: ThemeNotifier) -> None:
+    def __init__(self) -> None:
         super().__init__()
-        self._look, self.caption, self.value = look, "", ""
+        self.caption, self.value = "", ""
         self.setFocusPolicy(Qt.FocusPolicy.StrongFocus)
         self.setSizePolicy(QSizePolicy.Policy.Expanding, QSizePolicy.Policy.Fixed)
 
@@ -37,7 +37,7 @@ class Stepper(QWidget):
         self.update()
 
     def sizeHint(self) -> QSize:
-        theme = self._look.theme
+        theme = current_theme()
         px = theme.px
         caption = QFontMetrics(theme.font(12)).horizontalAdvance(self.caption)
         value = QFontMetrics(theme.font(14, SEMIBOLD)).horizontalAdvance(self.value) + 2 * px(END)
@@ -47,7 +47,7 @@ class Stepper(QWidget):
         return self.sizeHint()
 
     def painted_texts(self) -> list[PaintedText]:
-        theme, box = self._look.theme, self._box
+        theme, box = current_theme(), self._box
         end, sign = theme.px(END), theme.font(16, MEDIUM)
         caption = QRectF(0, 0, self.width(), theme.px(CAPTION))
         less = QRectF(0, box.top(), end, box.height())
@@ -67,12 +67,12 @@ class Stepper(QWidget):
             super().keyPressEvent(event)
 
     def mousePressEvent(self, event: QMouseEvent) -> None:
-        end, x = self._look.theme.px(END), event.position().x()
+        end, x = px(END), event.position().x()
         if event.position().y() >= self._box.top() and (x < end or x > self.width() - end):
             self.stepped.emit(-1 if x < end else 1)
 
     def paintEvent(self, _event: QPaintEvent) -> None:
-        theme = self._look.theme
+        theme = current_theme()
         painter = QPainter(self)
         theme.paint_box(painter, self._box.adjusted(1, 1, -1, -1), theme.colours.surface, theme.colours.control, 1.25)
         for text in self.painted_texts():
@@ -80,5 +80,5 @@ class Stepper(QWidget):
 
     @property
     def _box(self) -> QRectF:
-        top = self._look.theme.px(CAPTION)
+        top = px(CAPTION)
         return QRectF(0, top, self.width(), self.height() - top)

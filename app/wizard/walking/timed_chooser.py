@@ -5,7 +5,6 @@ from collections.abc import Mapping
 from PySide6.QtCore import Signal
 from PySide6.QtWidgets import QHBoxLayout, QWidget
 
-from app.theme.notifier import ThemeNotifier
 from app.widgets.choice import Choice
 from app.wording.timed_tests import name_of_test
 from app.wording.translation import tr
@@ -19,9 +18,9 @@ class TimedChooser(QWidget):
 
     chosen = Signal(str)
 
-    def __init__(self, look: ThemeNotifier) -> None:
+    def __init__(self) -> None:
         super().__init__()
-        self.box = Choice(look, tr("Timed test"))
+        self.box = Choice(tr("Timed test"))
         self.box.addItem(tr("No timed test (T)"), "")
         for protocol in TimedProtocol:
             self.box.addItem(name_of_test(protocol), str(protocol))

@@ -12,8 +12,8 @@ from PySide6.QtWidgets import QFrame, QHBoxLayout, QScrollArea, QVBoxLayout, QWi
 from app.plots.course import CourseCard
 from app.summary.course_lanes import CourseLane, CourseVisit
 from app.summary.course_words import changes_since_in_words
+from app.theme.current import px
 from app.theme.icons import Icon
-from app.theme.notifier import ThemeNotifier
 from app.widgets.card import Card
 from app.widgets.focus_ring import NO_RING
 from app.widgets.icons import IconMark
@@ -74,18 +74,17 @@ class TimedResultView(Themed):
 
     accessible_role = QAccessible.Role.Grouping
 
-    def __init__(self, look: ThemeNotifier) -> None:
+    def __init__(self) -> None:
         super().__init__()
-        self._look = look
-        self._mark = IconMark(look, Icon.CHECK, size=24)
-        self.first = Text(look, size=20, weight=SEMIBOLD, wraps=True)
-        self.then = Text(look, tone="ink2", wraps=True)
-        self.attempts = CellTable(look, tr("Attempts"))
-        self.parts = CellTable(look, tr("Test sections"))
-        self.course = CourseCard(look)
-        self.errors = Text(look, size=12, tone="ink2", wraps=True)
+        self._mark = IconMark(Icon.CHECK, size=24)
+        self.first = Text(size=20, weight=SEMIBOLD, wraps=True)
+        self.then = Text(tone="ink2", wraps=True)
+        self.attempts = CellTable(tr("Attempts"))
+        self.parts = CellTable(tr("Test sections"))
+        self.course = CourseCard()
+        self.errors = Text(size=12, tone="ink2", wraps=True)
         self._build()
-        self._on_look_changed()
+        self._apply_theme()
 
     def show_state(self, state: TimedResult) -> None:
         found, latest = state.latest.found, state.latest
@@ -133,12 +132,12 @@ class TimedResultView(Themed):
         self._column = QVBoxLayout(inside)
         self._column.setContentsMargins(0, 0, 0, 0)
         self._column.addLayout(head)
-        attempts, self._parts_card = Card(self._look), Card(self._look)
+        attempts, self._parts_card = Card(), Card()
         for card, title, table in (
             (attempts, tr("Attempts"), self.attempts),
             (self._parts_card, tr("Test sections"), self.parts),
         ):
-            card.column.addWidget(Text(self._look, title, size=16, weight=SEMIBOLD))
+            card.column.addWidget(Text(title, size=16, weight=SEMIBOLD))
             card.column.addWidget(table)
             self._column.addWidget(card)
         self._column.insertWidget(2, self.course)
@@ -153,8 +152,8 @@ class TimedResultView(Themed):
         outer.setContentsMargins(0, 0, 0, 0)
         outer.addWidget(scroll)
 
-    def _on_look_changed(self) -> None:
-        self._column.setSpacing(self._look.theme.px(12))
+    def _apply_theme(self) -> None:
+        self._column.setSpacing(px(12))
 
 
 def number(value: float, digits: int) -> str:

@@ -7,8 +7,8 @@ from PySide6.QtCore import QPointF, QRectF, QSize, Qt
 from PySide6.QtGui import QAccessible, QBrush, QColor, QFontMetrics, QPainter, QPaintEvent, QPen, QPolygonF
 from PySide6.QtWidgets import QHBoxLayout, QLabel, QSizePolicy, QVBoxLayout
 
+from app.theme.current import current_theme, px
 from app.theme.icons import Icon
-from app.theme.notifier import ThemeNotifier
 from app.widgets.card import Card
 from app.widgets.digits import Digits
 from app.widgets.focus_ring import NO_RING
@@ -91,19 +91,19 @@ class TimedView(Themed):
 
     accessible_role = QAccessible.Role.Grouping
 
-    def __init__(self, look: ThemeNotifier) -> None:
+    def __init__(self) -> None:
         super().__init__()
-        self._look, self._is_compact, self._stated_s = look, False, -1
-        self._title = Text(look, size=24, weight=SEMIBOLD)
-        self._note = Text(look, size=16, tone="ink2")
-        self.status = _Status(look)
-        self.time = Digits(look, TIME, "88.8", "s")
-        self.distance = Digits(look, DISTANCE, "88.8", "m")
-        self.why = Text(look, size=16, weight=MEDIUM, wraps=True)
-        self.course = _Course(look)
-        self._tiles = [_ByItself(look, Icon.CHECK), _ByItself(look, Icon.STOP), _ByItself(look, Icon.SOUND)]
+        self._is_compact, self._stated_s = False, -1
+        self._title = Text(size=24, weight=SEMIBOLD)
+        self._note = Text(size=16, tone="ink2")
+        self.status = _Status()
+        self.time = Digits(TIME, "88.8", "s")
+        self.distance = Digits(DISTANCE, "88.8", "m")
+        self.why = Text(size=16, weight=MEDIUM, wraps=True)
+        self.course = _Course()
+        self._tiles = [_ByItself(Icon.CHECK), _ByItself(Icon.STOP), _ByItself(Icon.SOUND)]
         self._build()
-        self._on_look_changed()
+        self._apply_theme()
 
     def show_state(self, state: TimedViewState) -> None:
         protocol, has_distance = state.protocol, state.protocol is not TimedProtocol.SIT_TO_STAND
@@ -144,7 +144,7 @@ class TimedView(Themed):
 
     def set_compact(self, is_compact: bool) -> None:
         self._is_compact = is_compact
-        self._on_look_changed()
+        self._apply_theme()
 
     def _build(self) -> None:
         self.setFocusPolicy(Qt.FocusPolicy.TabFocus)
@@ -155,13 +155,13 @@ class TimedView(Themed):
             head.addWidget(widget, 0, Qt.AlignmentFlag.AlignBottom)
         head.addStretch(1)
         head.addWidget(self.status)
-        self._time_card, self._distance_card = Card(self._look), Card(self._look)
+        self._time_card, self._distance_card = Card(), Card()
         self._labels: list[QLabel] = []
         for card, title, figure in (
             (self._time_card, tr("Time"), self.time),
             (self._distance_card, tr("Distance"), self.distance),
         ):
-            label = Text(self._look, title, size=20, weight=MEDIUM, tone="ink2")
+            label = Text(title, size=20, weight=MEDIUM, tone="ink2")
             self._labels.append(label)
             card.column.addWidget(label)
             card.column.addWidget(figure, 1)
@@ -169,7 +169,7 @@ class TimedView(Themed):
         self._figures = QHBoxLayout()
         self._figures.addWidget(self._time_card, 604)
         self._figures.addWidget(self._distance_card, 396)
-        self._course_card = Card(self._look)
+        self._course_card = Card()
         self._course_card.column.addWidget(self.course)
         self._row = QHBoxLayout()
         for tile in self._tiles:
@@ -181,8 +181,8 @@ class TimedView(Themed):
         self._column.addWidget(self._course_card)
         self._column.addLayout(self._row)
 
-    def _on_look_changed(self) -> None:
-        px = self._look.theme.px
+    def _apply_theme(self) -> None:
+        px = current_theme().px
         for layout in (self._column, self._figures, self._row):
             layout.setSpacing(px(8 if self._is_compact else 16))
         for tile in self._tiles:
@@ -192,11 +192,11 @@ class TimedView(Themed):
 class _Status(Themed):
     """A word on an inverse ground, with a dot that is full while the clock runs."""
 
-    def __init__(self, look: ThemeNotifier) -> None:
+    def __init__(self) -> None:
         super().__init__()
-        self._look, self._words, self._is_on = look, "", False
+        self._words, self._is_on = "", False
         self.setSizePolicy(QSizePolicy.Policy.Fixed, QSizePolicy.Policy.Fixed)
-        self._on_look_changed()
+        self._apply_theme()
 
     def show_words(self, words: str, *, is_on: bool) -> None:
         if (words, is_on) != (self._words, self._is_on):
@@ -206,12 +206,12 @@ class _Status(Themed):
             self.update()
 
     def sizeHint(self) -> QSize:
-        theme = self._look.theme
+        theme = current_theme()
         words = QFontMetrics(theme.font(18, SEMIBOLD)).horizontalAdvance(self._words)
         return QSize(max(theme.px(176), words + theme.px(BEFORE_STATUS + BEHIND_STATUS)), theme.px(48))
 
     def paintEvent(self, _event: QPaintEvent) -> None:
-        theme = self._look.theme
+        theme = current_theme()
         c, px = theme.colours, theme.px
         painter = QPainter(self)
         painter.setRenderHint(QPainter.RenderHint.Antialiasing)
@@ -224,21 +224,21 @@ class _Status(Themed):
             text.paint(painter, c)
 
     def painted_texts(self) -> list[PaintedText]:
-        px = self._look.theme.px
+        px = current_theme().px
         box = QRectF(px(BEFORE_STATUS), 0, self.width() - px(BEFORE_STATUS + BEHIND_STATUS), self.height())
-        return [PaintedText(self._words, box, self._look.theme.font(18, SEMIBOLD), "inv_ink")]
+        return [PaintedText(self._words, box, current_theme().font(18, SEMIBOLD), "inv_ink")]
 
-    def _on_look_changed(self) -> None:
+    def _apply_theme(self) -> None:
         self.updateGeometry()
 
 
 class _ByItself(Card):
     """What happens by itself, in two lines."""
 
-    def __init__(self, look: ThemeNotifier, icon: Icon) -> None:
-        self._first, self._then = Text(look, weight=SEMIBOLD, wraps=True), Text(look, size=13, tone="ink2", wraps=True)
-        self._mark = IconMark(look, icon, size=20)
-        super().__init__(look)
+    def __init__(self, icon: Icon) -> None:
+        self._first, self._then = Text(weight=SEMIBOLD, wraps=True), Text(size=13, tone="ink2", wraps=True)
+        self._mark = IconMark(icon, size=20)
+        super().__init__()
         self.setSizePolicy(QSizePolicy.Policy.Preferred, QSizePolicy.Policy.Fixed)
         row, words = QHBoxLayout(), QVBoxLayout()
         words.setSpacing(0)
@@ -257,27 +257,26 @@ class _ByItself(Card):
 class _Course(Themed):
     """How much of a test is done, as a bar; under it the steps, on the side of the foot that made them."""
 
-    def __init__(self, look: ThemeNotifier) -> None:
+    def __init__(self) -> None:
         super().__init__()
-        self._look = look
         self._state: TimedViewState | None = None
         self.setSizePolicy(QSizePolicy.Policy.Expanding, QSizePolicy.Policy.Fixed)
-        self._on_look_changed()
+        self._apply_theme()
 
     def show_state(self, state: TimedViewState) -> None:
         self._state = state
         self.update()
 
     def sizeHint(self) -> QSize:
-        return QSize(self._look.theme.px(400), self._look.theme.px(120))
+        return QSize(px(400), px(120))
 
     def minimumSizeHint(self) -> QSize:
-        return QSize(self._look.theme.px(200), self._look.theme.px(120))
+        return QSize(px(200), px(120))
 
     def paintEvent(self, _event: QPaintEvent) -> None:
         if self._state is None:
             return
-        theme, state = self._look.theme, self._state
+        theme, state = current_theme(), self._state
         c, px = theme.colours, theme.px
         painter = QPainter(self)
         painter.setRenderHint(QPainter.RenderHint.Antialiasing)
@@ -309,14 +308,14 @@ class _Course(Themed):
             text.paint(painter, c)
 
     def _paint_pointer(self, painter: QPainter, done: QRectF) -> None:
-        px = self._look.theme.px
+        px = current_theme().px
         painter.setPen(Qt.PenStyle.NoPen)
-        painter.setBrush(QColor(self._look.theme.colours.ink))
+        painter.setBrush(QColor(current_theme().colours.ink))
         tip = QPointF(done.right(), done.top() - px(1))
         painter.drawPolygon(QPolygonF([tip, tip + QPointF(-px(10), -px(13)), tip + QPointF(px(10), -px(13))]))
 
     def _texts(self, state: TimedViewState, whole: QRectF, inner: QRectF) -> list[PaintedText]:
-        theme = self._look.theme
+        theme = current_theme()
         px = theme.px
         top = QRectF(whole.left(), 0, whole.width(), px(24))
         under = QRectF(whole.left(), whole.bottom() + px(8), whole.width(), px(28))
@@ -336,7 +335,7 @@ class _Course(Themed):
                 found.append(PaintedText(side.letter, box, theme.font(17, SEMIBOLD), tone, CENTRE))
         return found
 
-    def _on_look_changed(self) -> None:
+    def _apply_theme(self) -> None:
         self.updateGeometry()
 
 

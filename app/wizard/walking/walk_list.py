@@ -17,8 +17,8 @@ from PySide6.QtWidgets import (
     QWidget,
 )
 
+from app.theme.current import current_theme, px
 from app.theme.icons import Icon, paint_icon
-from app.theme.notifier import ThemeNotifier
 from app.theme.theme import CHIP_RADIUS, CONTROL_RADIUS
 from app.widgets.button import Button, ButtonKind
 from app.widgets.card import Card
@@ -84,21 +84,20 @@ class WalkList(Card):
     renamed = Signal(str, str)  # a walk that was kept, and the condition that somebody typed
     restrapped_pressed = Signal()
 
-    def __init__(self, look: ThemeNotifier) -> None:
+    def __init__(self) -> None:
         self._rows: list[_ListedWalk] = []
         self._is_compact = False
-        self._title = Text(look, tr("Walks"), size=14, weight=MEDIUM, tone="ink2")
-        self._none = Text(look, tr("No walks yet."), size=14, tone="ink2", wraps=True)
+        self._title = Text(tr("Walks"), size=14, weight=MEDIUM, tone="ink2")
+        self._none = Text(tr("No walks yet."), size=14, tone="ink2", wraps=True)
         self._inside = QWidget()
         self._scroll = QScrollArea()
         self.restrapped = ActionRow(
-            look,
             Icon.REPEAT,
             tr("Sensors were reattached"),
             tr("Standing still and free motion must then be repeated."),
         )
         self._list = QVBoxLayout(self._inside)
-        super().__init__(look, spacing=4)
+        super().__init__(spacing=4)
         self.setAccessibleName(tr("Walks"))
         self._list.addStretch(1)
         self._scroll.setWidget(self._inside)
@@ -124,7 +123,7 @@ class WalkList(Card):
         while len(self._rows) > len(rows):
             self._rows.pop().deleteLater()
         while len(self._rows) < len(rows):
-            added = _ListedWalk(self._look, self)
+            added = _ListedWalk(self)
             self._list.insertWidget(len(self._rows), added)
             self._rows.append(added)
         for widget, row in zip(self._rows, rows, strict=True):
@@ -146,16 +145,16 @@ class WalkList(Card):
         self.restrapped.setVisible(is_offered)
 
     def _fit(self) -> None:
-        px = self._look.theme.px
+        px = current_theme().px
         rows = len(self._rows) if self._is_compact else min(LEAST_ROWS, len(self._rows))
         self._scroll.setMinimumHeight(px((ROW + BETWEEN) * rows))
         bar = 0 if self._is_compact else self._scroll.verticalScrollBar().sizeHint().width()
         self._scroll.setMinimumWidth(max(px(LEAST_WIDTH), self._inside.minimumSizeHint().width() + bar))
 
-    def _on_look_changed(self) -> None:
-        super()._on_look_changed()
+    def _apply_theme(self) -> None:
+        super()._apply_theme()
         self._list.setContentsMargins(0, 0, 0, 0)
-        self._list.setSpacing(self._look.theme.px(BETWEEN))
+        self._list.setSpacing(px(BETWEEN))
         self._fit()
 
 
@@ -170,17 +169,17 @@ MARKS = {
 class _ListedWalk(Themed):
     accessible_role = QAccessible.Role.ListItem
 
-    def __init__(self, look: ThemeNotifier, owner: WalkList) -> None:
+    def __init__(self, owner: WalkList) -> None:
         super().__init__()
-        self._look, self._owner = look, owner
+        self._owner = owner
         self._walk = WalkRow("", "", "", WalkState.KEPT)
         self._is_edited = False
-        self._label = Text(look, size=15, weight=MEDIUM, wraps=True)
-        self._note = Text(look, size=12, tone="ink2", wraps=True)
-        self._mark = IconMark(look, Icon.CHECK, size=20)
-        self.undo = Button(look, tr("Undo"), ButtonKind.QUIET, height=44)
-        self.edit = Button(look, "", ButtonKind.QUIET, Icon.EDIT, height=44)
-        self.field = Field(look, tr("Condition of this walk"), has_label=False)
+        self._label = Text(size=15, weight=MEDIUM, wraps=True)
+        self._note = Text(size=12, tone="ink2", wraps=True)
+        self._mark = IconMark(Icon.CHECK, size=20)
+        self.undo = Button(tr("Undo"), ButtonKind.QUIET, height=44)
+        self.edit = Button("", ButtonKind.QUIET, Icon.EDIT, height=44)
+        self.field = Field(tr("Condition of this walk"), has_label=False)
         self._words = QVBoxLayout()
         self._words.addStretch(1)
         self._words.addWidget(self.field)
@@ -197,7 +196,7 @@ class _ListedWalk(Themed):
         self.field.committed.connect(self._on_committed)
         self.field.line_edit.editingFinished.connect(self._on_left)
         self.field.line_edit.installEventFilter(self)
-        self._on_look_changed()
+        self._apply_theme()
 
     def show_walk(self, walk: WalkRow) -> None:
         is_same = (walk.id, walk.label, walk.state) == (self._walk.id, self._walk.label, self._walk.state)
@@ -244,7 +243,7 @@ class _ListedWalk(Themed):
         return super().eventFilter(watched, event)
 
     def paintEvent(self, _event: QPaintEvent) -> None:
-        theme = self._look.theme
+        theme = current_theme()
         c, px = theme.colours, theme.px
         painter = QPainter(self)
         painter.setRenderHint(QPainter.RenderHint.Antialiasing)
@@ -303,8 +302,8 @@ class _ListedWalk(Themed):
         self.edit.setVisible(self._can_be_renamed)
         self.undo.setVisible(walk.state is WalkState.DISCARDED)
 
-    def _on_look_changed(self) -> None:
-        px = self._look.theme.px
+    def _apply_theme(self) -> None:
+        px = current_theme().px
         self._row.setContentsMargins(px(10 + BADGE + 10), px(4), px(8), px(4))
         self._row.setSpacing(px(4))
         self._words.setSpacing(0)
@@ -315,8 +314,8 @@ class _ListedWalk(Themed):
 class ActionRow(PaintedButton):
     """A row that does something: an icon, what was the case, and below what follows. Both wrap."""
 
-    def __init__(self, look: ThemeNotifier, icon: Icon, text: str, note: str) -> None:
-        super().__init__(look)
+    def __init__(self, icon: Icon, text: str, note: str) -> None:
+        super().__init__()
         self._icon, self._note = icon, note
         self.setText(text)
         self.setAccessibleName(text)
@@ -331,7 +330,7 @@ class ActionRow(PaintedButton):
             self._fit()
 
     def sizeHint(self) -> QSize:
-        return QSize(self._look.theme.px(180), self.minimumHeight())
+        return QSize(px(180), self.minimumHeight())
 
     def resizeEvent(self, event: QResizeEvent) -> None:
         super().resizeEvent(event)
@@ -339,7 +338,7 @@ class ActionRow(PaintedButton):
 
     def painted_texts(self) -> list[PaintedText]:
         """Give what is painted now, each in its box."""
-        theme = self._look.theme
+        theme = current_theme()
         px = theme.px
         left, width = px(10 + 20 + 10), self._words_width
         text, note = theme.font(14, MEDIUM), theme.font(12)
@@ -351,7 +350,7 @@ class ActionRow(PaintedButton):
         ]
 
     def paintEvent(self, _event: QPaintEvent) -> None:
-        theme = self._look.theme
+        theme = current_theme()
         c, px = theme.colours, theme.px
         painter = QPainter(self)
         box = QRectF(self.rect()).adjusted(1, 1, -1, -1)
@@ -364,11 +363,11 @@ class ActionRow(PaintedButton):
 
     @property
     def _words_width(self) -> int:
-        px = self._look.theme.px
+        px = current_theme().px
         return max(self.width() - px(10 + 20 + 10) - px(8), 1)
 
     def _fit(self) -> None:
-        theme = self._look.theme
+        theme = current_theme()
         width = self._words_width
         high = height_for(self.text(), theme.font(14, MEDIUM), width)
         low = height_for(self._note, theme.font(12), width)

@@ -17,7 +17,6 @@ from app.results.correct_page import CorrectPage, JointLine, WalkLine
 from app.results.found_page import FoundPage
 from app.results.result_page import ANSWER, COMPARE, STRIDES, WHOLE, ResultPage
 from app.theme.icons import Icon
-from app.theme.notifier import ThemeNotifier
 from app.widgets.action_bar import BarState, RecordingNote
 from app.widgets.rail_row import RailRow, StepState
 from app.widgets.sensor_tile import SensorTile
@@ -48,7 +47,7 @@ from tests.app.idle_action import idle
 from tests.app.results.filled_pages import PAGES
 from tests.app.wizard.walking.bench_material import bench_visit
 
-Make = Callable[[ThemeNotifier], QWidget]
+Make = Callable[[], QWidget]
 STEPS = ("Patient", "Sensors", "Stand still", "Free motion", "Walking", "Results", "Report")
 OVER_TEN_METRES = TimedTest(
     TimedProtocol.TEN_METRES, 3.0, 12.0, False, False, 10.0, 10.0, 105.0, (), (), (), (), (), (), ()
@@ -66,8 +65,8 @@ def analysed() -> tuple[Session, Analysis]:
 def results(view: str, *opened: str) -> Make:
     """Results in one of their views; `opened` names the buttons that are pressed then."""
 
-    def make(look: ThemeNotifier) -> QWidget:
-        page = ResultPage(look)
+    def make() -> QWidget:
+        page = ResultPage()
         session, analysis = analysed()
         page.show_visit(visit_of(analysis, session))
         page.view.choose(view)
@@ -84,24 +83,24 @@ def results(view: str, *opened: str) -> Make:
     return make
 
 
-def bench(look: ThemeNotifier) -> QWidget:
-    shown = Bench(cast(Visit, bench_visit()), look)  # which asks of a visit only what is there
-    page = WalkingPage(look, shown.entry)
+def bench() -> QWidget:
+    shown = Bench(cast(Visit, bench_visit()))  # which asks of a visit only what is there
+    page = WalkingPage(shown.entry)
     page.show_walks(tuple(WalkRow(str(k), one, f"Alignment {one}", WalkState.KEPT, 12) for k, one in enumerate("ABC")))
     page.show_bench(shown.state())
     return page
 
 
-def timed(look: ThemeNotifier) -> QWidget:
-    page = WalkingPage(look)
+def timed() -> QWidget:
+    page = WalkingPage()
     readout = LiveReadout(PlannedTest(TimedProtocol.TEN_METRES), 8.0, 3.0, distance_m=6.12)
     page.show_walks((WalkRow("1", "A", "Shoes", WalkState.RECORDING),))
     page.show_test(TimedViewState(readout, "Shoes, attempt 1", 8.44, math.nan))
     return page
 
 
-def timed_result(look: ThemeNotifier) -> QWidget:
-    page = WalkingPage(look)
+def timed_result() -> QWidget:
+    page = WalkingPage()
     page.show_labels(("Shoes", "Barefoot"), "Shoes")
     attempts = [TimedAttempt(f"walk {k}", TimedProtocol.TEN_METRES, OVER_TEN_METRES, is_kept=True) for k in (1, 2)]
     page.show_walks(tuple(WalkRow(str(k), "A", "Shoes", WalkState.KEPT, 12) for k in (1, 2)))
@@ -120,14 +119,14 @@ def blank_sheet() -> bytes:
     return bytes(content.data())
 
 
-def report(look: ThemeNotifier) -> QWidget:
-    page = ReportPage(look)
+def report() -> QWidget:
+    page = ReportPage()
     page.show_pages([blank_sheet()] * 2)
     return page
 
 
-def how_it_was_found(look: ThemeNotifier) -> QWidget:
-    page = FoundPage(look)
+def how_it_was_found() -> QWidget:
+    page = FoundPage()
     page.show_joints([Joint.LEFT_KNEE, Joint.RIGHT_KNEE], Joint.LEFT_KNEE)
     session, analysis = analysed()
     joint = analysis.calibrations[0].joints[Joint.LEFT_KNEE]
@@ -137,28 +136,28 @@ def how_it_was_found(look: ThemeNotifier) -> QWidget:
     return page
 
 
-def beside_optics(look: ThemeNotifier) -> QWidget:
-    page = AgreementPage(look)
+def beside_optics() -> QWidget:
+    page = AgreementPage()
     page.show_pages([blank_sheet()], ())
     return page
 
 
-def nothing_beside_optics(look: ThemeNotifier) -> QWidget:
-    page = AgreementPage(look)
+def nothing_beside_optics() -> QWidget:
+    page = AgreementPage()
     page.show_nothing()
     return page
 
 
-def correcting(look: ThemeNotifier) -> QWidget:
-    page = CorrectPage(look)
+def correcting() -> QWidget:
+    page = CorrectPage()
     page.show_walks([WalkLine("1", "walk 1", "0:24", "Shoes", is_kept=True)])
     page.show_joints([JointLine(Joint.LEFT_KNEE, is_turned=False, note="")])
     page.show_sides("")
     return page
 
 
-def patient_screen(look: ThemeNotifier) -> QWidget:
-    window = PatientWindow(look)
+def patient_screen() -> QWidget:
+    window = PatientWindow()
     window.show_view(PatientView(Target(TargetMeasure.KNEE_SWING_PEAK, Side.LEFT, 55), (51, 56, 53)))
     return window
 
@@ -195,10 +194,10 @@ FRAMED: dict[str, tuple[StepId, Make]] = {
 }
 
 
-def framed(look: ThemeNotifier, name: str) -> WizardShell:
+def framed(name: str) -> WizardShell:
     """Give a page in its frame; it is fitted to its room when the frame is shown."""
     step, make = FRAMED[name]
-    shell, page = WizardShell(look), make(look)
+    shell, page = WizardShell(), make()
     shell.room_changed.connect(partial(_fit, page))
     states = [StepState.DONE if one.value < step.value else StepState.TODO for one in StepId]
     states[[*StepId].index(step)] = StepState.CURRENT

@@ -7,7 +7,6 @@ from PySide6.QtWidgets import QApplication, QComboBox, QLineEdit, QPlainTextEdit
 from pytestqt.qtbot import QtBot
 
 from app.theme.icons import Icon
-from app.theme.notifier import ThemeNotifier
 from app.widgets.button import Button
 from app.widgets.choice import Choice
 from app.widgets.segmented import Segmented
@@ -69,8 +68,8 @@ def test_a_button_without_a_word_for_people_is_complained_of(
     assert stated == ([f"QPushButton (Button) “{name}” {wrong}"] if wrong else [])
 
 
-def test_a_button_of_the_house_without_words_is_complained_of(qtbot: QtBot, page: QWidget, look: ThemeNotifier) -> None:
-    bare, reported = Button(look, "", icon=Icon.PLAY), Button(look, "Play", icon=Icon.PLAY)
+def test_a_button_of_the_house_without_words_is_complained_of(qtbot: QtBot, page: QWidget) -> None:
+    bare, reported = Button("", icon=Icon.PLAY), Button("Play", icon=Icon.PLAY)
     assert complaints(shown(qtbot, page, bare, reported)) == ["Button (Button) “” has no name"]
 
 
@@ -84,8 +83,8 @@ def test_what_takes_the_focus_needs_a_role_and_a_chart_a_description(qtbot: QtBo
     ]
 
 
-def test_a_choice_states_what_is_chosen(qtbot: QtBot, page: QWidget, look: ThemeNotifier) -> None:
-    bare, reported = QComboBox(), Choice(look, "Display size")
+def test_a_choice_states_what_is_chosen(qtbot: QtBot, page: QWidget) -> None:
+    bare, reported = QComboBox(), Choice("Display size")
     for box in (bare, reported):
         box.addItems(["80 %", "100 %"])
     assert [one.partition(" ")[0] for one in complaints(shown(qtbot, page, bare, reported))] == ["QComboBox"]
@@ -93,9 +92,9 @@ def test_a_choice_states_what_is_chosen(qtbot: QtBot, page: QWidget, look: Theme
     assert "Display size" in (received.name, received.description)
 
 
-def test_what_changes_on_the_screen_changes_in_the_tree(qtbot: QtBot, page: QWidget, look: ThemeNotifier) -> None:
-    toggle, button = Toggle(look, "Legs", "G", is_on=False), Button(look, "Go")
-    ways = Segmented(look, "Motion", [("system", "System setting", ""), ("less", "Reduced", "")])
+def test_what_changes_on_the_screen_changes_in_the_tree(qtbot: QtBot, page: QWidget) -> None:
+    toggle, button = Toggle("Legs", "G", is_on=False), Button("Go")
+    ways = Segmented("Motion", [("system", "System setting", ""), ("less", "Reduced", "")])
     shown(qtbot, page, toggle, button, ways)
 
     def reported() -> list[tuple[QAccessible.Role, bool, bool]]:
@@ -116,8 +115,8 @@ def test_what_changes_on_the_screen_changes_in_the_tree(qtbot: QtBot, page: QWid
     assert not any(enabled for role, _, enabled in reported() if role is Role.Button)
 
 
-def test_a_button_is_pressed_through_the_tree(qtbot: QtBot, page: QWidget, look: ThemeNotifier) -> None:
-    button, clicks = Button(look, "Go"), []
+def test_a_button_is_pressed_through_the_tree(qtbot: QtBot, page: QWidget) -> None:
+    button, clicks = Button("Go"), []
     button.clicked.connect(lambda: clicks.append("go"))
     shown(qtbot, page, button)
     action = QAccessible.queryAccessibleInterface(button).actionInterface()

@@ -4,7 +4,6 @@ import pytest
 from PySide6.QtWidgets import QApplication
 from pytestqt.qtbot import QtBot
 
-from app.theme.notifier import ThemeNotifier
 from tests.app.accessibility.accessible_tree import complaints, wrong_hearing, wrong_order
 from tests.app.accessibility.framed_pages import FRAMED, framed
 from tests.app.room import settle
@@ -12,8 +11,8 @@ from tests.app.room import settle
 
 @pytest.mark.endurance
 @pytest.mark.parametrize("name", FRAMED)
-def test_a_page_of_a_visit_is_received_and_worked_by_tab_alone(qtbot: QtBot, look: ThemeNotifier, name: str) -> None:
-    shell = framed(look, name)
+def test_a_page_of_a_visit_is_received_and_worked_by_tab_alone(qtbot: QtBot, name: str) -> None:
+    shell = framed(name)
     qtbot.addWidget(shell)
     shell.resize(1280, 800)
     with qtbot.waitActive(shell):

@@ -1,6 +1,7 @@
 """Less motion: nothing moves by itself where it is asked for here, all does where neither here nor the system asks."""
 
 from collections.abc import Iterator
+from dataclasses import replace
 from itertools import pairwise
 from pathlib import Path
 
@@ -17,7 +18,7 @@ from app.main_window import MainWindow
 from app.plots.stride_legs import StrideLegs
 from app.system.settings import Settings
 from app.theme import motion
-from app.theme.notifier import ThemeNotifier
+from app.theme.current import current_theme, set_theme
 from app.theme.theme import Theme
 from app.wizard.shell import WizardShell
 from app.wizard.step import StepId
@@ -26,11 +27,11 @@ WAIT_MS = 2000
 
 
 @pytest.fixture(autouse=True)
-def _moving_system(monkeypatch: pytest.MonkeyPatch, look: ThemeNotifier) -> Iterator[None]:
+def _moving_system(monkeypatch: pytest.MonkeyPatch) -> Iterator[None]:
     """A system that was not asked for less motion, whatever the machine of the test was."""
     monkeypatch.setattr(motion, "_is_motion_required", lambda: True)
     yield
-    look.set_less_motion(False)
+    set_theme(replace(current_theme(), has_less_motion=False))
 
 
 @pytest.fixture
@@ -46,24 +47,22 @@ def test_either_the_setting_or_the_system_takes_the_time_of_a_transition(monkeyp
 
 
 @pytest.mark.parametrize("is_less", [False, True])
-def test_a_film_plays_by_itself_unless_less_motion_is_asked_for(
-    qtbot: QtBot, look: ThemeNotifier, is_less: bool
-) -> None:
-    look.set_less_motion(is_less)
-    page = HelpPage(look)
+def test_a_film_plays_by_itself_unless_less_motion_is_asked_for(qtbot: QtBot, is_less: bool) -> None:
+    set_theme(replace(current_theme(), has_less_motion=is_less))
+    page = HelpPage()
     qtbot.addWidget(page)
     page.show_topic(Topic.FREE_MOTION)
     page.show()
     assert page.text.is_playing is not is_less
 
 
-def test_a_film_that_plays_stops_when_less_motion_is_asked_for(qtbot: QtBot, look: ThemeNotifier) -> None:
-    page = HelpPage(look)
+def test_a_film_that_plays_stops_when_less_motion_is_asked_for(qtbot: QtBot) -> None:
+    page = HelpPage()
     qtbot.addWidget(page)
     page.show_topic(Topic.FREE_MOTION)
     page.show()
     playing = [page.text.is_playing]
-    look.set_less_motion(True)
+    set_theme(replace(current_theme(), has_less_motion=True))
     playing.append(page.text.is_playing)
     assert playing == [True, False]
 
@@ -78,8 +77,8 @@ def frames_of(qtbot: QtBot, bar: QProgressBar) -> int:
 
 
 @pytest.mark.parametrize("is_less", [False, True])
-def test_a_bar_of_unknown_length_is_in_the_middle(qtbot: QtBot, look: ThemeNotifier, is_less: bool) -> None:
-    look.set_less_motion(is_less)
+def test_a_bar_of_unknown_length_is_in_the_middle(qtbot: QtBot, is_less: bool) -> None:
+    set_theme(replace(current_theme(), has_less_motion=is_less))
     bar = QProgressBar()
     qtbot.addWidget(bar)
     bar.setTextVisible(False)
@@ -89,16 +88,14 @@ def test_a_bar_of_unknown_length_is_in_the_middle(qtbot: QtBot, look: ThemeNotif
     assert (frames_of(qtbot, bar) == 0) is is_less
     if is_less:
         picture = bar.grab().toImage()
-        row = [picture.pixelColor(x, 4).name() == look.theme.colours.ink.lower() for x in (10, 50, 90)]
+        row = [picture.pixelColor(x, 4).name() == current_theme().colours.ink.lower() for x in (10, 50, 90)]
         assert row == [False, True, False]
 
 
 @pytest.mark.parametrize("is_less", [False, True])
-def test_pages_of_a_visit_fade_into_each_other_unless_less_motion_is_asked_for(
-    qtbot: QtBot, look: ThemeNotifier, is_less: bool
-) -> None:
-    look.set_less_motion(is_less)
-    shell = WizardShell(look)
+def test_pages_of_a_visit_fade_into_each_other_unless_less_motion_is_asked_for(qtbot: QtBot, is_less: bool) -> None:
+    set_theme(replace(current_theme(), has_less_motion=is_less))
+    shell = WizardShell()
     qtbot.addWidget(shell)
     shell.resize(1280, 800)
     shell.show()
@@ -110,15 +107,15 @@ def test_pages_of_a_visit_fade_into_each_other_unless_less_motion_is_asked_for(
     qtbot.waitUntil(lambda: not fades[0].isVisible(), timeout=WAIT_MS)
 
 
-def test_legs_move_only_when_somebody_plays_them(qtbot: QtBot, look: ThemeNotifier) -> None:
-    legs = StrideLegs(look)
+def test_legs_move_only_when_somebody_plays_them(qtbot: QtBot) -> None:
+    legs = StrideLegs()
     qtbot.addWidget(legs)
     legs.show()
     assert not legs.is_playing
 
 
-def test_the_setting_is_chosen_by_keys_and_stated(qtbot: QtBot, look: ThemeNotifier) -> None:
-    page = SettingsPage(look, 12, [])
+def test_the_setting_is_chosen_by_keys_and_stated(qtbot: QtBot) -> None:
+    page = SettingsPage(12, [])
     qtbot.addWidget(page)
     with qtbot.waitActive(page):
         page.show()
@@ -133,19 +130,19 @@ def test_the_setting_is_chosen_by_keys_and_stated(qtbot: QtBot, look: ThemeNotif
 
 
 def test_the_window_follows_the_setting_and_a_new_start_keeps_it(
-    qtbot: QtBot, look: ThemeNotifier, settings: Settings, tmp_path: Path
+    qtbot: QtBot, settings: Settings, tmp_path: Path
 ) -> None:
     def end(window: MainWindow) -> None:
         window.close()
         window.finish()
 
-    window = MainWindow(look, settings)
+    window = MainWindow(settings)
     qtbot.addWidget(window, before_close_func=end)
-    seen = [look.theme.has_less_motion]
+    seen = [current_theme().has_less_motion]
     settings.has_less_motion = True
-    seen.append(look.theme.has_less_motion)
+    seen.append(current_theme().has_less_motion)
     again = Settings(QSettings(str(tmp_path / "settings.ini"), QSettings.Format.IniFormat))
     assert again.has_less_motion
     settings.has_less_motion = False
-    seen.append(look.theme.has_less_motion)
+    seen.append(current_theme().has_less_motion)
     assert seen == [False, True, False]

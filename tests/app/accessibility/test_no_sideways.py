@@ -9,7 +9,7 @@ import pytest
 from PySide6.QtWidgets import QScrollArea
 from pytestqt.qtbot import QtBot
 
-from app.theme.notifier import ThemeNotifier
+from app.theme.current import set_scale
 from tests.app.accessibility.framed_pages import FRAMED, framed
 from tests.app.room import settle, words_cut
 
@@ -20,10 +20,10 @@ pytestmark = pytest.mark.endurance
 @pytest.mark.parametrize(("scale", "size"), [(1.0, (1280, 800)), (2.0, (1920, 1200))])
 @pytest.mark.parametrize("name", FRAMED)
 def test_a_page_has_all_its_words_and_need_not_be_scrolled_sideways(
-    qtbot: QtBot, look: ThemeNotifier, name: str, scale: float, size: tuple[int, int]
+    qtbot: QtBot, name: str, scale: float, size: tuple[int, int]
 ) -> None:
-    look.set_scale(scale)
-    shell = framed(look, name)
+    set_scale(scale)
+    shell = framed(name)
     qtbot.addWidget(shell)
     shell.resize(*size)
     shell.show()

@@ -14,7 +14,6 @@ import pytest
 from PySide6.QtWidgets import QAbstractButton, QComboBox, QLabel, QLineEdit, QWidget
 from pytestqt.qtbot import QtBot
 
-from app.theme.notifier import ThemeNotifier
 from app.widgets.table import CellTable
 from app.wording.translation import use_language
 from tests.app.accessibility.framed_pages import FRAMED, framed
@@ -80,10 +79,10 @@ def english_in(stated: set[str]) -> list[str]:
 
 
 @pytest.mark.endurance
-def test_nothing_on_a_page_is_in_english(qtbot: QtBot, look: ThemeNotifier) -> None:
+def test_nothing_on_a_page_is_in_english(qtbot: QtBot) -> None:
     stated: set[str] = set()
     for name in FRAMED:
-        shell = framed(look, name)
+        shell = framed(name)
         qtbot.addWidget(shell)
         shell.resize(1280, 800)
         shell.show()
@@ -91,7 +90,7 @@ def test_nothing_on_a_page_is_in_english(qtbot: QtBot, look: ThemeNotifier) -> N
         stated |= set(stated_on(shell))
         shell.close()
     for name in PAGES.keys() - FRAMED.keys():
-        page = PAGES[name](look)
+        page = PAGES[name]()
         qtbot.addWidget(page)
         page.show()
         settle()

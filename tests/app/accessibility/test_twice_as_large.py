@@ -7,7 +7,7 @@ import pytest
 from PySide6.QtWidgets import QPushButton, QScrollArea, QWidget
 from pytestqt.qtbot import QtBot
 
-from app.theme.notifier import ThemeNotifier
+from app.theme.current import set_scale
 from tests.app.accessibility.framed_pages import FRAMED, framed
 from tests.app.accessibility.reach import out_of_reach
 from tests.app.room import settle, words_cut
@@ -19,11 +19,9 @@ WINDOWS = ((1920, 1200), (1280, 800))
 @pytest.mark.usefixtures("language")
 @pytest.mark.parametrize("size", WINDOWS)
 @pytest.mark.parametrize("name", FRAMED)
-def test_a_page_twice_as_large_has_all_its_words_and_controls(
-    qtbot: QtBot, look: ThemeNotifier, name: str, size: tuple[int, int]
-) -> None:
-    look.set_scale(2.0)
-    shell = framed(look, name)
+def test_a_page_twice_as_large_has_all_its_words_and_controls(qtbot: QtBot, name: str, size: tuple[int, int]) -> None:
+    set_scale(2.0)
+    shell = framed(name)
     qtbot.addWidget(shell)
     shell.resize(*size)
     shell.show()

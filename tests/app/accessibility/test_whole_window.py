@@ -15,7 +15,7 @@ from app.help.help_topics import Topic
 from app.home.home import Home
 from app.main_window import MainWindow
 from app.system.settings import Settings
-from app.theme.notifier import ThemeNotifier
+from app.theme.current import set_scale
 from app.workers.library_controller import LibraryController
 from tests.app.accessibility.accessible_tree import complaints, wrong_order
 from tests.app.accessibility.framed_pages import patient_screen
@@ -41,10 +41,8 @@ def controller() -> Iterator[LibraryController]:
 
 
 @pytest.fixture
-def home(
-    qtbot: QtBot, look: ThemeNotifier, controller: LibraryController, untouched: Path, tmp_path: Path
-) -> Iterator[Home]:
-    home = Home(look, controller, Settings(QSettings(str(tmp_path / "settings.ini"), QSettings.Format.IniFormat)))
+def home(qtbot: QtBot, controller: LibraryController, untouched: Path, tmp_path: Path) -> Iterator[Home]:
+    home = Home(controller, Settings(QSettings(str(tmp_path / "settings.ini"), QSettings.Format.IniFormat)))
     home.resize(1280, 800)
     qtbot.addWidget(home)
     with qtbot.waitActive(home):
@@ -97,10 +95,8 @@ def test_home_and_what_opens_from_it(qtbot: QtBot, home: Home) -> None:
 
 
 @pytest.mark.parametrize("size", [(1920, 1200), (1280, 800)])
-def test_home_twice_as_large_has_all_its_words_and_controls(
-    qtbot: QtBot, home: Home, look: ThemeNotifier, size: tuple[int, int]
-) -> None:
-    look.set_scale(2.0)
+def test_home_twice_as_large_has_all_its_words_and_controls(qtbot: QtBot, home: Home, size: tuple[int, int]) -> None:
+    set_scale(2.0)
     home.resize(*size)
     found = {}
     for name, show in ways(home).items():
@@ -112,9 +108,9 @@ def test_home_twice_as_large_has_all_its_words_and_controls(
     assert {name: stated for name, stated in found.items() if stated} == {}
 
 
-def test_the_first_start(qtbot: QtBot, look: ThemeNotifier, tmp_path: Path) -> None:
+def test_the_first_start(qtbot: QtBot, tmp_path: Path) -> None:
     settings = Settings(QSettings(str(tmp_path / "settings.ini"), QSettings.Format.IniFormat))
-    window = MainWindow(look, settings, tmp_path / "library")
+    window = MainWindow(settings, tmp_path / "library")
     try:
         opened(qtbot, window)
         assert wrong_with(window) == []
@@ -124,8 +120,8 @@ def test_the_first_start(qtbot: QtBot, look: ThemeNotifier, tmp_path: Path) -> N
 
 
 @pytest.mark.parametrize("topic", [Topic.KEYS, Topic.FREE_MOTION])
-def test_the_manual(qtbot: QtBot, look: ThemeNotifier, topic: Topic) -> None:
-    page = HelpPage(look)
+def test_the_manual(qtbot: QtBot, topic: Topic) -> None:
+    page = HelpPage()
     page.show_topic(topic)
     opened(qtbot, page)
     page.focus()
@@ -134,8 +130,8 @@ def test_the_manual(qtbot: QtBot, look: ThemeNotifier, topic: Topic) -> None:
         QTest.keyClick(QApplication.focusWidget() or page, Qt.Key.Key_Escape)
 
 
-def test_the_patients_screen_states_what_it_shows(qtbot: QtBot, look: ThemeNotifier) -> None:
-    window = patient_screen(look)
+def test_the_patients_screen_states_what_it_shows(qtbot: QtBot) -> None:
+    window = patient_screen()
     opened(qtbot, window)
     assert complaints(window) == []
     assert window.accessibleName().startswith("Left knee")

@@ -11,7 +11,7 @@ from pytestqt.qtbot import QtBot
 from app.editing.dialog import EditDialog
 from app.editing.question import EditQuestion
 from app.storage.three_way import MergeConflict
-from app.theme.notifier import ThemeNotifier
+from app.theme.current import set_scale
 
 NOW = datetime.datetime(2026, 11, 23, 12, 0).astimezone()
 AT = NOW.replace(hour=10, minute=32)
@@ -24,12 +24,12 @@ ENTER, ESCAPE = Qt.Key.Key_Return, Qt.Key.Key_Escape
 
 
 @pytest.fixture
-def dialog(qtbot: QtBot, look: ThemeNotifier) -> EditDialog:
+def dialog(qtbot: QtBot) -> EditDialog:
     window = QWidget()
     qtbot.addWidget(window)
     window.resize(1280, 800)
     window.show()
-    dialog = EditDialog(look, EditQuestion("P-3", CONTESTS, print), window, lambda: NOW)
+    dialog = EditDialog(EditQuestion("P-3", CONTESTS, print), window, lambda: NOW)
     dialog.open()
     return dialog
 
@@ -81,15 +81,13 @@ def test_leaving_theirs_takes_none_of_ours(qtbot: QtBot, dialog: EditDialog) -> 
 
 
 @pytest.mark.parametrize("scale", [1.0, 2.0])
-def test_it_fits_the_window_and_cuts_no_word(
-    qtbot: QtBot, look: ThemeNotifier, dialog: EditDialog, scale: float
-) -> None:
+def test_it_fits_the_window_and_cuts_no_word(qtbot: QtBot, dialog: EditDialog, scale: float) -> None:
     window = dialog.parentWidget()
     assert window is not None
     dialog.close()
-    look.set_scale(scale)
+    set_scale(scale)
     window.resize(960, 600)
-    shown = EditDialog(look, EditQuestion("P-3", CONTESTS, print), window, lambda: NOW)
+    shown = EditDialog(EditQuestion("P-3", CONTESTS, print), window, lambda: NOW)
     shown.open()
     assert shown.width() <= 960
     assert shown.height() <= 600

@@ -17,7 +17,7 @@ from app.films.free_motion import BEND, CIRCLE, FOOT, LENGTHS_M, OTHER_WAY, leg_
 from app.help import help_reader
 from app.help.help_page import HelpPage
 from app.help.help_topics import Topic
-from app.theme.notifier import ThemeNotifier
+from app.theme.current import current_theme, set_scale
 from app.theme.theme import Theme
 from core.body import Side
 
@@ -35,10 +35,10 @@ def frame(film: Film, time_s: float, theme: Theme) -> QImage:
 
 
 @pytest.fixture
-def page(qtbot: QtBot, look: ThemeNotifier, monkeypatch: pytest.MonkeyPatch) -> HelpPage:
+def page(qtbot: QtBot, monkeypatch: pytest.MonkeyPatch) -> HelpPage:
     """A help page where things may move, whatever the machine of the test was asked for."""
     monkeypatch.setattr(help_reader, "duration_ms", lambda usual_ms, _theme: usual_ms)
-    page = HelpPage(look)
+    page = HelpPage()
     page.resize(1064, 672)
     qtbot.addWidget(page)
     with qtbot.waitExposed(page):
@@ -47,13 +47,13 @@ def page(qtbot: QtBot, look: ThemeNotifier, monkeypatch: pytest.MonkeyPatch) -> 
 
 
 @pytest.mark.parametrize("film", Film)
-def test_every_scene_moves_and_differs_from_the_one_before(film: Film, look: ThemeNotifier) -> None:
+def test_every_scene_moves_and_differs_from_the_one_before(film: Film) -> None:
     count = len(SCENES[film])
-    early = [frame(film, (k + 0.1) * SCENE_S, look.theme) for k in range(count)]
-    late = [frame(film, (k + 0.3) * SCENE_S, look.theme) for k in range(count)]
+    early = [frame(film, (k + 0.1) * SCENE_S, current_theme()) for k in range(count)]
+    late = [frame(film, (k + 0.3) * SCENE_S, current_theme()) for k in range(count)]
     assert all(one != other for one, other in zip(early, late, strict=True))
     assert all(one != other for one, other in zip(late, early[1:], strict=False))
-    assert frame(film, duration_s(film), look.theme) == frame(film, duration_s(film) + 1, look.theme)
+    assert frame(film, duration_s(film), current_theme()) == frame(film, duration_s(film) + 1, current_theme())
 
 
 def test_limbs_keep_their_lengths_and_circles_go_both_ways() -> None:
@@ -116,10 +116,10 @@ def test_space_scrolls_where_there_is_no_film(page: HelpPage) -> None:
 
 
 def test_where_less_motion_is_asked_for_the_scenes_stand_side_by_side(
-    qtbot: QtBot, look: ThemeNotifier, monkeypatch: pytest.MonkeyPatch
+    qtbot: QtBot, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.setattr(help_reader, "duration_ms", lambda _usual_ms, _theme: 0)
-    page = HelpPage(look)
+    page = HelpPage()
     qtbot.addWidget(page)
     page.resize(1064, 672)
     page.show_topic(Topic.FREE_MOTION)
@@ -131,8 +131,8 @@ def test_where_less_motion_is_asked_for_the_scenes_stand_side_by_side(
 
 @pytest.mark.usefixtures("pseudo_language")
 @pytest.mark.parametrize("scale", [1.0, 2.0])
-def test_words_fit_in_a_longer_language(look: ThemeNotifier, monkeypatch: pytest.MonkeyPatch, scale: float) -> None:
-    look.set_scale(scale)
+def test_words_fit_in_a_longer_language(monkeypatch: pytest.MonkeyPatch, scale: float) -> None:
+    set_scale(scale)
     drawn: list[tuple[float, float]] = []
     real = QPainter.drawText
 
@@ -144,10 +144,10 @@ def test_words_fit_in_a_longer_language(look: ThemeNotifier, monkeypatch: pytest
     monkeypatch.setattr(QPainter, "drawText", noted)
     for film in Film:
         for k in range(len(SCENES[film])):
-            frame(film, (k + 0.5) * SCENE_S, look.theme)
+            frame(film, (k + 0.5) * SCENE_S, current_theme())
         image = QImage(700, 588, QImage.Format.Format_RGB32)
         painter = QPainter(image)
-        paint_stills(painter, QRectF(0, 0, 700, 588), look.theme, film)
+        paint_stills(painter, QRectF(0, 0, 700, 588), current_theme(), film)
         painter.end()
     assert len(drawn) > 20
     assert [over for over in drawn if max(over) > 0] == []

@@ -12,7 +12,7 @@ from pytestqt.qtbot import QtBot
 
 from app.help.help_page import HelpPage
 from app.help.help_topics import Topic, TopicGroup, group_title, topic_title
-from app.theme.notifier import ThemeNotifier
+from app.theme.current import current_theme, set_dark, set_scale
 from tests.app.watchdog import Watchdog
 
 FOLDER = Path(__file__).parents[3] / "resources" / "help"
@@ -24,8 +24,8 @@ FORBIDDEN = re.compile(
 
 
 @pytest.fixture
-def page(qtbot: QtBot, look: ThemeNotifier) -> HelpPage:
-    page = HelpPage(look)
+def page(qtbot: QtBot) -> HelpPage:
+    page = HelpPage()
     page.resize(1064, 672)
     qtbot.addWidget(page)
     with qtbot.waitActive(page):
@@ -157,13 +157,11 @@ def test_everything_that_takes_the_focus_has_a_name_and_a_place_in_the_order(pag
     assert set(takers) <= set(page.tab_order)
 
 
-def test_size_and_theme_change_what_is_shown_and_not_where(
-    page: HelpPage, look: ThemeNotifier, qapp: QApplication
-) -> None:
+def test_size_and_theme_change_what_is_shown_and_not_where(page: HelpPage, qapp: QApplication) -> None:
     page.show_topic(Topic.KEYS)
     before = page.text.toPlainText()
-    look.set_dark(True)
-    look.set_scale(2.0)
+    set_dark(True)
+    set_scale(2.0)
     qapp.processEvents()
     assert page.text.toPlainText() == before
     assert page.text.document().defaultFont().pixelSize() == 2 * 16
@@ -177,20 +175,20 @@ def test_searching_holds_up_nobody(page: HelpPage, watchdog: Watchdog, qtbot: Qt
         qtbot.wait(10)
 
 
-def test_an_open_page_of_the_manual_follows_the_theme(page: HelpPage, look: ThemeNotifier) -> None:
+def test_an_open_page_of_the_manual_follows_the_theme(page: HelpPage) -> None:
     page.show_topic(Topic.REPORT)
     page.show()
     for is_dark in (False, True, False):
-        look.set_dark(is_dark)
+        set_dark(is_dark)
         corner = page.text.grab().toImage().pixelColor(5, 5)
-        assert corner.name() == QColor(look.theme.colours.surface).name()
+        assert corner.name() == QColor(current_theme().colours.surface).name()
 
 
-def test_a_picture_is_as_wide_as_the_lines_and_follows_the_theme(page: HelpPage, look: ThemeNotifier) -> None:
+def test_a_picture_is_as_wide_as_the_lines_and_follows_the_theme(page: HelpPage) -> None:
     page.show_topic(Topic.WALKING)
     pictures = []
     for is_dark in (False, True):
-        look.set_dark(is_dark)
+        set_dark(is_dark)
         image = page.text.document().resource(QTextDocument.ResourceType.ImageResource.value, QUrl(PICTURE))
         pictures.append(image.deviceIndependentSize().width())
         assert (image.pixelColor(4, 4).lightness() < 128) == is_dark

@@ -31,7 +31,7 @@ from app.storage.recovery import adopt_home, find_interrupted, recover
 from app.storage.rollback import Rollback
 from app.storage.stored import LibraryError, PlacedSensor, RecordingState, Role, StoredJournal, StoredPatient
 from app.system.settings import Scheme, Settings
-from app.theme.notifier import ThemeNotifier, load_fonts
+from app.theme.current import load_fonts
 from app.widgets.button import Button
 from app.widgets.line_list import PatientLine, SessionLine
 from app.workers.library_controller import LibraryController
@@ -295,7 +295,7 @@ def test_what_was_being_recorded_is_recovered_and_marked(
 ) -> None:
     session_id = leave_open(folder)
     load_fonts()
-    home = Home(ThemeNotifier(), controller, settings)
+    home = Home(controller, settings)
     qtbot.addWidget(home)
     home.show()
     open_library(qtbot, controller, home, folder)
@@ -356,7 +356,7 @@ def any_needs_look(home: Home) -> bool:
 
 def new_home(qtbot: QtBot, controller: LibraryController, settings: Settings) -> Home:
     load_fonts()
-    home = Home(ThemeNotifier(), controller, settings)
+    home = Home(controller, settings)
     qtbot.addWidget(home)
     home.show()
     return home
@@ -380,7 +380,7 @@ def test_what_the_library_did_not_answer_for_goes_into_its_session_or_out(
     leave_open(folder, has_row=False)
     leave_open(folder, has_row=False)
     load_fonts()
-    home = Home(ThemeNotifier(), controller, settings)
+    home = Home(controller, settings)
     qtbot.addWidget(home)
     home.show()
     open_library(qtbot, controller, home, folder)

@@ -23,7 +23,7 @@ from app.storage.stored import Action, StoredPatient
 from app.summary.course_lanes import SPEED_LANE
 from app.system.progress import nobody
 from app.system.settings import Settings
-from app.theme.notifier import ThemeNotifier, load_fonts
+from app.theme.current import load_fonts
 from app.widgets.line_list import PatientLine, SessionLine
 from app.workers.library_controller import LibraryController
 from core.body import Site
@@ -44,7 +44,7 @@ def untouched(tmp_path_factory: pytest.TempPathFactory) -> Path:
 def home(qtbot: QtBot, qapp: QApplication, controller: LibraryController, untouched: Path, tmp_path: Path) -> Home:
     load_fonts()
     settings = Settings(QSettings(str(tmp_path / "settings.ini"), QSettings.Format.IniFormat))
-    home = Home(ThemeNotifier(), controller, settings)
+    home = Home(controller, settings)
     home.resize(1280, 800)
     qtbot.addWidget(home)
     home.show()

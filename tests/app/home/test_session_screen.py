@@ -27,7 +27,7 @@ from app.results.result_page import (
 from app.results.whole_page import BOTH, ORIENTATION, PUBLISHED, RESULT
 from app.system.progress import Report
 from app.theme.colours import DARK, LIGHT
-from app.theme.notifier import ThemeNotifier
+from app.theme.current import current_theme, set_dark, set_scale
 from app.widgets.findings_list import FindingRow
 from app.widgets.table import CellTable
 from app.widgets.table_cells import TextCell
@@ -112,12 +112,12 @@ def opened(is_simulated: bool = False, has_orientation: bool = True) -> Opened:
 
 
 @pytest.fixture
-def window(qtbot: QtBot, look: ThemeNotifier) -> SessionScreen:
+def window(qtbot: QtBot) -> SessionScreen:
     def end_work(window: SessionScreen) -> None:
         window._background.stop()
         qtbot.waitUntil(lambda: window._background.is_idle)
 
-    window = SessionScreen(look)
+    window = SessionScreen()
     window.resize(1280, 800)
     qtbot.addWidget(window, before_close_func=end_work)
     with qtbot.waitActive(window):  # only then a widget can have the focus
@@ -401,17 +401,17 @@ def test_the_demonstration_is_analysed_and_shown(qtbot: QtBot, window: SessionSc
         assert lowest < np.nanmax(drawn_deg(page, joint)) < highest
 
 
-def test_dark_and_light_change_palette_and_charts(results: ResultPage, look: ThemeNotifier, qapp: QApplication) -> None:
+def test_dark_and_light_change_palette_and_charts(results: ResultPage, qapp: QApplication) -> None:
     for is_dark, colours in ((True, DARK), (False, LIGHT)):
-        look.set_dark(is_dark)
+        set_dark(is_dark)
         assert qapp.palette().color(QPalette.ColorRole.Window).name().upper() == colours.ground
         picture = results.whole.charts.knee.chart.grab().toImage()
         assert picture.pixelColor(picture.width() - 2, 2).name().upper() == colours.surface
 
 
-def test_the_bundled_fonts_are_used(look: ThemeNotifier) -> None:
-    assert QFontInfo(look.theme.font(14)).family() == "Inter"
-    assert QFontInfo(look.theme.font(26)).family() == "Inter Display"
+def test_the_bundled_fonts_are_used() -> None:
+    assert QFontInfo(current_theme().font(14)).family() == "Inter"
+    assert QFontInfo(current_theme().font(26)).family() == "Inter Display"
 
 
 def visible(window: QWidget) -> list[QWidget]:
@@ -468,7 +468,6 @@ def test_every_word_fits(
     window: SessionScreen,
     open_work: OpenWork,
     walked: Opened,
-    look: ThemeNotifier,
     qapp: QApplication,
     size: tuple[int, int],
     scale: float,
@@ -478,7 +477,7 @@ def test_every_word_fits(
     results = window.results
     assert results is not None
     window.resize(*size)
-    look.set_scale(scale)
+    set_scale(scale)
     window.banner.show_message("left_thigh.csv, line 4: the clock steps back.", "Export the recording again.")
     results.whole.charts.zoom(0.5)
     results.whole.charts._read_at(4.0)

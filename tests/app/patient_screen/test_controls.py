@@ -8,15 +8,14 @@ from PySide6.QtWidgets import QWidget
 from pytestqt.qtbot import QtBot
 
 from app.patient_screen.controls import Choice, ControlsCard, choices
-from app.theme.notifier import ThemeNotifier
 from core.body import Side
 from core.targets import Target, TargetMeasure
 from tests.app.room import words_cut
 
 
 @pytest.fixture
-def card(qtbot: QtBot, look: ThemeNotifier) -> ControlsCard:
-    card = ControlsCard(look)
+def card(qtbot: QtBot) -> ControlsCard:
+    card = ControlsCard()
     qtbot.addWidget(card)
     card.resize(1016, 160)
     card.show()
@@ -73,8 +72,8 @@ def test_enter_in_a_field_sets_what_is_typed_and_is_for_no_other(qtbot: QtBot, c
 
 @pytest.mark.usefixtures("pseudo_language")
 @pytest.mark.parametrize("width", [640, 1016])
-def test_no_word_of_the_card_is_cut_when_what_is_typed_is_wrong(qtbot: QtBot, look: ThemeNotifier, width: int) -> None:
-    card = ControlsCard(look)
+def test_no_word_of_the_card_is_cut_when_what_is_typed_is_wrong(qtbot: QtBot, width: int) -> None:
+    card = ControlsCard()
     qtbot.addWidget(card)
     card.show()
     card.resize(width, card.sizeHint().height())

@@ -8,7 +8,7 @@ from pytestqt.qtbot import QtBot
 
 from app.patient_screen.patient_view import PatientView, figure, title_of
 from app.patient_screen.window import PatientWindow
-from app.theme.notifier import ThemeNotifier
+from app.theme.current import current_theme, set_dark
 from core.body import Side
 from core.targets import Target, TargetMeasure
 
@@ -17,8 +17,8 @@ TEN = (51, 56, 53, 55, 57, 56, 58, 55, 56, 54)
 
 
 @pytest.fixture
-def window(qtbot: QtBot, look: ThemeNotifier) -> PatientWindow:
-    window = PatientWindow(look)
+def window(qtbot: QtBot) -> PatientWindow:
+    window = PatientWindow()
     qtbot.addWidget(window)
     window.resize(1280, 800)
     window.show()
@@ -29,26 +29,26 @@ def picture(window: PatientWindow) -> QImage:
     return window.grab().toImage()
 
 
-def is_leg(image: QImage, look: ThemeNotifier, x: int, y: int) -> bool:
-    return QColor(image.pixel(x, y)) == QColor(look.theme.colours.left)
+def is_leg(image: QImage, x: int, y: int) -> bool:
+    return QColor(image.pixel(x, y)) == QColor(current_theme().colours.left)
 
 
-def test_the_bar_ends_at_the_value_on_a_scale_about_the_target(window: PatientWindow, look: ThemeNotifier) -> None:
+def test_the_bar_ends_at_the_value_on_a_scale_about_the_target(window: PatientWindow) -> None:
     window.show_view(PatientView(KNEE, TEN))
     image = picture(window)
-    assert is_leg(image, look, 748, 468)  # 54 of 30 to 70 on 1120 px
-    assert not is_leg(image, look, 756, 468)
+    assert is_leg(image, 748, 468)  # 54 of 30 to 70 on 1120 px
+    assert not is_leg(image, 756, 468)
     window.show_view(PatientView(KNEE, (60,)))
     image = picture(window)
-    assert is_leg(image, look, 916, 468)
-    assert not is_leg(image, look, 924, 468)
+    assert is_leg(image, 916, 468)
+    assert not is_leg(image, 924, 468)
 
 
-def test_steps_that_reached_are_filled_and_others_hollow(window: PatientWindow, look: ThemeNotifier) -> None:
+def test_steps_that_reached_are_filled_and_others_hollow(window: PatientWindow) -> None:
     window.show_view(PatientView(KNEE, TEN))
     image = picture(window)
     middles = [479 + 73 * k + 29 for k in range(10)]
-    assert [is_leg(image, look, x, 712) for x in middles] == [value >= 55 for value in TEN]
+    assert [is_leg(image, x, 712) for x in middles] == [value >= 55 for value in TEN]
 
 
 def test_its_words_say_the_value_and_how_many_reached(window: PatientWindow) -> None:
@@ -57,11 +57,11 @@ def test_its_words_say_the_value_and_how_many_reached(window: PatientWindow) -> 
     assert window.accessibleName() == stated
 
 
-def test_while_it_waits_no_value_is_shown_not_even_old_ones(window: PatientWindow, look: ThemeNotifier) -> None:
+def test_while_it_waits_no_value_is_shown_not_even_old_ones(window: PatientWindow) -> None:
     window.show_view(PatientView(KNEE, TEN, is_waiting=True))
     assert window.accessibleName() == "Left knee: bend it as the leg swings. Target 55°. One moment"
     image = picture(window)
-    assert not any(is_leg(image, look, x, y) for x in range(80, 1200, 4) for y in (468, 712))
+    assert not any(is_leg(image, x, y) for x in range(80, 1200, 4) for y in (468, 712))
     window.show_view(PatientView(KNEE, TEN))
     assert "One moment" not in window.accessibleName()
 
@@ -112,15 +112,13 @@ def test_f11_fills_the_screen_and_space_is_for_the_walk(qtbot: QtBot, window: Pa
 
 @pytest.mark.parametrize("size", [(960, 600), (1280, 800), (1920, 1080), (800, 1200)])
 @pytest.mark.parametrize("is_dark", [False, True])
-def test_it_fills_any_room_in_both_schemes(
-    window: PatientWindow, look: ThemeNotifier, size: tuple[int, int], is_dark: bool
-) -> None:
-    look.set_dark(is_dark)
+def test_it_fills_any_room_in_both_schemes(window: PatientWindow, size: tuple[int, int], is_dark: bool) -> None:
+    set_dark(is_dark)
     window.resize(*size)
     window.show_view(PatientView(KNEE, TEN))
     image = picture(window)
     scale = min(size[0] / 1280, size[1] / 800)
     x = size[0] / 2 + scale * (400 - 640)
     y = size[1] / 2 + scale * (468 - 400)
-    assert is_leg(image, look, round(x), round(y))
-    assert QColor(image.pixel(2, 2)) == QColor(look.theme.colours.surface)
+    assert is_leg(image, round(x), round(y))
+    assert QColor(image.pixel(2, 2)) == QColor(current_theme().colours.surface)

@@ -10,7 +10,7 @@ from app.charts.marks import CurveLabel, Point
 from app.plots.chart_key import ChartKey, ChartKeyWords
 from app.plots.cycle_charts import CycleCharts
 from app.summary.reference_bands import reference_curves
-from app.theme.notifier import ThemeNotifier
+from app.theme.current import current_theme
 from core.body import Joint, Side
 from core.verdicts.model import READ, JointVerdicts, Verdict
 from tests.app.plots.test_cycle_chart import ZERO, cycle
@@ -21,15 +21,15 @@ PEAK = CurveLabel(Point(Joint.LEFT_KNEE, 72.0, 60.0), "L 60°")
 
 
 @pytest.fixture
-def key(qtbot: QtBot, look: ThemeNotifier) -> ChartKey:
-    key = ChartKey(look)
+def key(qtbot: QtBot) -> ChartKey:
+    key = ChartKey()
     qtbot.addWidget(key)
     return key
 
 
 @pytest.fixture
-def charts(qtbot: QtBot, look: ThemeNotifier) -> CycleCharts:
-    charts = CycleCharts(look, reference_curves())
+def charts(qtbot: QtBot) -> CycleCharts:
+    charts = CycleCharts(reference_curves())
     qtbot.addWidget(charts)
     charts.resize(424, 460)
     charts.show()
@@ -97,7 +97,7 @@ def event_at(charts: CycleCharts, place: QPoint) -> None:
     chart.mouseMoveEvent(QMouseEvent(QEvent.Type.MouseMove, at, at, left, left, none))
 
 
-def test_the_cursor_has_its_line_and_handle_in_ink(charts: CycleCharts, look: ThemeNotifier) -> None:
+def test_the_cursor_has_its_line_and_handle_in_ink(charts: CycleCharts) -> None:
     charts.set_band_shown(False)
     charts.show_cycles({Joint.LEFT_KNEE: cycle(12)}, {}, is_simulated=False)
     chart = charts.knee.chart
@@ -105,6 +105,6 @@ def test_the_cursor_has_its_line_and_handle_in_ink(charts: CycleCharts, look: Th
     assert chart.grab().toImage().pixelColor(x, top + 1).lightness() > 200
     charts.show_cursor({Side.LEFT: 20.0})
     picture = chart.grab().toImage()
-    assert picture.pixelColor(x, top + 1).name() == look.theme.colours.ink.lower()
-    assert picture.pixelColor(x + 2, top + 1).name() == look.theme.colours.ink.lower()
+    assert picture.pixelColor(x, top + 1).name() == current_theme().colours.ink.lower()
+    assert picture.pixelColor(x + 2, top + 1).name() == current_theme().colours.ink.lower()
     assert picture.pixelColor(x + 3, top + 12).lightness() > 200

@@ -11,7 +11,7 @@ from app.charts.cycles import Band
 from app.charts.stride_chart import StrideCurve
 from app.plots.compared_chart import ComparedChart
 from app.summary.reference_bands import reference_curves
-from app.theme.notifier import ThemeNotifier
+from app.theme.current import current_theme, set_scale
 from core.body import JointKind, Side
 
 BAND = Band(*reference_curves().mean_and_sd_deg("knee"))
@@ -21,8 +21,8 @@ def flat(letter: str, angle_deg: float) -> StrideCurve:
     return StrideCurve(letter, Side.LEFT, np.full(101, angle_deg))
 
 
-def chart_of(qtbot: QtBot, look: ThemeNotifier) -> ComparedChart:
-    chart = ComparedChart(look, JointKind.KNEE)
+def chart_of(qtbot: QtBot) -> ComparedChart:
+    chart = ComparedChart(JointKind.KNEE)
     qtbot.addWidget(chart)
     chart.resize(600, 500)
     return chart
@@ -34,10 +34,10 @@ def colours_down(chart: ComparedChart, percent: float) -> list[QColor]:
     return [picture.pixelColor(x, y) for y in range(int(frame.top) + 1, int(frame.bottom))]
 
 
-def test_the_band_is_there_but_where_curves_are_drawn_about_their_mean(qtbot: QtBot, look: ThemeNotifier) -> None:
-    chart = chart_of(qtbot, look)
+def test_the_band_is_there_but_where_curves_are_drawn_about_their_mean(qtbot: QtBot) -> None:
+    chart = chart_of(qtbot)
     chart.band = BAND
-    band = QColor(look.theme.colours.band_1sd)
+    band = QColor(current_theme().colours.band_1sd)
     chart.show_curves([flat("A", 0.0)], is_simulated=False)
     assert band in colours_down(chart, 30)
     chart.show_curves([flat("A", 0.0)], is_simulated=False, is_about_mean=True)
@@ -47,19 +47,19 @@ def test_the_band_is_there_but_where_curves_are_drawn_about_their_mean(qtbot: Qt
 
 
 @pytest.mark.parametrize("scale", [1.0, 2.0])
-def test_the_casing_grows_with_the_size_of_everything(qtbot: QtBot, look: ThemeNotifier, scale: float) -> None:
-    look.set_scale(scale)
-    chart = chart_of(qtbot, look)
+def test_the_casing_grows_with_the_size_of_everything(qtbot: QtBot, scale: float) -> None:
+    set_scale(scale)
+    chart = chart_of(qtbot)
     chart.band = Band(np.full(101, 40.0), np.full(101, 60.0))  # under all of the chart, to see the casing on
     chart.show_curves([flat("A", 40.0)], is_simulated=False)
-    band = QColor(look.theme.colours.band_1sd)
+    band = QColor(current_theme().colours.band_1sd)
     others = [colour for colour in colours_down(chart, 70) if colour != band]
     zero_px, blurred_px = scale, 3.0
     assert len(others) == pytest.approx((2.75 + 2.0) * scale + zero_px + blurred_px, abs=2)
 
 
-def test_the_later_curve_is_the_thicker_one(look: ThemeNotifier, qtbot: QtBot) -> None:
-    chart = chart_of(qtbot, look)
+def test_the_later_curve_is_the_thicker_one(qtbot: QtBot) -> None:
+    chart = chart_of(qtbot)
     chart.show_curves([flat("A", 20.0), flat("B", 60.0)], is_simulated=False)
     colours = colours_down(chart, 10)
     of_line = [max(0, 255 - colour.blue()) for colour in colours]  # the left leg's orange
@@ -68,7 +68,7 @@ def test_the_later_curve_is_the_thicker_one(look: ThemeNotifier, qtbot: QtBot) -
     assert [curve.letter for curve in chart.described.curves] == ["A", "B"]
 
 
-def test_curves_that_are_not_known_are_not_drawn(look: ThemeNotifier, qtbot: QtBot) -> None:
-    chart = chart_of(qtbot, look)
+def test_curves_that_are_not_known_are_not_drawn(qtbot: QtBot) -> None:
+    chart = chart_of(qtbot)
     chart.show_curves([flat("A", math.nan), flat("B", 60.0)], is_simulated=False)
     assert [curve.letter for curve in chart.described.curves] == ["B"]

@@ -14,7 +14,7 @@ from app.charts.stride_chart import toe_off_labels
 from app.plots.cycle_chart import CycleChart
 from app.plots.cycle_charts import CycleCharts
 from app.summary.reference_bands import reference_curves
-from app.theme.notifier import ThemeNotifier
+from app.theme.current import current_theme
 from core.body import Joint, Side
 from core.gait.cycles import mean_cycle
 from core.samples import FloatArray
@@ -32,8 +32,8 @@ def cycle(n: int, height_deg: float = 60.0, toe_off_percent: float = 60.0, shift
 
 
 @pytest.fixture
-def charts(qtbot: QtBot, look: ThemeNotifier) -> CycleCharts:
-    charts = CycleCharts(look, reference_curves())
+def charts(qtbot: QtBot) -> CycleCharts:
+    charts = CycleCharts(reference_curves())
     qtbot.addWidget(charts)
     charts.resize(420, 640)
     charts.show()
@@ -68,28 +68,30 @@ def test_axes_are_the_same_for_everyone_unless_a_mean_leaves_them(charts: CycleC
     assert charts.knee.chart.range_deg == KNEE_DEG
 
 
-def test_each_mean_is_drawn_where_it_is_in_its_colour(charts: CycleCharts, look: ThemeNotifier) -> None:
+def test_each_mean_is_drawn_where_it_is_in_its_colour(charts: CycleCharts) -> None:
     chart = show(charts, left=cycle(12, 60), right=cycle(12, 40))
-    assert is_like(colour_at(chart, 72, 60), look.theme.curve(Side.LEFT))
-    right = [is_like(colour_at(chart, percent, 40), look.theme.curve(Side.RIGHT)) for percent in np.arange(70, 75, 0.5)]
+    assert is_like(colour_at(chart, 72, 60), current_theme().curve(Side.LEFT))
+    right = [
+        is_like(colour_at(chart, percent, 40), current_theme().curve(Side.RIGHT)) for percent in np.arange(70, 75, 0.5)
+    ]
     assert any(right)
 
 
-def test_right_is_dashed_and_left_is_whole(charts: CycleCharts, look: ThemeNotifier) -> None:
+def test_right_is_dashed_and_left_is_whole(charts: CycleCharts) -> None:
     for side, is_whole in ((Side.LEFT, True), (Side.RIGHT, False)):
         chart = show(charts, **{str(side): cycle(12, 60)})
         picture, mean = chart.grab().toImage(), chart.cycles[side].mean.mean
         seen = []
         for percent in np.arange(5, 42, 0.25):
             place = chart.at(percent, float(np.interp(percent, PERCENT, mean)))
-            seen.append(is_like(picture.pixelColor(round(place.x()), round(place.y())), look.theme.curve(side)))
+            seen.append(is_like(picture.pixelColor(round(place.x()), round(place.y())), current_theme().curve(side)))
         assert all(seen) is is_whole
         assert any(seen)
 
 
-def test_the_band_is_there_in_two_greys_and_can_be_taken_away(charts: CycleCharts, look: ThemeNotifier) -> None:
+def test_the_band_is_there_in_two_greys_and_can_be_taken_away(charts: CycleCharts) -> None:
     chart = show(charts)
-    group, c = reference_curves(), look.theme.colours
+    group, c = reference_curves(), current_theme().colours
     at = 30
     mean, sd = group.knee_mean_deg[at], group.knee_sd_deg[at]
     for sds, colour in ((0.6, c.band_1sd), (1.6, c.band_2sd), (2.6, c.surface)):
@@ -109,12 +111,12 @@ SIGN = assess([GateReason("sign", Verdict.NOT_REPORTED, 0.1, 0.25)])
 SLANTED = assess([GateReason("axis", Verdict.CARE, 8.0, 6.5, "deg")])
 
 
-def test_of_a_not_reported_joint_no_mean_is_drawn_but_why(charts: CycleCharts, look: ThemeNotifier) -> None:
+def test_of_a_not_reported_joint_no_mean_is_drawn_but_why(charts: CycleCharts) -> None:
     cycles = {Joint.LEFT_KNEE: cycle(12, 60), Joint.RIGHT_KNEE: cycle(12, 40)}
     charts.set_band_shown(False)
     charts.show_cycles(cycles, {Joint.LEFT_KNEE: judged_as(PAIRING, PAIRING)}, is_simulated=False)
     chart = charts.knee.chart
-    assert colour_at(chart, 72, 60).name() == look.theme.colours.surface.lower()
+    assert colour_at(chart, 72, 60).name() == current_theme().colours.surface.lower()
     ((hidden, box),) = chart.layout_of_words.hidden
     assert (hidden.side, hidden.reason) == (Side.LEFT, "1.05, required 1.30")
     middle = QColor(chart.grab().toImage().pixelColor(round(box.left + 3), round(box.top + 3)))
@@ -126,7 +128,7 @@ def test_of_a_not_reported_joint_no_mean_is_drawn_but_why(charts: CycleCharts, l
     assert list(toe_off_labels(chart.described.curves)) == [Side.RIGHT]
     charts.show_cycles(cycles, {}, is_simulated=False)
     assert not chart.layout_of_words.hidden
-    assert is_like(colour_at(chart, 72, 60), look.theme.curve(Side.LEFT))
+    assert is_like(colour_at(chart, 72, 60), current_theme().curve(Side.LEFT))
 
 
 def test_with_both_legs_not_reported_each_has_its_box(charts: CycleCharts) -> None:
@@ -140,16 +142,14 @@ def test_with_both_legs_not_reported_each_has_its_box(charts: CycleCharts) -> No
     assert [hidden.side for hidden, _ in charts.knee.chart.layout_of_words.hidden] == [Side.LEFT]
 
 
-def test_of_fewer_than_three_strides_each_is_drawn_in_grey_and_no_mean(
-    charts: CycleCharts, look: ThemeNotifier
-) -> None:
+def test_of_fewer_than_three_strides_each_is_drawn_in_grey_and_no_mean(charts: CycleCharts) -> None:
     charts.set_band_shown(False)
     charts.show_cycles({Joint.LEFT_KNEE: cycle(2)}, {Joint.LEFT_KNEE: judged_as(FEW, FEW)}, is_simulated=False)
     chart = charts.knee.chart
     assert "Few strides (2 used, 3 required)" in charts.knee.not_reported[Side.LEFT]
     highest = float(chart.cycles[Side.LEFT].strides_deg.max())
-    assert colour_at(chart, 72, highest).name() != look.theme.colours.surface.lower()
-    assert colour_at(chart, 72, 60).name() == look.theme.colours.surface.lower()
+    assert colour_at(chart, 72, highest).name() != current_theme().colours.surface.lower()
+    assert colour_at(chart, 72, 60).name() == current_theme().colours.surface.lower()
 
 
 def test_care_is_in_the_key_of_its_leg(charts: CycleCharts) -> None:
@@ -166,9 +166,7 @@ def test_care_is_in_the_key_of_its_leg(charts: CycleCharts) -> None:
     assert "caution" not in charts.knee.in_words()
 
 
-def test_without_a_height_curves_are_drawn_about_their_mean_and_without_the_band(
-    charts: CycleCharts, look: ThemeNotifier
-) -> None:
+def test_without_a_height_curves_are_drawn_about_their_mean_and_without_the_band(charts: CycleCharts) -> None:
     found = cycle(12, shift_deg=25.0)
     charts.show_cycles({Joint.LEFT_KNEE: found}, {Joint.LEFT_KNEE: judged_as(height=ZERO)}, is_simulated=False)
     chart = charts.knee.chart
@@ -176,7 +174,7 @@ def test_without_a_height_curves_are_drawn_about_their_mean_and_without_the_band
     assert chart.range_deg == (-40.0, 50.0)
     assert "Axis widened" not in charts.knee.note
     group = reference_curves()
-    assert colour_at(chart, 30, float(group.knee_mean_deg[30])).name() == look.theme.colours.surface.lower()
+    assert colour_at(chart, 30, float(group.knee_mean_deg[30])).name() == current_theme().colours.surface.lower()
     assert charts.heights_deg == {Joint.LEFT_KNEE: pytest.approx(found.height_deg)}
     charts.show_stride({Joint.LEFT_KNEE: found.strides_deg[0]})
     assert chart.stride is not None
@@ -186,29 +184,31 @@ def test_without_a_height_curves_are_drawn_about_their_mean_and_without_the_band
     assert chart.range_deg[0] == KNEE_DEG[0]
 
 
-def test_where_no_band_may_stand_none_is_drawn(charts: CycleCharts, look: ThemeNotifier) -> None:
+def test_where_no_band_may_stand_none_is_drawn(charts: CycleCharts) -> None:
     chart, mean_deg = show(charts), float(reference_curves().knee_mean_deg[30])
     charts.set_band(None)
-    assert colour_at(chart, 30, mean_deg).name() == look.theme.colours.surface.lower()
+    assert colour_at(chart, 30, mean_deg).name() == current_theme().colours.surface.lower()
     charts.set_band(reference_curves())
-    assert colour_at(chart, 30, mean_deg).name() != look.theme.colours.surface.lower()
+    assert colour_at(chart, 30, mean_deg).name() != current_theme().colours.surface.lower()
 
 
-def test_single_strides_are_drawn_on_demand(charts: CycleCharts, look: ThemeNotifier) -> None:
+def test_single_strides_are_drawn_on_demand(charts: CycleCharts) -> None:
     charts.set_band_shown(False)
     chart = show(charts, left=cycle(5))
     highest = float(chart.cycles[Side.LEFT].strides_deg.max())
-    assert colour_at(chart, 72, highest).name() == look.theme.colours.surface.lower()
+    assert colour_at(chart, 72, highest).name() == current_theme().colours.surface.lower()
     charts.set_strides_shown(True)
-    assert colour_at(chart, 72, highest).name() != look.theme.colours.surface.lower()
+    assert colour_at(chart, 72, highest).name() != current_theme().colours.surface.lower()
     charts.set_strides_shown(False)
-    assert colour_at(chart, 72, highest).name() == look.theme.colours.surface.lower()
+    assert colour_at(chart, 72, highest).name() == current_theme().colours.surface.lower()
 
 
-def test_toe_off_is_named_at_its_line_the_earlier_one_in_full(charts: CycleCharts, look: ThemeNotifier) -> None:
+def test_toe_off_is_named_at_its_line_the_earlier_one_in_full(charts: CycleCharts) -> None:
     chart = show(charts, left=cycle(12, toe_off_percent=58.7), right=cycle(12, toe_off_percent=63.2))
     assert toe_off_labels(chart.described.curves) == {Side.LEFT: "toe-off L 59 %", Side.RIGHT: "R 63 %"}
-    assert any(is_like(colour_at(chart, percent, 75), look.theme.curve(Side.LEFT)) for percent in (58.6, 58.7, 58.8))
+    assert any(
+        is_like(colour_at(chart, percent, 75), current_theme().curve(Side.LEFT)) for percent in (58.6, 58.7, 58.8)
+    )
     chart = show(charts, left=cycle(12, toe_off_percent=66), right=cycle(12, toe_off_percent=61))
     assert toe_off_labels(chart.described.curves) == {Side.RIGHT: "toe-off R 61 %", Side.LEFT: "L 66 %"}
     assert list(
@@ -249,7 +249,7 @@ def test_the_mean_curves_are_reported_in_words(charts: CycleCharts) -> None:
     assert charts.knee.chart.accessibleName() == "Knee over one gait cycle"
 
 
-def test_simulated_is_on_both_charts_and_only_then(charts: CycleCharts, look: ThemeNotifier) -> None:
+def test_simulated_is_on_both_charts_and_only_then(charts: CycleCharts) -> None:
     inked = []
     for is_simulated in (False, True):
         charts.show_cycles({Joint.LEFT_KNEE: cycle(12), Joint.LEFT_ANKLE: cycle(12)}, {}, is_simulated)
@@ -270,7 +270,7 @@ LEFT_UNDER_RIGHT = Deviation(
 )
 
 
-def test_a_difference_has_dots_at_its_ends_and_a_bar_in_free_space(charts: CycleCharts, look: ThemeNotifier) -> None:
+def test_a_difference_has_dots_at_its_ends_and_a_bar_in_free_space(charts: CycleCharts) -> None:
     charts.set_band_shown(False)
     chart = show(charts, left=cycle(12, 40), right=cycle(12, 60))
     assert not chart.layout_of_words.brackets
@@ -280,22 +280,22 @@ def test_a_difference_has_dots_at_its_ends_and_a_bar_in_free_space(charts: Cycle
     assert (place.top, place.bottom) == (chart.at(72, 60).y(), chart.at(72, 40).y())
     middle = (place.top + place.bottom) / 2
     picture = chart.grab().toImage()
-    assert is_like(picture.pixelColor(round(place.bar_x - 0.5), round(middle)), look.theme.colours.ink)
+    assert is_like(picture.pixelColor(round(place.bar_x - 0.5), round(middle)), current_theme().colours.ink)
     at = chart.at(72, 60)
     assert (
-        picture.pixelColor(round(at.x()), round(at.y())).name() == look.theme.colours.surface.lower()
+        picture.pixelColor(round(at.x()), round(at.y())).name() == current_theme().colours.surface.lower()
     )  # right: outlined
-    assert is_like(colour_at(chart, 72, 40), look.theme.curve(Side.LEFT))
+    assert is_like(colour_at(chart, 72, 40), current_theme().curve(Side.LEFT))
     assert "L 20° under R, beyond measurement error; loading too." in charts.knee.in_words()
     assert "L 20° under R" not in charts.ankle.in_words()
 
 
-def test_a_difference_inside_the_error_is_grey(charts: CycleCharts, look: ThemeNotifier) -> None:
+def test_a_difference_inside_the_error_is_grey(charts: CycleCharts) -> None:
     chart = show(charts, left=cycle(12, 40), right=cycle(12, 60))
     charts.show_marks([replace(LEFT_UNDER_RIGHT, is_larger_than_error=False)])
     ((_, place),) = chart.layout_of_words.brackets
     found = chart.grab().toImage().pixelColor(round(place.bar_x - 0.5), round((place.top + place.bottom) / 2))
-    assert is_like(found, look.theme.colours.control)
+    assert is_like(found, current_theme().colours.control)
     assert "beyond measurement error" not in charts.knee.in_words()
 
 
@@ -313,16 +313,16 @@ def test_marks_stand_on_curves_that_are_drawn_alone_two_at_most_and_for_one_walk
     assert [gap.joint for gap in charts.knee.chart.gaps] == [Joint.RIGHT_KNEE]
 
 
-def test_a_gap_is_filled_up_to_its_limit_and_marked_on_the_axis(charts: CycleCharts, look: ThemeNotifier) -> None:
+def test_a_gap_is_filled_up_to_its_limit_and_marked_on_the_axis(charts: CycleCharts) -> None:
     charts.set_band_shown(False)
     chart = show(charts, left=cycle(9, 40))
-    surface = look.theme.colours.surface.lower()
+    surface = current_theme().colours.surface.lower()
     limit_deg = chart.cycles[Side.LEFT].mean.mean + 12.0
     on_axis = chart.frame.low_deg + 2.5 / chart.frame.height * (chart.frame.high_deg - chart.frame.low_deg)
     assert colour_at(chart, 76, 42).name() == surface
     charts.show_marks([], [Gap(Joint.LEFT_KNEE, 66, 84, limit_deg, "outside 2 SD of the band")])
-    assert colour_at(chart, 72, 47).name() == look.theme.soft(Side.LEFT).name()
-    assert is_like(colour_at(chart, 75, on_axis), look.theme.curve(Side.LEFT))
+    assert colour_at(chart, 72, 47).name() == current_theme().soft(Side.LEFT).name()
+    assert is_like(colour_at(chart, 75, on_axis), current_theme().curve(Side.LEFT))
     for percent in (55, 95):
         assert colour_at(chart, percent, on_axis).name() == surface
     assert colour_at(chart, 72, 56).name() == surface  # beyond the limit

@@ -16,7 +16,7 @@ from app.plots.course import CourseCard
 from app.summary.course_lanes import CourseVisit
 from app.summary.course_words import NextKind, NextStep, last_in_words
 from app.summary.progress_words import Arrow
-from app.theme.notifier import ThemeNotifier
+from app.theme.current import set_scale
 from app.widgets.change_arrow import ChangeArrow
 from app.widgets.line_list import SessionLine
 from app.widgets.text import Text
@@ -32,8 +32,8 @@ STEP = NextStep(NextKind.REPORT, "Write report of 14 Nov", "Not written yet. Mea
 
 
 @pytest.fixture
-def page(qtbot: QtBot, look: ThemeNotifier) -> HomePage:
-    page = HomePage(look)
+def page(qtbot: QtBot) -> HomePage:
+    page = HomePage()
     page.set_room(1064)
     page.resize(1064, 728)
     qtbot.addWidget(page)
@@ -188,9 +188,9 @@ def test_where_there_is_little_room_the_list_or_the_patient_is_in_sight(page: Ho
 )
 @pytest.mark.parametrize("is_empty", [False, True])
 def test_no_word_is_cut_at_any_size(
-    page: HomePage, look: ThemeNotifier, qapp: QApplication, width: int, height: int, scale: float, is_empty: bool
+    page: HomePage, qapp: QApplication, width: int, height: int, scale: float, is_empty: bool
 ) -> None:
-    look.set_scale(scale)
+    set_scale(scale)
     page.set_room(width / scale, is_compact=height / scale < 720)
     if is_empty:
         page.show_patients(())
@@ -204,7 +204,7 @@ def test_no_word_is_cut_at_any_size(
         qapp.processEvents()
     assert page.minimumSizeHint().width() <= width
     assert words_cut(page) == []
-    look.set_scale(1.0)
+    set_scale(1.0)
 
 
 @pytest.mark.usefixtures("pseudo_language")

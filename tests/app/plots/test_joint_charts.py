@@ -9,7 +9,7 @@ from pytestqt.qtbot import QtBot
 from app.charts.axes import ANKLE_DEG, KNEE_DEG
 from app.plots.angle_chart import AngleChart, Curve
 from app.plots.joint_charts import NO_VALUE, JointCharts
-from app.theme.notifier import ThemeNotifier
+from app.theme.current import current_theme, set_dark
 from core.body import Joint, Side
 from core.samples import FloatArray
 
@@ -22,8 +22,8 @@ def angle(highest_deg: float) -> FloatArray:
 
 
 @pytest.fixture
-def charts(qtbot: QtBot, look: ThemeNotifier) -> JointCharts:
-    charts = JointCharts(look)
+def charts(qtbot: QtBot) -> JointCharts:
+    charts = JointCharts()
     qtbot.addWidget(charts)
     charts.resize(800, 500)
     charts.show()
@@ -43,7 +43,7 @@ def charts(qtbot: QtBot, look: ThemeNotifier) -> JointCharts:
 def inked_columns(chart: AngleChart, side: Side) -> FloatArray:
     """Give the times at which pixels of a leg's curve are found."""
     picture = chart.grab().toImage()
-    ink = chart._look.theme.curve(side)
+    ink = current_theme().curve(side)
     found = []
     for x in range(picture.width()):
         column = (picture.pixelColor(x, y) for y in range(picture.height()))
@@ -168,8 +168,8 @@ def test_a_recording_without_samples_is_no_trouble(charts: JointCharts) -> None:
     assert "Left knee has no values." in charts.accessibleDescription()
 
 
-def test_right_is_drawn_dashed_and_left_is_not(look: ThemeNotifier) -> None:
+def test_right_is_drawn_dashed_and_left_is_not() -> None:
     for is_dark in (False, True):
-        look.set_dark(is_dark)
-        assert look.theme.side_pen(Side.RIGHT, 2).dashPattern()
-        assert look.theme.side_pen(Side.LEFT, 2).style() is Qt.PenStyle.SolidLine
+        set_dark(is_dark)
+        assert current_theme().side_pen(Side.RIGHT, 2).dashPattern()
+        assert current_theme().side_pen(Side.LEFT, 2).style() is Qt.PenStyle.SolidLine

@@ -9,7 +9,7 @@ from pytestqt.qtbot import QtBot
 
 from app.plots.joint_charts import JointCharts
 from app.plots.phase_lanes import Lane, PhaseLanes
-from app.theme.notifier import ThemeNotifier
+from app.theme.current import current_theme
 from core.body import Side
 from core.gait.events import FootEvents
 from core.gait.phases import phases_at
@@ -36,8 +36,8 @@ def gait(first_s: float, count: int = STRIDES) -> SideGait:
 
 
 @pytest.fixture
-def charts(qtbot: QtBot, look: ThemeNotifier) -> JointCharts:
-    charts = JointCharts(look)
+def charts(qtbot: QtBot) -> JointCharts:
+    charts = JointCharts()
     qtbot.addWidget(charts)
     charts.resize(1000, 640)
     charts.show()
@@ -58,17 +58,17 @@ def grey(colour: str) -> int:
     return QColor(colour).lightness()
 
 
-def test_each_phase_has_its_look(charts: JointCharts, look: ThemeNotifier) -> None:
+def test_each_phase_has_its_look(charts: JointCharts) -> None:
     lanes = charts.phases.lanes
     for side, shift in ((Side.LEFT, 0.0), (Side.RIGHT, 0.5)):
-        full, pale = look.theme.curve(side).name(), look.theme.soft(side).name()
+        full, pale = current_theme().curve(side).name(), current_theme().soft(side).name()
         assert set(colours_at(lanes, side, 1.66 + shift)) == {full}  # loading
         assert set(colours_at(lanes, side, 1.86 + shift)) == {pale}  # foot flat
         hatched = colours_at(lanes, side, 2.1 + shift)  # pre-swing: stripes of colour on the surface
         assert len({colour for colour in hatched if grey(colour) < 170}) > 0
         assert len({colour for colour in hatched if grey(colour) > 240}) > 0
         swing = colours_at(lanes, side, 1.4 + shift)
-        assert swing[0] == look.theme.colours.surface.lower()
+        assert swing[0] == current_theme().colours.surface.lower()
         assert swing[-1] == full
 
 
@@ -79,9 +79,9 @@ def test_the_looks_differ_without_colour(charts: JointCharts) -> None:
     assert middle[1] + 20 < middle[2]
 
 
-def test_where_the_phase_is_unknown_nothing_is_drawn(charts: JointCharts, look: ThemeNotifier) -> None:
+def test_where_the_phase_is_unknown_nothing_is_drawn(charts: JointCharts) -> None:
     for at in (0.5, 9.5):
-        assert set(colours_at(charts.phases.lanes, Side.LEFT, at)) == {look.theme.colours.surface.lower()}
+        assert set(colours_at(charts.phases.lanes, Side.LEFT, at)) == {current_theme().colours.surface.lower()}
 
 
 def test_lanes_stand_on_the_time_of_the_curves(charts: JointCharts) -> None:
@@ -152,15 +152,15 @@ def test_the_mouse_over_a_lane_reads_moves_and_zooms(qtbot: QtBot, charts: Joint
     assert charts.visible_s[0] == pytest.approx(first + (last - first) / 10, abs=0.05)
 
 
-def test_phases_too_narrow_to_show_apart_ask_for_a_zoom(qtbot: QtBot, look: ThemeNotifier) -> None:
-    lanes = PhaseLanes(look)
+def test_phases_too_narrow_to_show_apart_ask_for_a_zoom(qtbot: QtBot) -> None:
+    lanes = PhaseLanes()
     qtbot.addWidget(lanes)
     lanes.show_lanes({Side.LEFT: Lane.of(TIME_S, gait(1.0))})
     lanes.resize(400, 26)
     lanes.see(-200.0, 200.0)
-    full = look.theme.curve(Side.LEFT).name()
+    full = current_theme().curve(Side.LEFT).name()
     assert full not in colours_at(lanes, Side.LEFT, 1.66)
-    assert look.theme.colours.sunken.lower() in colours_at(lanes, Side.LEFT, 5.0)
+    assert current_theme().colours.sunken.lower() in colours_at(lanes, Side.LEFT, 5.0)
     lanes.see(0.0, 10.0)
     assert full in colours_at(lanes, Side.LEFT, 1.66)
 

@@ -10,7 +10,6 @@ from pytestqt.qtbot import QtBot
 
 from app.plots.stride_legs import StrideLegs
 from app.summary.mean_legs import ANKLE, HIP, KNEE, TOES, MeanLegs, ThinBend, bent_by
-from app.theme.notifier import ThemeNotifier
 from app.wording.translation import use_language
 from core.body import Side
 from core.gait.cycles import POINTS
@@ -37,8 +36,8 @@ KNEES: Mapping[Side, FloatArray | None] = {Side.LEFT: np.arange(POINTS) * 0.5, S
 
 
 @pytest.fixture
-def legs(qtbot: QtBot, look: ThemeNotifier) -> StrideLegs:
-    found = StrideLegs(look)
+def legs(qtbot: QtBot) -> StrideLegs:
+    found = StrideLegs()
     qtbot.addWidget(found)
     found.resize(160, 260)
     found.show_legs(both(), KNEES)
@@ -123,10 +122,10 @@ def test_one_leg_has_its_reading_alone_and_what_is_not_reported_is_named(legs: S
 
 
 @pytest.mark.parametrize("language", ["en", "de"])
-def test_a_reading_that_is_not_reported_has_its_room(qtbot: QtBot, look: ThemeNotifier, language: str) -> None:
+def test_a_reading_that_is_not_reported_has_its_room(qtbot: QtBot, language: str) -> None:
     use_language(language)
     try:
-        found = StrideLegs(look)
+        found = StrideLegs()
         qtbot.addWidget(found)
         found.show_legs(both(), {**KNEES, Side.LEFT: None})
         found.resize(found.minimumSizeHint())

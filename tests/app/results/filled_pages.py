@@ -23,7 +23,6 @@ from app.home.settings.settings_page import SettingsPage
 from app.importing.import_drafts import drafts_of
 from app.summary.course_lanes import CourseVisit
 from app.summary.course_words import NextKind, NextStep
-from app.theme.notifier import ThemeNotifier
 from app.widgets.gauge import GaugeFace, GaugeMeasure, GaugeState
 from app.widgets.hint import Hint
 from app.widgets.line_list import PatientLine, SessionLine
@@ -47,30 +46,30 @@ from devices.files.trial import ImportedSensor, ImportedTrial
 from tests.app.home.course_library import VISITS
 
 
-def first_start(look: ThemeNotifier) -> QWidget:
-    return FirstStartPage(look, 12, lambda _typed, _key: False)
+def first_start() -> QWidget:
+    return FirstStartPage(12, lambda _typed, _key: False)
 
 
-def recovery_key(look: ThemeNotifier) -> QWidget:
-    page = FirstStartPage(look, 12, lambda _typed, _key: False)
+def recovery_key() -> QWidget:
+    page = FirstStartPage(12, lambda _typed, _key: False)
     page.show_recovery_key("-".join(["8K3F"] * 14))
     return page
 
 
-def log_in(look: ThemeNotifier) -> QWidget:
-    page = LogInPage(look, 12)
+def log_in() -> QWidget:
+    page = LogInPage(12)
     page.show_operators(["hk", "mueller"], ["hk"], can_remember=True)
     return page
 
 
-def joining(look: ThemeNotifier) -> QWidget:
-    page = JoinPage(look)
+def joining() -> QWidget:
+    page = JoinPage()
     page.refuse(tr("The clinic's server does not respond"), is_place=False)
     return page
 
 
-def station(look: ThemeNotifier) -> QWidget:
-    page = SettingsPage(look, 12, [("clinician", tr("clinician"))])
+def station() -> QWidget:
+    page = SettingsPage(12, [("clinician", tr("clinician"))])
     page.show_library(has_access=False, has_backup=False, has_operators=False, is_station=True, may_move=True)
     page.station.show_may(may_copy=True, may_bring_back=True)
     page.station.show_station(StationView("postgresql://station@server/clinic", "/srv/recordings", 2))
@@ -81,14 +80,14 @@ def station(look: ThemeNotifier) -> QWidget:
     return scroll
 
 
-def cover(look: ThemeNotifier) -> QWidget:
-    page = LogInPage(look, 12)
+def cover() -> QWidget:
+    page = LogInPage(12)
     page.show_cover("mueller", is_recording=True)
     return page
 
 
-def home(look: ThemeNotifier) -> QWidget:
-    page = HomePage(look)
+def home() -> QWidget:
+    page = HomePage()
     lines = [
         PatientLine(
             UUID(int=k), f"P-01{k:02d}", "1968, male · left prosthetic", "20 Nov 2026", "3 sessions", "", k == 2
@@ -105,32 +104,32 @@ def home(look: ThemeNotifier) -> QWidget:
     return page
 
 
-def home_of_a_patient(look: ThemeNotifier) -> QWidget:
+def home_of_a_patient() -> QWidget:
     """Where there is room for the list or the patient only."""
-    page = home(look)
+    page = home()
     assert isinstance(page, HomePage)
     page.view.choose(PATIENT)
     return page
 
 
-def empty_home(look: ThemeNotifier) -> QWidget:
-    page = HomePage(look)
+def empty_home() -> QWidget:
+    page = HomePage()
     page.show_patients([])
     page.show_patient("", "")
     page.show_sessions([])
     return page
 
 
-def importing(look: ThemeNotifier) -> QWidget:
-    page = ImportPage(look)
+def importing() -> QWidget:
+    page = ImportPage()
     finding = Finding("gaps", Severity.WARNING, "left_foot", {"count": 3, "missing_percent": 2.5, "longest_s": 0.4})
     page.show_session("session_2026", ["standing", "free motion", "walk 1"], "DEMO-1", [finding], is_simulated=True)
     return page
 
 
-def importing_files(look: ThemeNotifier) -> QWidget:
+def importing_files() -> QWidget:
     """A walk of six sensors that gives nothing of them, one of which has a site twice."""
-    page = ImportPage(look)
+    page = ImportPage()
     time_s = np.arange(500) / 100.0
     block = ImuBlock("A", time_s, np.sin(time_s)[:, None] * np.ones(3), np.tile([0.0, 0.0, 9.81], (500, 1)))
     names = ("Left Foot", "Left Thigh", "00B4227C", "00B4227D", "00B421EF", "00B42279")
@@ -154,9 +153,9 @@ class ScrolledQuestions(QScrollArea):
         self.set_room = page.set_room
 
 
-def questions(look: ThemeNotifier) -> QWidget:
+def questions() -> QWidget:
     """With everything that can have to be stated, and a group of one session."""
-    page = QuestionsPage(look)
+    page = QuestionsPage()
     page.show_table("batch of 2026/parameters.parquet", ["knee_range_deg", "speed_m_s"], tuple(Grouping))
     whole = GroupRow("", 120, 80, 240, 58.4, 6.1, 0.56, 1.1, 9.2, 12, 30, 4, 3)
     alone = GroupRow("80", 1, 1, 2, 61.0, np.nan, np.nan, np.nan, 9.2, 1, 0, 0, 0)
@@ -164,21 +163,21 @@ def questions(look: ThemeNotifier) -> QWidget:
     return ScrolledQuestions(page)
 
 
-def no_table(look: ThemeNotifier) -> QWidget:
-    page = QuestionsPage(look)
+def no_table() -> QWidget:
+    page = QuestionsPage()
     page.show_refused(tr("The table cannot be evaluated."), tr("See the log for details."))
     return ScrolledQuestions(page)
 
 
-def settings(look: ThemeNotifier) -> QWidget:
-    page = SettingsPage(look, 12, [("clinician", tr("clinician")), ("administrator", tr("administrator"))])
+def settings() -> QWidget:
+    page = SettingsPage(12, [("clinician", tr("clinician")), ("administrator", tr("administrator"))])
     page.show_library(has_access=True, has_backup=True, has_operators=True)
     page.operators.show_operators([OperatorLine("hk", "H. Keller", tr("administrator"), is_active=True, is_self=True)])
     return page
 
 
-def patient(look: ThemeNotifier) -> QWidget:
-    page = PatientPage(look)
+def patient() -> QWidget:
+    page = PatientPage()
     known = Patient(
         code="P-0147", birth_year=1968, sex="male", height_m=1.81, prosthetic_side="left", device="C-Leg 4, Triton"
     )
@@ -188,8 +187,8 @@ def patient(look: ThemeNotifier) -> QWidget:
     return page
 
 
-def sensors(look: ThemeNotifier) -> QWidget:
-    page = SensorsPage(look)
+def sensors() -> QWidget:
+    page = SensorsPage()
     page.show_sources([SourceOption("serial", tr("Serial ports"), "6"), SourceOption("replay", tr("Replay"))], "serial")
     rows = [SensorRow(f"0A0{k}", "x-IMU3", 100.0, 0.8, site) for k, site in enumerate(LEG_SITES[:4])]
     rows += [SensorRow("0A31", "x-IMU3", 0.0, 0.08, Site.RIGHT_SHANK, silent_s=3.2, can_identify=True)]
@@ -200,8 +199,8 @@ def sensors(look: ThemeNotifier) -> QWidget:
     return page
 
 
-def stored_sessions(look: ThemeNotifier) -> QWidget:
-    page = SensorsPage(look)
+def stored_sessions() -> QWidget:
+    page = SensorsPage()
     lines = [
         PatientLine(UUID(int=k), f"P-01{k:02d}", "Alignment A, B, C", "20 Nov 2026", "3 recordings", "")
         for k in range(12)
@@ -212,14 +211,14 @@ def stored_sessions(look: ThemeNotifier) -> QWidget:
     return page
 
 
-def no_stored_session(look: ThemeNotifier) -> QWidget:
-    page = SensorsPage(look)
+def no_stored_session() -> QWidget:
+    page = SensorsPage()
     page.show_stored()
     return page
 
 
-def no_sensors(look: ThemeNotifier) -> QWidget:
-    page = SensorsPage(look)
+def no_sensors() -> QWidget:
+    page = SensorsPage()
     page.show_sources([SourceOption("serial", tr("Serial ports"))])
     page.show_no_source()
     page.nothing.show_left_out(
@@ -231,9 +230,9 @@ def no_sensors(look: ThemeNotifier) -> QWidget:
     return page
 
 
-def standing(phase: StandPhase, **more: object) -> Callable[[ThemeNotifier], QWidget]:
-    def make(look: ThemeNotifier) -> QWidget:
-        page = StandStillPage(look)
+def standing(phase: StandPhase, **more: object) -> Callable[[], QWidget]:
+    def make() -> QWidget:
+        page = StandStillPage()
         page.show_zero({Joint.LEFT_KNEE: 12.0})
         page.show_state(StandStillView(phase, 1.2, movement_deg_s=dict.fromkeys(LEG_SITES, 0.4), **more))  # type: ignore[arg-type]  # of a test
         return page
@@ -241,8 +240,8 @@ def standing(phase: StandPhase, **more: object) -> Callable[[ThemeNotifier], QWi
     return make
 
 
-def free_motion(look: ThemeNotifier) -> QWidget:
-    page = FreeMotionPage(look)
+def free_motion() -> QWidget:
+    page = FreeMotionPage()
     open_face = GaugeFace(
         GaugeState.NOW,
         GaugeMeasure("11", "°", figure_text(1.5, "g") + "°", 0.4, False),
@@ -259,9 +258,9 @@ def free_motion(look: ThemeNotifier) -> QWidget:
     return page
 
 
-def walking(*rows: WalkRow) -> Callable[[ThemeNotifier], QWidget]:
-    def make(look: ThemeNotifier) -> QWidget:
-        page = WalkingPage(look)
+def walking(*rows: WalkRow) -> Callable[[], QWidget]:
+    def make() -> QWidget:
+        page = WalkingPage()
         page.show_labels(("Barefoot", "Alignment A", "AFO"), "AFO")
         page.show_walks(rows, "L 12, R 11")
         time_s = np.arange(500) / 100
@@ -277,8 +276,8 @@ def walking(*rows: WalkRow) -> Callable[[ThemeNotifier], QWidget]:
     return make
 
 
-def helping(look: ThemeNotifier) -> QWidget:
-    page = HelpPage(look)
+def helping() -> QWidget:
+    page = HelpPage()
     page.show_topic(Topic.MESSAGES)
     page.search.line_edit.setText("sensor")
     page.search.line_edit.textEdited.emit("sensor")
@@ -287,7 +286,7 @@ def helping(look: ThemeNotifier) -> QWidget:
 
 KEPT = WalkRow("1", "A", "Barefoot", WalkState.KEPT, 18)
 DISCARDED = WalkRow("2", "B", "Alignment A", WalkState.DISCARDED, 17)
-PAGES: dict[str, Callable[[ThemeNotifier], QWidget]] = {
+PAGES: dict[str, Callable[[], QWidget]] = {
     "first start": first_start,
     "recovery key": recovery_key,
     "log in": log_in,

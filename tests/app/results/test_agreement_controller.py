@@ -11,7 +11,6 @@ from pytestqt.qtbot import QtBot
 
 from app.results.agreement_controller import AgreementController
 from app.results.agreement_page import AgreementPage
-from app.theme.notifier import ThemeNotifier
 from app.widgets.text import Text
 from app.workers.background import Background
 from core.analysis import analyse
@@ -37,8 +36,8 @@ def parent(qapp: QObject) -> Iterator[QObject]:
 
 
 @pytest.fixture
-def page(qtbot: QtBot, look: ThemeNotifier) -> AgreementPage:
-    page = AgreementPage(look)
+def page(qtbot: QtBot) -> AgreementPage:
+    page = AgreementPage()
     qtbot.addWidget(page)
     page.resize(1064, 680)
     page.show()

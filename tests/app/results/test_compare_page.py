@@ -32,8 +32,8 @@ from app.summary.differences import (
 from app.summary.numbers_in_words import MARKS
 from app.summary.request import AnalysedVisit
 from app.summary.visits import ComparedVisits, WalkedVisit, conditions_in_words, parts_of_visits, visits_by_condition
+from app.theme.current import load_fonts, set_dark
 from app.theme.icons import Icon
-from app.theme.notifier import ThemeNotifier, load_fonts
 from app.widgets.table_cells import TextCell
 from app.widgets.text import SEMIBOLD
 from app.widgets.trend_cell import TrendCell
@@ -78,9 +78,8 @@ def parts(analysis: Analysis, session: Session) -> tuple[Part, ...]:
 @pytest.fixture
 def page(qtbot: QtBot, qapp: QApplication, analysis: Analysis, session: Session) -> ResultPage:
     load_fonts()
-    look = ThemeNotifier()
-    look.set_dark(False)
-    page = ResultPage(look)
+    set_dark(False)
+    page = ResultPage()
     qtbot.addWidget(page)
     page.resize(1064, 672)
     page.set_room(1064, 672)

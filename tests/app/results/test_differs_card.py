@@ -12,7 +12,7 @@ from pytestqt.qtbot import QtBot
 
 from app.results.differs_card import HEAD, LEAST, MOST, ROW, DiffersCard
 from app.summary.facts import Facts
-from app.theme.notifier import ThemeNotifier
+from app.theme.current import current_theme
 from app.widgets.table_cells import IntervalStrip, MarkCell, TextCell
 from core.analysis import analyse
 from core.body import Joint, Side
@@ -37,8 +37,8 @@ def analysis(session: Session) -> Analysis:
 
 
 @pytest.fixture
-def card(qtbot: QtBot, look: ThemeNotifier) -> DiffersCard:
-    found = DiffersCard(look)
+def card(qtbot: QtBot) -> DiffersCard:
+    found = DiffersCard()
     qtbot.addWidget(found)
     found.resize(1016, 150)
     return found
@@ -137,47 +137,47 @@ def test_goals_give_way_before_the_table_gets_wider_and_are_under_the_mouse(
     assert card.table.minimumSizeHint().width() <= bare + 20
 
 
-def painted(strip: IntervalStrip, look: ThemeNotifier) -> QImage:
+def painted(strip: IntervalStrip) -> QImage:
     image = QImage(146, 28, QImage.Format.Format_RGB32)
-    image.fill(QColor(look.theme.colours.surface))
+    image.fill(QColor(current_theme().colours.surface))
     painter = QPainter(image)
-    strip.paint(painter, QRectF(0, 0, 146, 28), look.theme)
+    strip.paint(painter, QRectF(0, 0, 146, 28), current_theme())
     painter.end()
     return image
 
 
-def is_ink(image: QImage, x: float, y: int, look: ThemeNotifier) -> bool:
-    return abs(image.pixelColor(int(x), y).lightness() - QColor(look.theme.colours.ink).lightness()) < 60
+def is_ink(image: QImage, x: float, y: int) -> bool:
+    return abs(image.pixelColor(int(x), y).lightness() - QColor(current_theme().colours.ink).lightness()) < 60
 
 
-def test_dot_whisker_and_zone_lie_where_their_numbers_are(look: ThemeNotifier) -> None:
+def test_dot_whisker_and_zone_lie_where_their_numbers_are() -> None:
     """Half a strip is 73 - 5 px for the scale: 68 px for 10."""
-    image = painted(IntervalStrip(5.0, 3.0, 2.0, 10.0), look)
-    surface, zone = QColor(look.theme.colours.surface), QColor(look.theme.colours.band_2sd)
+    image = painted(IntervalStrip(5.0, 3.0, 2.0, 10.0))
+    surface, zone = QColor(current_theme().colours.surface), QColor(current_theme().colours.band_2sd)
     centre = 73.0
-    assert is_ink(image, centre + 34, 14, look)  # the dot
+    assert is_ink(image, centre + 34, 14)  # the dot
     for end in (2.0, 8.0):
-        assert is_ink(image, centre + 6.8 * end, 12, look)  # the whisker's ends are upright
-    assert is_ink(image, centre + 6.8 * 3.0, 14, look)
-    assert not is_ink(image, centre + 6.8 * 8.0 + 4, 14, look)
-    assert not is_ink(image, centre + 6.8 * 2.0 - 5, 14, look)
+        assert is_ink(image, centre + 6.8 * end, 12)  # the whisker's ends are upright
+    assert is_ink(image, centre + 6.8 * 3.0, 14)
+    assert not is_ink(image, centre + 6.8 * 8.0 + 4, 14)
+    assert not is_ink(image, centre + 6.8 * 2.0 - 5, 14)
     assert image.pixelColor(round(centre - 6.8 * 2.0 + 2), 8) == zone
     assert image.pixelColor(round(centre + 6.8 * 2.0 - 3), 8) == zone
     assert image.pixelColor(round(centre - 6.8 * 2.0 - 3), 8) == surface
 
 
-def test_a_difference_beyond_its_interval_has_the_larger_dot(look: ThemeNotifier) -> None:
+def test_a_difference_beyond_its_interval_has_the_larger_dot() -> None:
     def dot(difference: float) -> int:
-        image = painted(IntervalStrip(difference, 3.0, math.nan, 10.0), look)
+        image = painted(IntervalStrip(difference, 3.0, math.nan, 10.0))
         x = round(73 + 6.8 * difference)
-        return sum(is_ink(image, x, y, look) for y in range(28))
+        return sum(is_ink(image, x, y) for y in range(28))
 
     assert dot(5.0) > dot(2.0)
 
 
-def test_what_reaches_beyond_an_edge_ends_there_and_what_is_not_known_is_not_drawn(look: ThemeNotifier) -> None:
-    beyond = painted(IntervalStrip(30.0, 40.0, math.nan, 10.0), look)
-    assert is_ink(beyond, 73 + 68, 14, look)
-    assert is_ink(beyond, 73 - 68, 12, look)
-    nothing = painted(IntervalStrip(math.nan, math.nan, math.nan, 10.0), look)
-    assert not any(is_ink(nothing, x, y, look) for x in range(146) for y in range(28) if abs(x - 73) > 2)
+def test_what_reaches_beyond_an_edge_ends_there_and_what_is_not_known_is_not_drawn() -> None:
+    beyond = painted(IntervalStrip(30.0, 40.0, math.nan, 10.0))
+    assert is_ink(beyond, 73 + 68, 14)
+    assert is_ink(beyond, 73 - 68, 12)
+    nothing = painted(IntervalStrip(math.nan, math.nan, math.nan, 10.0))
+    assert not any(is_ink(nothing, x, y) for x in range(146) for y in range(28) if abs(x - 73) > 2)

@@ -24,7 +24,7 @@ from app.summary.diagnostics import (
     names_of_files,
     write_diagnostics,
 )
-from app.theme.notifier import ThemeNotifier
+from app.theme.current import set_dark, set_scale
 from app.widgets.text import Text
 from app.workers.background import Background
 from core.analysis import analyse
@@ -67,8 +67,8 @@ def found(session: Session, analysis: Analysis) -> JointDiagnostics:
 
 
 @pytest.fixture
-def page(qtbot: QtBot, look: ThemeNotifier) -> FoundPage:
-    page = FoundPage(look)
+def page(qtbot: QtBot) -> FoundPage:
+    page = FoundPage()
     qtbot.addWidget(page)
     page.resize(1064, 592)
     page.set_room(1064, 592)
@@ -158,27 +158,25 @@ def test_ten_seconds_are_seen_closer_on_the_axis_that_they_need(page: FoundPage,
     page.grab()
 
 
-def test_every_word_has_its_room(page: FoundPage, look: ThemeNotifier, found: JointDiagnostics) -> None:
-    assert cut_in(page, look, found, "1280 x 720 at 100 %") == []
+def test_every_word_has_its_room(page: FoundPage, found: JointDiagnostics) -> None:
+    assert cut_in(page, found, "1280 x 720 at 100 %") == []
 
 
 @pytest.mark.endurance  # a second each
 @pytest.mark.usefixtures("pseudo_language")
 @pytest.mark.parametrize("room", ROOMS)
-def test_every_word_of_a_longer_language_has_its_room(
-    qtbot: QtBot, look: ThemeNotifier, found: JointDiagnostics, room: str
-) -> None:
-    page = FoundPage(look)  # which is made in the language that it speaks
+def test_every_word_of_a_longer_language_has_its_room(qtbot: QtBot, found: JointDiagnostics, room: str) -> None:
+    page = FoundPage()  # which is made in the language that it speaks
     qtbot.addWidget(page)
     page.show()
-    assert cut_in(page, look, found, room) == []
+    assert cut_in(page, found, room) == []
 
 
-def cut_in(page: FoundPage, look: ThemeNotifier, found: JointDiagnostics, room: str) -> list[str]:
+def cut_in(page: FoundPage, found: JointDiagnostics, room: str) -> list[str]:
     """What is cut on the page, and on what is scrolled in it."""
     width, height, scale = ROOMS[room]
-    look.set_scale(scale)
-    look.set_dark(True)
+    set_scale(scale)
+    set_dark(True)
     page.show_joints(list(LEG_JOINTS), KNEE)
     page.set_room(width / scale, height / scale)
     page.show_found(found, [Finding("strap_slipped", Severity.WARNING, str(KNEE))], True)

@@ -5,7 +5,7 @@ from PySide6.QtGui import QFontMetrics
 from pytestqt.qtbot import QtBot
 
 from app.results.headline_text import SECOND, SIZES, SPARE, HeadlineText
-from app.theme.notifier import ThemeNotifier
+from app.theme.current import current_theme
 from app.widgets.text import SEMIBOLD
 
 FIRST = "Left knee flexes 53° from stance to swing, up 18° since 1 July."
@@ -17,8 +17,8 @@ BESIDE = (
 
 
 @pytest.fixture
-def headline(qtbot: QtBot, look: ThemeNotifier) -> HeadlineText:
-    found = HeadlineText(look)
+def headline(qtbot: QtBot) -> HeadlineText:
+    found = HeadlineText()
     qtbot.addWidget(found)
     found.resize(1016, 50)
     found.show()
@@ -26,8 +26,8 @@ def headline(qtbot: QtBot, look: ThemeNotifier) -> HeadlineText:
     return found
 
 
-def width_of(look: ThemeNotifier, text: str, size: int, *, is_first: bool) -> int:
-    theme = look.theme
+def width_of(text: str, size: int, *, is_first: bool) -> int:
+    theme = current_theme()
     return QFontMetrics(theme.font(size, SEMIBOLD) if is_first else theme.font(size)).horizontalAdvance(text)
 
 
@@ -37,10 +37,8 @@ def test_where_there_is_room_all_of_it_is_shown_in_large_letters(headline: Headl
 
 
 @pytest.mark.parametrize("size", SIZES)
-def test_letters_shrink_as_far_as_the_sentence_needs_and_no_further(
-    look: ThemeNotifier, headline: HeadlineText, size: int
-) -> None:
-    headline.resize(width_of(look, FIRST, size, is_first=True) + SPARE, 50)
+def test_letters_shrink_as_far_as_the_sentence_needs_and_no_further(headline: HeadlineText, size: int) -> None:
+    headline.resize(width_of(FIRST, size, is_first=True) + SPARE, 50)
     assert headline.first.font().pixelSize() == size
 
 
@@ -52,11 +50,9 @@ def test_a_sentence_that_is_longer_still_takes_two_lines(headline: HeadlineText)
 
 
 @pytest.mark.parametrize("count", [3, 2, 1])
-def test_the_last_sentence_goes_first_and_the_first_one_stays(
-    look: ThemeNotifier, headline: HeadlineText, count: int
-) -> None:
+def test_the_last_sentence_goes_first_and_the_first_one_stays(headline: HeadlineText, count: int) -> None:
     shown = " ".join(BESIDE[:count])
-    headline.resize(width_of(look, shown, SECOND, is_first=False) + SPARE, 50)
+    headline.resize(width_of(shown, SECOND, is_first=False) + SPARE, 50)
     assert headline.shown == shown
     headline.resize(60, 50)
     assert headline.shown == BESIDE[0]

@@ -11,7 +11,7 @@ from PySide6.QtWidgets import QApplication
 from pytestqt.qtbot import QtBot
 
 from app.results.result_page import ANSWER, COMPARE, STRIDES, WHOLE, ResultPage
-from app.theme.notifier import ThemeNotifier, load_fonts
+from app.theme.current import load_fonts, set_dark
 from app.widgets.stride_list import HIP, KNEE
 from app.widgets.table import CellTable
 from core.body import Joint, Side, Site
@@ -50,9 +50,8 @@ def without_pelvis() -> Analysis:
 @pytest.fixture
 def page(qtbot: QtBot, qapp: QApplication) -> ResultPage:
     load_fonts()
-    look = ThemeNotifier()
-    look.set_dark(False)
-    page = ResultPage(look)
+    set_dark(False)
+    page = ResultPage()
     qtbot.addWidget(page)
     page.resize(1280, 700)
     page.set_room(*WIDE)

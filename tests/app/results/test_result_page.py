@@ -15,7 +15,7 @@ from pytestqt.qtbot import QtBot
 from app.results.cycle_page import NO_SIDE, NO_SPEED
 from app.results.result_page import ANSWER, COMPARE, STRIDES, WHOLE, ResultPage
 from app.summary.reference_bands import NOBODY, OTHER_AGES, WHY_NO_BAND
-from app.theme.notifier import ThemeNotifier, load_fonts
+from app.theme.current import load_fonts, set_dark
 from app.widgets.table import CellTable
 from app.widgets.table_cells import TextCell
 from core.analysis import analyse
@@ -52,9 +52,8 @@ def show(page: ResultPage, analysis: Analysis, who: AgeAndHeight = NOBODY) -> No
 @pytest.fixture
 def page(qtbot: QtBot, qapp: QApplication, analysis: Analysis) -> ResultPage:
     load_fonts()
-    look = ThemeNotifier()
-    look.set_dark(False)
-    page = ResultPage(look)
+    set_dark(False)
+    page = ResultPage()
     qtbot.addWidget(page)
     page.resize(1280, 700)
     page.set_room(*WIDE)
@@ -474,7 +473,7 @@ def test_a_folded_part_is_reported_as_not_checked_and_is_received_only_unfolded(
 
 def test_legs_are_drawn_where_room_came_after_the_walk(qtbot: QtBot, analysis: Analysis) -> None:
     """The wizard fills the page before it has a size."""
-    page = ResultPage(ThemeNotifier())
+    page = ResultPage()
     qtbot.addWidget(page)
     page.set_room(0.0, 0.0)
     show(page, analysis)

@@ -12,7 +12,7 @@ from pytestqt.qtbot import QtBot
 
 from app.results.result_page import ANSWER, STRIDES, ResultPage
 from app.summary.request import AnalysedVisit
-from app.theme.notifier import ThemeNotifier, load_fonts
+from app.theme.current import load_fonts, set_dark
 from app.widgets.stride_list import ANKLE_SHAPE, KNEE_SHAPE, STATE, STRIDE, StrideLine
 from core.analysis import analyse
 from core.body import Joint, Side
@@ -38,9 +38,8 @@ def analysis(session: Session) -> Analysis:
 @pytest.fixture
 def page(qtbot: QtBot, qapp: QApplication, session: Session, analysis: Analysis) -> ResultPage:
     load_fonts()
-    look = ThemeNotifier()
-    look.set_dark(False)
-    page = ResultPage(look)
+    set_dark(False)
+    page = ResultPage()
     qtbot.addWidget(page)
     page.resize(1280, 700)
     page.set_room(1280.0, 672.0)

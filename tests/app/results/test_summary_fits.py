@@ -16,7 +16,7 @@ from app.summary.course import course_of
 from app.summary.course_lanes import CourseVisit
 from app.summary.request import AnalysedVisit
 from app.summary.visits import WalkedVisit, conditions_in_words, visits_by_condition
-from app.theme.notifier import ThemeNotifier
+from app.theme.current import px, set_scale
 from app.wording.translation import use_language
 from core.analysis import analyse
 from core.body import Joint, Side
@@ -115,34 +115,34 @@ def holders() -> list[QWidget]:
 
 
 @pytest.fixture
-def placed(qtbot: QtBot, look: ThemeNotifier, holders: list[QWidget]) -> Place:
+def placed(qtbot: QtBot, holders: list[QWidget]) -> Place:
     """The page of a case, exactly as large as its room."""
 
     def place(case: str, room: str) -> ResultPage:
         holder = QWidget()
         holders.append(holder)
         qtbot.addWidget(holder)
-        return in_room(holder, look, case, room)
+        return in_room(holder, case, room)
 
     return place
 
 
-def in_room(holder: QWidget, look: ThemeNotifier, case: str, room: str) -> ResultPage:
+def in_room(holder: QWidget, case: str, room: str) -> ResultPage:
     width, height, scale = ROOMS[room]
-    look.set_scale(scale)
+    set_scale(scale)
     visit, walked = CASES[case]()
     course = tuple(
         CourseVisit(UUID(int=number), day, course_of(one.analysis, one.recordings))
         for number, (day, one) in enumerate(zip(DAYS, walked, strict=False))
     )
-    page = ResultPage(look)
+    page = ResultPage()
     page.setParent(holder)
     page.set_has_visits(bool(walked))
     page.set_room(width, height)
     page.show_visit(visit, course=course)
     if walked:
         page.show_visits(visits_by_condition(walked), conditions_in_words(walked))
-    holder.resize(look.theme.px(width), look.theme.px(height))
+    holder.resize(px(width), px(height))
     holder.show()
     page.show()
     settle()
@@ -208,25 +208,23 @@ def test_legs_asked_for_where_room_is_short_fit_too(placed: Place, language: str
 
 @pytest.mark.usefixtures("language")
 @pytest.mark.parametrize("language", ["de"], indirect=True)
-def test_the_name_of_the_thin_line_goes_where_the_page_becomes_too_narrow_for_it(
-    qtbot: QtBot, look: ThemeNotifier
-) -> None:
-    page = ResultPage(look)
+def test_the_name_of_the_thin_line_goes_where_the_page_becomes_too_narrow_for_it(qtbot: QtBot) -> None:
+    page = ResultPage()
     qtbot.addWidget(page)
     page.show_visit(two_walks()[0])
     page.show()
     for width, has_name in ((1240, True), (1064, False), (1240, True)):
         page.set_room(width, 672)
-        page.resize(look.theme.px(width), look.theme.px(672))
+        page.resize(px(width), px(672))
         settle()
         assert page.thin.isVisible()
         assert page.thin_name.isVisible() is has_name
-        assert page.minimumSizeHint().width() <= look.theme.px(width)
+        assert page.minimumSizeHint().width() <= px(width)
 
 
-def test_a_session_without_walks_shows_its_recording_whole(qtbot: QtBot, look: ThemeNotifier) -> None:
+def test_a_session_without_walks_shows_its_recording_whole(qtbot: QtBot) -> None:
     recordings = tuple(one for one in analysis().recordings if one.name != "walk 1")
-    page = ResultPage(look)
+    page = ResultPage()
     qtbot.addWidget(page)
     page.set_room(1064, 672)
     page.show_visit(AnalysedVisit(session(), replace(analysis(), recordings=recordings)))
@@ -242,12 +240,10 @@ def test_a_session_without_walks_shows_its_recording_whole(qtbot: QtBot, look: T
 
 
 @pytest.mark.parametrize("room", ROOMS)
-def test_the_keyboard_goes_through_the_summary_in_the_order_of_reading(
-    placed: Place, look: ThemeNotifier, room: str
-) -> None:
+def test_the_keyboard_goes_through_the_summary_in_the_order_of_reading(placed: Place, room: str) -> None:
     page = placed("return visit", room)
     shown = [widget for widget in page.tab_order if widget.isVisible() and widget.isEnabled()]
     places = [widget.mapTo(page, QPoint(0, 0)) for widget in shown]
     rows = [one.y() for one in places]
-    assert rows == sorted(rows, key=lambda y: y // look.theme.px(30))
+    assert rows == sorted(rows, key=lambda y: y // px(30))
     assert page.legs in shown or page.part.isVisible()

@@ -18,7 +18,7 @@ from app.summary.course import course_of
 from app.summary.course_lanes import CourseVisit
 from app.summary.request import AnalysedVisit
 from app.summary.visits import WalkedVisit, conditions_in_words, visits_by_condition
-from app.theme.notifier import ThemeNotifier, load_fonts
+from app.theme.current import load_fonts, set_dark
 from core.analysis import analyse
 from core.body import Joint, Side
 from core.results import Analysis, ZeroKind
@@ -57,9 +57,8 @@ def analysis(session: Session) -> Analysis:
 @pytest.fixture
 def page(qtbot: QtBot, qapp: QApplication, analysis: Analysis, session: Session) -> ResultPage:
     load_fonts()
-    look = ThemeNotifier()
-    look.set_dark(False)
-    page = ResultPage(look)
+    set_dark(False)
+    page = ResultPage()
     qtbot.addWidget(page)
     page.set_room(1064, 672)
     page.set_has_visits(True)

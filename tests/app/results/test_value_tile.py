@@ -11,7 +11,7 @@ from pytestqt.qtbot import QtBot
 
 from app.results.value_tile import TileRow, ValueTile
 from app.summary.tiles import Tile, TileChange, TileValue
-from app.theme.notifier import ThemeNotifier
+from app.theme.current import current_theme, px, set_scale
 from app.wording.translation import tr, use_language
 from core.body import Side
 from core.parameters import CADENCE, KNEE, SPEED, STANCE
@@ -56,8 +56,8 @@ def language(request: pytest.FixtureRequest) -> Iterator[str]:
 
 
 @pytest.fixture
-def tile(qtbot: QtBot, look: ThemeNotifier) -> ValueTile:
-    found = ValueTile(look)
+def tile(qtbot: QtBot) -> ValueTile:
+    found = ValueTile()
     qtbot.addWidget(found)
     found.resize(245, 93)
     return found
@@ -67,10 +67,10 @@ def words(tile: ValueTile) -> list[str]:
     return [text.text for text in tile.painted_texts()]
 
 
-def ink_boxes(tile: ValueTile, look: ThemeNotifier) -> list[QRectF]:
+def ink_boxes(tile: ValueTile) -> list[QRectF]:
     """Where letters and chips are."""
     assert tile.tile is not None
-    px, found = look.theme.px, []
+    px, found = current_theme().px, []
     for text in tile.painted_texts():
         ink = QFontMetrics(text.font).tightBoundingRect(text.text)
         box = QRectF(text.box.left(), text.box.center().y() - ink.height() / 2, ink.width(), ink.height())
@@ -86,21 +86,21 @@ def ink_boxes(tile: ValueTile, look: ThemeNotifier) -> list[QRectF]:
 @pytest.mark.parametrize("scale", [1.0, 2.0])
 @pytest.mark.parametrize("window", WIDTHS)
 def test_every_word_of_a_tile_is_in_its_box_and_none_is_over_another(
-    qtbot: QtBot, look: ThemeNotifier, language: str, window: str, scale: float
+    qtbot: QtBot, language: str, window: str, scale: float
 ) -> None:
-    look.set_scale(scale)
-    row = TileRow(look)
+    set_scale(scale)
+    row = TileRow()
     qtbot.addWidget(row)
     width, is_brief = WIDTHS[window]
     row.set_brief(is_brief)
     row.show_tiles(four())
-    row.resize(look.theme.px(width), row.sizeHint().height())
+    row.resize(px(width), row.sizeHint().height())
     row.show()
     settle()
     assert row.minimumSizeHint().width() <= row.width()
     assert words_cut(row) == []
     for tile in row.tiles:
-        boxes = ink_boxes(tile, look)
+        boxes = ink_boxes(tile)
         assert all(QRectF(tile.rect()).contains(box) for box in boxes)
         crossed = [(i, k) for i, one in enumerate(boxes) for k in range(i) if one.intersects(boxes[k])]
         assert crossed == [], [words(tile), language]
@@ -108,32 +108,30 @@ def test_every_word_of_a_tile_is_in_its_box_and_none_is_over_another(
             assert not any(bar.intersects(box) for box in boxes)
 
 
-def arrow_pixels(image: QImage, tile: ValueTile, look: ThemeNotifier) -> tuple[QColor, QColor]:
+def arrow_pixels(image: QImage, tile: ValueTile) -> tuple[QColor, QColor]:
     """The middle of the arrow, and what is around the tile's text."""
     assert tile.tile is not None
     (change,) = tile.change_texts(tile.tile)
-    px = look.theme.px
+    px = current_theme().px
     x, y = change.box.left() - px(5) - px(9) / 2, change.box.center().y()
     return image.pixelColor(round(x), round(y + (1 if tile.tile.change.rises else -1))), image.pixelColor(8, 50)
 
 
 @pytest.mark.parametrize("rises", [True, False])
 @pytest.mark.parametrize("is_beyond", [True, False])
-def test_the_arrow_is_filled_beyond_error_and_outlined_within_it(
-    look: ThemeNotifier, tile: ValueTile, rises: bool, is_beyond: bool
-) -> None:
+def test_the_arrow_is_filled_beyond_error_and_outlined_within_it(tile: ValueTile, rises: bool, is_beyond: bool) -> None:
     speed = four()[0]
     tile.show_tile(replace(speed, change=since("+0.13", rises=rises, is_beyond=is_beyond)))
-    middle, ground = arrow_pixels(tile.grab().toImage(), tile, look)
-    assert middle.name() == (QColor(look.theme.colours.ink).name() if is_beyond else ground.name())
+    middle, ground = arrow_pixels(tile.grab().toImage(), tile)
+    assert middle.name() == (QColor(current_theme().colours.ink).name() if is_beyond else ground.name())
 
 
-def test_a_first_visit_has_no_arrow(look: ThemeNotifier, tile: ValueTile) -> None:
+def test_a_first_visit_has_no_arrow(tile: ValueTile) -> None:
     first = replace(four()[0], change=TileChange("First visit", brief="First visit"))
     tile.show_tile(first)
     (change,) = tile.change_texts(first)
     assert change.text == "First visit"
-    assert change.box.left() == look.theme.px(16)  # where the arrow would be
+    assert change.box.left() == px(16)  # where the arrow would be
 
 
 def test_where_the_change_has_no_room_its_words_go_and_then_its_day_and_the_tooltip_has_all(tile: ValueTile) -> None:
@@ -146,7 +144,7 @@ def test_where_the_change_has_no_room_its_words_go_and_then_its_day_and_the_tool
     assert tile.accessibleName() == tile.toolTip()
 
 
-def test_the_goal_is_over_its_tick_on_the_scale(look: ThemeNotifier, tile: ValueTile) -> None:
+def test_the_goal_is_over_its_tick_on_the_scale(tile: ValueTile) -> None:
     speed = four()[0]
     tile.show_tile(speed)
     bar, (goal,) = tile.bar_of(speed), tile.goal_texts(speed)
@@ -154,14 +152,14 @@ def test_the_goal_is_over_its_tick_on_the_scale(look: ThemeNotifier, tile: Value
     assert goal.text == "goal 1.10 m/s"
     x = bar.left() + bar.width() * 1.1 / 2.0
     assert goal.box.left() <= x <= goal.box.right()
-    assert goal.box.bottom() <= bar.center().y() - look.theme.px(8)
-    top = round(bar.center().y() - look.theme.px(7))  # of the tick, above bar and dot
+    assert goal.box.bottom() <= bar.center().y() - px(8)
+    top = round(bar.center().y() - px(7))  # of the tick, above bar and dot
     image = tile.grab().toImage()
-    ink = QColor(look.theme.colours.ink)
+    ink = QColor(current_theme().colours.ink)
     assert abs(image.pixelColor(round(x) - 1, top).lightness() - ink.lightness()) < 60
     tile.show_tile(replace(speed, goals=(), goal=""))
     assert tile.goal_texts(replace(speed, goals=(), goal="")) == []
-    assert tile.grab().toImage().pixelColor(round(x) - 1, top) == QColor(look.theme.colours.surface)
+    assert tile.grab().toImage().pixelColor(round(x) - 1, top) == QColor(current_theme().colours.surface)
 
 
 def test_what_is_not_reported_has_the_word_and_no_scale_or_change(tile: ValueTile) -> None:

@@ -7,8 +7,8 @@ from PySide6.QtWidgets import QWidget
 from pytestqt.qtbot import QtBot
 
 from app.help.help_reader import HelpReader
+from app.theme.current import set_scale
 from app.theme.icons import Icon
-from app.theme.notifier import ThemeNotifier
 from app.wizard.free_motion.page import FreeMotionPage
 from app.wizard.patient.cards import LastVisitCard
 from app.wizard.sensors.columns_form import ColumnsForm
@@ -21,16 +21,16 @@ from app.wizard.walking.live_strip import LiveStrip
 from app.wizard.walking.walk_list import ActionRow
 
 
-def a_topic(look: ThemeNotifier) -> HelpReader:
-    reader = HelpReader(look)
+def a_topic() -> HelpReader:
+    reader = HelpReader()
     reader.show_markdown("# Walking\n\nPress the space bar.\n\n- once\n- twice", "Walking")
     return reader
 
 
-Make = Callable[[ThemeNotifier], QWidget]
+Make = Callable[[], QWidget]
 PARTS: tuple[Make, ...] = (
-    lambda look: ActionRow(look, Icon.REPEAT, "Sensors strapped anew", "Stand still and move freely again"),
-    lambda look: LiveStrip(look, (-20.0, 80.0), 20),
+    lambda: ActionRow(Icon.REPEAT, "Sensors strapped anew", "Stand still and move freely again"),
+    lambda: LiveStrip((-20.0, 80.0), 20),
     ColumnsForm,
     FreeMotionPage,
     a_topic,
@@ -45,14 +45,13 @@ PARTS: tuple[Make, ...] = (
 
 @pytest.mark.parametrize("make", PARTS)
 def test_a_part_that_another_size_reaches_later_looks_as_one_made_at_it(qtbot: QtBot, make: Make) -> None:
-    look = ThemeNotifier()
-    reported = make(look)
+    reported = make()
     qtbot.addWidget(reported)
     reported.resize(900, 700)
     reported.show()
     before = reported.grab().toImage()
-    look.set_scale(1.5)
-    made = make(look)
+    set_scale(1.5)
+    made = make()
     qtbot.addWidget(made)
     for part in (reported, made):
         part.resize(900, 700)

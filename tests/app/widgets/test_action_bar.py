@@ -12,8 +12,8 @@ from PySide6.QtTest import QTest
 from pytestqt.qtbot import QtBot
 
 from app.theme.colours import LIGHT
+from app.theme.current import load_fonts
 from app.theme.icons import Icon
-from app.theme.notifier import ThemeNotifier, load_fonts
 from app.widgets.action_bar import ActionBar, BarAction, BarState, RecordingNote
 from tests.app.idle_action import idle
 from tests.app.room import settle, words_cut
@@ -28,7 +28,7 @@ def recording(elapsed_s: float = 0.0, has_sound: bool = True) -> BarState:
 @pytest.fixture
 def bar(qtbot: QtBot) -> ActionBar:
     load_fonts()
-    bar = ActionBar(ThemeNotifier())
+    bar = ActionBar()
     qtbot.addWidget(bar)
     bar.resize(1064, 72)
     bar.show()

@@ -5,7 +5,7 @@ from PySide6.QtCore import QPointF, QRectF
 from PySide6.QtGui import QColor, QImage, QPainter
 from pytestqt.qtbot import QtBot
 
-from app.theme.notifier import ThemeNotifier
+from app.theme.current import current_theme
 from app.widgets.body_figure import BodyFigure, SensorMark, paint_legs
 from app.widgets.body_shapes import body_shapes, read_path
 from core.body import LEG_JOINTS, LEG_SITES, Side, Site
@@ -13,7 +13,7 @@ from core.body import LEG_JOINTS, LEG_SITES, Side, Site
 
 @pytest.fixture
 def figure(qtbot: QtBot) -> BodyFigure:
-    figure = BodyFigure(ThemeNotifier())
+    figure = BodyFigure()
     qtbot.addWidget(figure)
     figure.resize(360, 560)
     return figure
@@ -63,7 +63,7 @@ def test_the_figure_states_its_places(figure: BodyFigure) -> None:
 
 @pytest.mark.parametrize("size", [(32, 56), (190, 400)])
 def test_legs_show_a_silent_sensor_in_yellow_and_the_side_in_its_colour(size: tuple[int, int]) -> None:
-    theme = ThemeNotifier().theme
+    theme = current_theme()
     image = QImage(*size, QImage.Format.Format_ARGB32)
     image.fill(QColor(theme.colours.surface))
     painter = QPainter(image)

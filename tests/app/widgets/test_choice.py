@@ -6,7 +6,6 @@ from PySide6.QtGui import QHelpEvent
 from PySide6.QtWidgets import QApplication, QWidget
 from pytestqt.qtbot import QtBot
 
-from app.theme.notifier import ThemeNotifier
 from app.widgets.choice import Choice
 
 pytestmark = pytest.mark.qt_log_ignore("This plugin does not support")
@@ -16,7 +15,7 @@ def opened(qtbot: QtBot, top: int, lines: int, chosen: int) -> tuple[QRect, QRec
     """Give where a box is whose top lies `top` px under the screen's, and where its lines open."""
     window = QWidget()
     qtbot.addWidget(window)
-    choice = Choice(ThemeNotifier(), "Recording")
+    choice = Choice("Recording")
     choice.setParent(window)
     choice.addItems([f"walk {number}" for number in range(lines)])
     choice.setCurrentIndex(chosen)
@@ -34,7 +33,7 @@ def opened(qtbot: QtBot, top: int, lines: int, chosen: int) -> tuple[QRect, QRec
 
 
 def shrinking(qtbot: QtBot, *lines: str) -> Choice:
-    choice = Choice(ThemeNotifier(), "Recording")
+    choice = Choice("Recording")
     qtbot.addWidget(choice)
     choice.addItems(lines)
     choice.let_shrink(120, 240)
@@ -65,7 +64,7 @@ def test_words_that_have_their_room_are_not_cut_and_need_no_tooltip(qtbot: QtBot
 
 
 def test_other_boxes_never_cut(qtbot: QtBot) -> None:
-    choice = Choice(ThemeNotifier(), "Paper")
+    choice = Choice("Paper")
     qtbot.addWidget(choice)
     choice.addItems(["A4", "Own shoes with insoles of four millimetres, and the left one raised"])
     assert choice.minimumSizeHint() == choice.sizeHint()

@@ -7,7 +7,6 @@ from PySide6.QtTest import QTest
 from PySide6.QtWidgets import QApplication, QVBoxLayout, QWidget
 from pytestqt.qtbot import QtBot
 
-from app.theme.notifier import ThemeNotifier
 from app.widgets.field import Field, NumberField
 from app.widgets.focus_ring import FocusRing
 from core.body import Side
@@ -31,15 +30,13 @@ def shown(qtbot: QtBot, window: QWidget, *fields: Field) -> None:
         window.activateWindow()
 
 
-def knee(look: ThemeNotifier) -> NumberField:
-    return NumberField(look, "Knee flexion", low=-60, high=150, decimals=1, unit="°", side=Side.LEFT)
+def knee() -> NumberField:
+    return NumberField("Knee flexion", low=-60, high=150, decimals=1, unit="°", side=Side.LEFT)
 
 
-def test_a_field_shows_side_label_unit_and_state_to_readers_of_screens(
-    qtbot: QtBot, window: QWidget, look: ThemeNotifier
-) -> None:
-    mass = Field(look, "Mass", unit="kg", is_optional=True)
-    flexion = knee(look)
+def test_a_field_shows_side_label_unit_and_state_to_readers_of_screens(qtbot: QtBot, window: QWidget) -> None:
+    mass = Field("Mass", unit="kg", is_optional=True)
+    flexion = knee()
     shown(qtbot, window, mass, flexion)
     assert mass.line_edit.accessibleName() == "Mass, kg, optional"
     assert flexion.line_edit.accessibleName() == "Left knee flexion, °"
@@ -47,8 +44,8 @@ def test_a_field_shows_side_label_unit_and_state_to_readers_of_screens(
     assert flexion.line_edit.accessibleName() == "Left knee flexion, °, This is no angle. Type degrees."
 
 
-def test_what_the_program_writes_is_no_edit(qtbot: QtBot, window: QWidget, look: ThemeNotifier) -> None:
-    field = Field(look, "Code", is_code=True)
+def test_what_the_program_writes_is_no_edit(qtbot: QtBot, window: QWidget) -> None:
+    field = Field("Code", is_code=True)
     shown(qtbot, window, field)
     with qtbot.assertNotEmitted(field.edited), qtbot.assertNotEmitted(field.committed):
         field.set_text("P-0147")
@@ -66,10 +63,8 @@ def test_what_the_program_writes_is_no_edit(qtbot: QtBot, window: QWidget, look:
         ("Ä 日本", "Ä 日本"),
     ],
 )
-def test_what_is_pasted_is_one_line_that_can_be_seen(
-    qtbot: QtBot, window: QWidget, look: ThemeNotifier, pasted: str, taken: str
-) -> None:
-    field = Field(look, "Code", is_code=True)
+def test_what_is_pasted_is_one_line_that_can_be_seen(qtbot: QtBot, window: QWidget, pasted: str, taken: str) -> None:
+    field = Field("Code", is_code=True)
     shown(qtbot, window, field)
     field.set_text("A")
     with qtbot.waitSignal(field.edited) as edited:
@@ -80,8 +75,8 @@ def test_what_is_pasted_is_one_line_that_can_be_seen(
     assert field.line_edit.cursorPosition() == len(field.line_edit.text())
 
 
-def test_a_secret_is_taken_as_it_is(qtbot: QtBot, window: QWidget, look: ThemeNotifier) -> None:
-    field = Field(look, "Passphrase", is_secret=True)
+def test_a_secret_is_taken_as_it_is(qtbot: QtBot, window: QWidget) -> None:
+    field = Field("Passphrase", is_secret=True)
     shown(qtbot, window, field)
     field.line_edit.setText("a\tb")
     field.line_edit.textEdited.emit(field.line_edit.text())
@@ -89,9 +84,9 @@ def test_a_secret_is_taken_as_it_is(qtbot: QtBot, window: QWidget, look: ThemeNo
 
 
 def test_what_has_no_room_is_reported_and_what_was_written_elsewhere_is_kept_whole(
-    qtbot: QtBot, window: QWidget, look: ThemeNotifier
+    qtbot: QtBot, window: QWidget
 ) -> None:
-    field = Field(look, "Code", most=5)
+    field = Field("Code", most=5)
     shown(qtbot, window, field)
     QTest.keyClicks(field.line_edit, "P-01478")
     assert field.text == "P-014"
@@ -102,8 +97,8 @@ def test_what_has_no_room_is_reported_and_what_was_written_elsewhere_is_kept_who
     assert field.text == "P-0147 of another clinic"
 
 
-def test_a_change_is_committed_by_leaving_or_by_enter(qtbot: QtBot, window: QWidget, look: ThemeNotifier) -> None:
-    one, other = Field(look, "Device"), Field(look, "Clinic number")
+def test_a_change_is_committed_by_leaving_or_by_enter(qtbot: QtBot, window: QWidget) -> None:
+    one, other = Field("Device"), Field("Clinic number")
     shown(qtbot, window, one, other)
     one.setFocus()
     with qtbot.assertNotEmitted(one.committed):
@@ -120,20 +115,16 @@ def test_a_change_is_committed_by_leaving_or_by_enter(qtbot: QtBot, window: QWid
     ("typed", "value"),
     [("15", 15.0), ("7,5", 7.5), ("7.25", 7.2), ("-5", -5.0), ("\N{MINUS SIGN}5", -5.0), ("", None), ("x", None)],
 )
-def test_a_number_takes_comma_point_and_either_minus(
-    look: ThemeNotifier, qtbot: QtBot, typed: str, value: float | None
-) -> None:
-    field = knee(look)
+def test_a_number_takes_comma_point_and_either_minus(qtbot: QtBot, typed: str, value: float | None) -> None:
+    field = knee()
     qtbot.addWidget(field)
     field.set_text(typed)
     assert field.value == value
 
 
 @pytest.mark.parametrize("typed", ["151", "-61", "inf", "nan", "15°"])
-def test_a_number_that_does_not_fit_stays_and_states_what_fits(
-    qtbot: QtBot, window: QWidget, look: ThemeNotifier, typed: str
-) -> None:
-    field = knee(look)
+def test_a_number_that_does_not_fit_stays_and_states_what_fits(qtbot: QtBot, window: QWidget, typed: str) -> None:
+    field = knee()
     shown(qtbot, window, field)
     field.setFocus()
     QTest.keyClicks(field.line_edit, typed)
@@ -147,8 +138,8 @@ def test_a_number_that_does_not_fit_stays_and_states_what_fits(
     assert not field.is_wrong  # as soon as it is right
 
 
-def test_a_year_has_no_decimals(look: ThemeNotifier, qtbot: QtBot) -> None:
-    year = NumberField(look, "Birth year", low=1900, high=2026)
+def test_a_year_has_no_decimals(qtbot: QtBot) -> None:
+    year = NumberField("Birth year", low=1900, high=2026)
     qtbot.addWidget(year)
     year.set_text("1968.5")
     assert year.value is None
@@ -156,8 +147,8 @@ def test_a_year_has_no_decimals(look: ThemeNotifier, qtbot: QtBot) -> None:
     assert year.text == "1968"
 
 
-def test_the_value_of_a_number_is_written_without_noughts(look: ThemeNotifier, qtbot: QtBot) -> None:
-    mass = NumberField(look, "Mass", low=1, high=400, decimals=1, unit="kg")
+def test_the_value_of_a_number_is_written_without_noughts(qtbot: QtBot) -> None:
+    mass = NumberField("Mass", low=1, high=400, decimals=1, unit="kg")
     qtbot.addWidget(mass)
     for value, written in ((82.0, "82"), (82.5, "82.5"), (100.0, "100"), (None, "")):
         mass.set_value(value)
@@ -165,8 +156,8 @@ def test_the_value_of_a_number_is_written_without_noughts(look: ThemeNotifier, q
         assert mass.value == value
 
 
-def test_the_wheel_changes_no_number(qtbot: QtBot, window: QWidget, look: ThemeNotifier) -> None:
-    field = knee(look)
+def test_the_wheel_changes_no_number(qtbot: QtBot, window: QWidget) -> None:
+    field = knee()
     field.set_value(15)
     shown(qtbot, window, field)
     field.setFocus()
@@ -186,9 +177,9 @@ def test_the_wheel_changes_no_number(qtbot: QtBot, window: QWidget, look: ThemeN
     assert not turn.isAccepted()  # what lies around it scrolls
 
 
-def test_the_ring_of_the_focus_goes_round_the_frame(qtbot: QtBot, window: QWidget, look: ThemeNotifier) -> None:
-    field = knee(look)
-    ring = FocusRing(look, window)
+def test_the_ring_of_the_focus_goes_round_the_frame(qtbot: QtBot, window: QWidget) -> None:
+    field = knee()
+    ring = FocusRing(window)
     shown(qtbot, window, field)
     field.setFocus()
     frame = field.line_edit

@@ -5,7 +5,6 @@ from PySide6.QtCore import QPoint, QRect
 from PySide6.QtWidgets import QFrame, QHBoxLayout, QPushButton, QTextBrowser, QWidget
 from pytestqt.qtbot import QtBot
 
-from app.theme.notifier import ThemeNotifier
 from app.widgets.focus_ring import NO_RING, FocusRing
 
 
@@ -28,7 +27,7 @@ def window(qtbot: QtBot) -> QWidget:
 
 def test_what_scrolls_has_its_ring_round_text_and_bar(qtbot: QtBot, window: QWidget) -> None:
     """It lay round the scroll bar alone."""
-    ring = FocusRing(ThemeNotifier(), window)
+    ring = FocusRing(window)
     (text,) = window.findChildren(QTextBrowser)
     text.setPlainText("line\n" * 200)
     (button,) = window.findChildren(QPushButton)
@@ -43,7 +42,7 @@ def test_what_scrolls_has_its_ring_round_text_and_bar(qtbot: QtBot, window: QWid
 
 
 def test_a_region_that_is_read_alone_has_none(qtbot: QtBot, window: QWidget) -> None:
-    ring = FocusRing(ThemeNotifier(), window)
+    ring = FocusRing(window)
     (text,) = window.findChildren(QTextBrowser)
     text.setProperty(NO_RING, True)
     text.setFocus()

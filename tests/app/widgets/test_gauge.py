@@ -10,7 +10,7 @@ from PySide6.QtCore import QRectF, Qt
 from PySide6.QtGui import QPainter
 from pytestqt.qtbot import QtBot
 
-from app.theme.notifier import ThemeNotifier, load_fonts
+from app.theme.current import load_fonts
 from app.widgets import gauge as gauge_module
 from app.widgets.gauge import Gauge, GaugeFace, GaugeState, gauge_face, two_digits
 from app.wording.translation import use_language
@@ -145,8 +145,8 @@ def test_of_an_ankles_hinge_nothing_is_stated_before_its_axis_is_known() -> None
     assert gauge_face(Joint.LEFT_ANKLE, found, PROSTHESIS, is_now=False).state is GaugeState.CENTRE
 
 
-def test_a_gauge_is_reported_to_readers_of_screens(qtbot: QtBot, look: ThemeNotifier) -> None:
-    gauge = Gauge(look, Joint.LEFT_KNEE)
+def test_a_gauge_is_reported_to_readers_of_screens(qtbot: QtBot) -> None:
+    gauge = Gauge(Joint.LEFT_KNEE)
     qtbot.addWidget(gauge)
     gauge.show_face(gauge_face(Joint.LEFT_KNEE, state(11, 34), HUMAN, is_now=True))
     assert gauge.accessibleName() == (
@@ -156,10 +156,10 @@ def test_a_gauge_is_reported_to_readers_of_screens(qtbot: QtBot, look: ThemeNoti
     assert gauge.accessibleName() == "Left knee, No foot sensor: no left ankle angle."
 
 
-def test_an_ankles_gauge_shows_readers_of_screens_what_it_judges(qtbot: QtBot, look: ThemeNotifier) -> None:
+def test_an_ankles_gauge_shows_readers_of_screens_what_it_judges(qtbot: QtBot) -> None:
     stated = {}
     for joint in (Joint.LEFT_ANKLE, Joint.LEFT_KNEE):
-        gauge = Gauge(look, joint)
+        gauge = Gauge(joint)
         qtbot.addWidget(gauge)
         gauge.show_face(gauge_face(joint, state(1, 6, is_closed=True), HUMAN, is_now=False))
         stated[joint] = gauge.accessibleName()
@@ -191,12 +191,12 @@ class Recorder(QPainter):
 @pytest.mark.parametrize("language", ["en", "de"])
 @pytest.mark.parametrize("joint", [Joint.LEFT_KNEE, Joint.RIGHT_ANKLE])
 def test_no_words_of_a_card_lie_on_others_however_low_it_is(
-    qtbot: QtBot, look: ThemeNotifier, monkeypatch: pytest.MonkeyPatch, language: str, joint: Joint
+    qtbot: QtBot, monkeypatch: pytest.MonkeyPatch, language: str, joint: Joint
 ) -> None:
     load_fonts()
     monkeypatch.setattr(gauge_module, "QPainter", Recorder)
     use_language(language)
-    gauge = Gauge(look, joint)
+    gauge = Gauge(joint)
     qtbot.addWidget(gauge)
     states = [one for one in GaugeState if one is not GaugeState.ABSENT]
     face = gauge_face(joint, state(1.4, 23.0), HUMAN, is_now=False)
@@ -219,11 +219,11 @@ def test_no_words_of_a_card_lie_on_others_however_low_it_is(
 @pytest.mark.parametrize("size", [(400, 210), (400, 186), (640, 340)])
 @pytest.mark.parametrize("joint", [Joint.LEFT_KNEE, Joint.RIGHT_KNEE])
 def test_words_never_enter_the_ring(
-    qtbot: QtBot, look: ThemeNotifier, monkeypatch: pytest.MonkeyPatch, joint: Joint, size: tuple[int, int]
+    qtbot: QtBot, monkeypatch: pytest.MonkeyPatch, joint: Joint, size: tuple[int, int]
 ) -> None:
     load_fonts()
     monkeypatch.setattr(gauge_module, "QPainter", Recorder)
-    gauge = Gauge(look, joint)
+    gauge = Gauge(joint)
     qtbot.addWidget(gauge)
     gauge.resize(*size)
     assert not gauge.is_brief
@@ -237,8 +237,8 @@ def test_words_never_enter_the_ring(
         assert inside == figure, shown
 
 
-def test_a_joint_whose_sensor_is_elsewhere_states_what_it_needs(qtbot: QtBot, look: ThemeNotifier) -> None:
-    gauge = Gauge(look, Joint.LEFT_KNEE)
+def test_a_joint_whose_sensor_is_elsewhere_states_what_it_needs(qtbot: QtBot) -> None:
+    gauge = Gauge(Joint.LEFT_KNEE)
     qtbot.addWidget(gauge)
     nothing = gauge_face(Joint.LEFT_KNEE, None, HUMAN, is_now=False)
     gauge.show_face(replace(nothing, state=GaugeState.NEEDS, note="Needs the left shank sensor"))

@@ -4,7 +4,6 @@ import numpy as np
 import pytest
 from pytestqt.qtbot import QtBot
 
-from app.theme.notifier import ThemeNotifier
 from app.widgets.hip_gauge import HipFace, HipGauge, hip_face
 from core.body import Joint
 from core.live.hip_heading import HipHeadingState
@@ -16,8 +15,8 @@ def heading(sd_deg: float, margin: float = 4.0, *, is_sure: bool = False, moved_
 
 
 @pytest.fixture
-def gauge(qtbot: QtBot, look: ThemeNotifier) -> HipGauge:
-    gauge = HipGauge(look, Joint.LEFT_HIP)
+def gauge(qtbot: QtBot) -> HipGauge:
+    gauge = HipGauge(Joint.LEFT_HIP)
     qtbot.addWidget(gauge)
     gauge.resize(420, 64)
     gauge.show()

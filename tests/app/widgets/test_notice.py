@@ -6,7 +6,6 @@ from PySide6.QtGui import QImage
 from pytestqt.qtbot import QtBot
 
 from app.theme.icons import Icon
-from app.theme.notifier import ThemeNotifier
 from app.widgets.notice import ICON, PADDING, Notice
 from core.samples import FloatArray
 
@@ -29,7 +28,7 @@ def middle_of(rows: FloatArray) -> float:
 @pytest.mark.parametrize("height", [44, 66, 120])
 @pytest.mark.parametrize("then", ["", "Drop it here."])
 def test_the_icon_is_beside_the_first_line(qtbot: QtBot, height: int, then: str) -> None:
-    notice = Notice(ThemeNotifier(), size=16)
+    notice = Notice(size=16)
     qtbot.addWidget(notice)
     notice.show_message(Icon.CHECK, "All six sensors are assigned and connected.", then)
     notice.resize(500, max(height, notice.minimumSizeHint().height()))

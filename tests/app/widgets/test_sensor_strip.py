@@ -9,7 +9,7 @@ from PySide6.QtTest import QTest
 from pytestqt.qtbot import QtBot
 
 from app.theme.colours import LIGHT
-from app.theme.notifier import ThemeNotifier
+from app.theme.current import set_scale
 from app.widgets.sensor_strip import SensorStrip
 from app.widgets.sensor_tile import SensorTile, TileState, sentence
 from app.widgets.strip_button import StripButton
@@ -48,8 +48,8 @@ STATES = [
 
 
 @pytest.fixture
-def strip(look: ThemeNotifier, qtbot: QtBot) -> SensorStrip:
-    strip = SensorStrip(look)
+def strip(qtbot: QtBot) -> SensorStrip:
+    strip = SensorStrip()
     qtbot.addWidget(strip)
     strip.resize(1064, 72)
     strip.show()
@@ -98,7 +98,7 @@ def test_the_right_leg_is_at_the_left_and_turns_with_the_figure(strip: SensorStr
     assert from_left()[0] is Site.LEFT_THIGH
 
 
-def test_only_what_changed_is_painted(look: ThemeNotifier, qtbot: QtBot, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_only_what_changed_is_painted(qtbot: QtBot, monkeypatch: pytest.MonkeyPatch) -> None:
     painted: list[Site] = []
     paint = TileWidget.paintEvent
 
@@ -107,7 +107,7 @@ def test_only_what_changed_is_painted(look: ThemeNotifier, qtbot: QtBot, monkeyp
         paint(widget, event)
 
     monkeypatch.setattr(TileWidget, "paintEvent", noting)
-    strip = SensorStrip(look)
+    strip = SensorStrip()
     qtbot.addWidget(strip)
     strip.resize(1064, 72)
     strip.show()
@@ -159,7 +159,6 @@ COMPACT_WIDTHS = [(736, 0.8), (736, 1.0), (1116, 1.0), (1152, 2.0), (672, 2.0)]
 )
 def test_no_word_is_cut_in_any_state(
     strip: SensorStrip,
-    look: ThemeNotifier,
     width: int,
     scale: float,
     is_compact: bool,
@@ -168,7 +167,7 @@ def test_no_word_is_cut_in_any_state(
 ) -> None:
     if language == "pseudo":
         request.getfixturevalue("pseudo_language")
-    look.set_scale(scale)
+    set_scale(scale)
     strip.set_compact(is_compact)
     strip.resize(width, 72)
     for shown, _, _ in STATES:
@@ -199,8 +198,8 @@ def test_the_button_states_in_one_sentence_how_the_sensors_are() -> None:
     assert sentence(fine() | {FOOT: foot, Site.LEFT_THIGH: thigh}) == "Check 2 of 6 sensors"
 
 
-def test_the_button_is_yellow_while_a_sensor_is_bad(look: ThemeNotifier, qtbot: QtBot) -> None:
-    button = StripButton(look)
+def test_the_button_is_yellow_while_a_sensor_is_bad(qtbot: QtBot) -> None:
+    button = StripButton()
     qtbot.addWidget(button)
     button.show()
     for tiles, colour in ((fine(), LIGHT.ground), (fine() | {FOOT: tile(silent_s=3.2)}, LIGHT.caution)):

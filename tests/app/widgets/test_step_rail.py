@@ -6,8 +6,8 @@ from PySide6.QtTest import QTest
 from PySide6.QtWidgets import QWidget
 from pytestqt.qtbot import QtBot
 
+from app.theme.current import set_scale
 from app.theme.icons import Icon
-from app.theme.notifier import ThemeNotifier
 from app.widgets.rail_row import RailForm, RailRow, StepState
 from app.widgets.step_rail import StepRail, home_below
 from tests.app.room import settle, words_cut
@@ -29,8 +29,8 @@ def window(qtbot: QtBot) -> QWidget:
 
 
 @pytest.fixture
-def rail(look: ThemeNotifier, window: QWidget) -> StepRail:
-    rail = StepRail(look)
+def rail(window: QWidget) -> StepRail:
+    rail = StepRail()
     rail.setParent(window)
     window.resize(500, 800)
     rail.setGeometry(0, 0, 216, 800)
@@ -133,19 +133,17 @@ def test_a_low_rail_scrolls_to_the_row_that_has_the_focus(rail: StepRail) -> Non
 @pytest.mark.parametrize("scale", [0.8, 1.0, 2.0])
 @pytest.mark.parametrize("form", list(RailForm))
 @pytest.mark.usefixtures("pseudo_language")
-def test_longer_words_take_another_line_and_are_not_cut(
-    rail: StepRail, look: ThemeNotifier, scale: float, form: RailForm
-) -> None:
-    look.set_scale(scale)
+def test_longer_words_take_another_line_and_are_not_cut(rail: StepRail, scale: float, form: RailForm) -> None:
+    set_scale(scale)
     rail.set_form(form)
     rail.show_rows(tuple(RailRow(f"{row.title} unumgänglich", f"{row.note} und noch mehr", row.state) for row in STEPS))
     rail.setGeometry(0, 0, rail.width(), 1600)
     assert words_cut(rail) == []
 
 
-def test_an_icon_without_its_word_is_as_large_as_the_ring_of_a_step(rail: StepRail, look: ThemeNotifier) -> None:
+def test_an_icon_without_its_word_is_as_large_as_the_ring_of_a_step(rail: StepRail) -> None:
     assert rail.below[-1].icon_box().width() == 20  # beside "Help"
     rail.set_form(RailForm.COMPACT)
     assert all(row.icon_box().width() == 26 for row in rail.below)
-    look.set_scale(2.0)
+    set_scale(2.0)
     assert all(row.icon_box().width() == 52 for row in rail.below)

@@ -8,7 +8,7 @@ from PySide6.QtWidgets import QApplication, QWidget
 from pytestqt.qtbot import QtBot
 
 from app.theme.colours import LIGHT
-from app.theme.notifier import ThemeNotifier
+from app.theme.current import set_scale
 from app.widgets import toast as toast_module
 from app.widgets.header import Header
 from app.widgets.stopwatch import Stopwatch
@@ -17,8 +17,8 @@ from tests.app.room import settle, words_cut
 
 
 @pytest.fixture
-def stopwatch(look: ThemeNotifier, qtbot: QtBot) -> Stopwatch:
-    stopwatch = Stopwatch(look)
+def stopwatch(qtbot: QtBot) -> Stopwatch:
+    stopwatch = Stopwatch()
     qtbot.addWidget(stopwatch)
     stopwatch.resize(stopwatch.sizeHint())
     stopwatch.show()
@@ -34,8 +34,8 @@ def window(qtbot: QtBot) -> QWidget:
 
 
 @pytest.fixture
-def toast(look: ThemeNotifier, window: QWidget) -> Toast:
-    toast = Toast(look, window)
+def toast(window: QWidget) -> Toast:
+    toast = Toast(window)
     toast.move(100, 100)  # not under the mouse, which is at 0, 0
     window.show()
     return toast
@@ -126,9 +126,9 @@ def test_long_words_make_the_toast_higher(toast: Toast) -> None:
 @pytest.mark.parametrize("scale", [0.8, 1.0, 2.0])
 @pytest.mark.parametrize("width", [1064, 736, 500])
 @pytest.mark.usefixtures("pseudo_language")
-def test_the_header_has_room_for_all_it_states(look: ThemeNotifier, qtbot: QtBot, scale: float, width: int) -> None:
-    look.set_scale(scale)
-    header = Header(look, has_mark=False)
+def test_the_header_has_room_for_all_it_states(qtbot: QtBot, scale: float, width: int) -> None:
+    set_scale(scale)
+    header = Header(has_mark=False)
     qtbot.addWidget(header)
     header.show_session("P-0147", "1968, male · left prosthetic, microprocessor knee, carbon foot", is_simulated=True)
     header.show_elapsed(301.0)
@@ -141,9 +141,9 @@ def test_the_header_has_room_for_all_it_states(look: ThemeNotifier, qtbot: QtBot
     assert not any(one.intersects(other) for k, one in enumerate(boxes) for other in boxes[:k])
 
 
-def test_the_header_of_a_window_with_a_rail_has_neither_mark_nor_name(look: ThemeNotifier, qtbot: QtBot) -> None:
+def test_the_header_of_a_window_with_a_rail_has_neither_mark_nor_name(qtbot: QtBot) -> None:
     for has_mark in (True, False):
-        header = Header(look, has_mark)
+        header = Header(has_mark)
         qtbot.addWidget(header)
         header.show()
         assert header._mark.isVisible() == has_mark

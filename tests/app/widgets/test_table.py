@@ -11,8 +11,8 @@ from PySide6.QtTest import QTest
 from PySide6.QtWidgets import QApplication
 from pytestqt.qtbot import QtBot
 
+from app.theme.current import current_theme, set_dark, set_scale
 from app.theme.icons import Icon
-from app.theme.notifier import ThemeNotifier
 from app.theme.theme import Theme
 from app.widgets.table import CellTable, TableColumn, TableRow
 from app.widgets.table_cells import CENTRE, EMPTY, LEFT, RIGHT, STRIP_WIDTH, ErrorStrip, TableCell, TextCell
@@ -36,8 +36,8 @@ def row(name: str, difference: str, *, is_marked: bool = False, hint: str = "") 
     return TableRow((TextCell(name), figure, strip(-12.1)), key=name, hint=hint)
 
 
-def table_of(qtbot: QtBot, look: ThemeNotifier, rows: Sequence[TableRow], *, is_list: bool = False) -> CellTable:
-    table = CellTable(look, "Differences", is_list=is_list)
+def table_of(qtbot: QtBot, rows: Sequence[TableRow], *, is_list: bool = False) -> CellTable:
+    table = CellTable("Differences", is_list=is_list)
     qtbot.addWidget(table)
     table.show_rows(COLUMNS, rows)
     table.resize(640, 200 if is_list else table.height())
@@ -70,9 +70,9 @@ def x_of(value_deg: float) -> float:
     return STRIP_WIDTH / 2 + value_deg / (1.8 * ERROR_DEG) * (STRIP_WIDTH - 11) / 2
 
 
-def test_a_dot_outside_the_error_is_filled_and_one_inside_is_hollow(look: ThemeNotifier) -> None:
-    c = look.theme.colours
-    outside, inside = painted(strip(-12.1), look.theme), painted(strip(7.0), look.theme)
+def test_a_dot_outside_the_error_is_filled_and_one_inside_is_hollow() -> None:
+    c = current_theme().colours
+    outside, inside = painted(strip(-12.1), current_theme()), painted(strip(7.0), current_theme())
     assert colour(outside, x_of(-12.1)) == c.ink
     assert colour(inside, x_of(7.0)) == c.surface
     assert is_ink(inside, x_of(3.5))  # the line from zero
@@ -83,9 +83,9 @@ def test_a_dot_outside_the_error_is_filled_and_one_inside_is_hollow(look: ThemeN
     assert not strip(7.0).exceeds
 
 
-def test_what_is_not_judged_is_a_grey_bar_without_error_and_dot(look: ThemeNotifier) -> None:
-    c, cell = look.theme.colours, strip(-12.1, is_judged=False)
-    image = painted(cell, look.theme)
+def test_what_is_not_judged_is_a_grey_bar_without_error_and_dot() -> None:
+    c, cell = current_theme().colours, strip(-12.1, is_judged=False)
+    image = painted(cell, current_theme())
     assert colour(image, x_of(-6.0)) == c.control
     assert {colour(image, x, y) for x in range(image.width()) for y in range(image.height())}.isdisjoint(
         {c.ink, c.band_2sd}
@@ -93,9 +93,9 @@ def test_what_is_not_judged_is_a_grey_bar_without_error_and_dot(look: ThemeNotif
     assert not cell.exceeds
 
 
-def test_what_lies_beyond_the_strip_ends_there_in_an_arrow(look: ThemeNotifier) -> None:
+def test_what_lies_beyond_the_strip_ends_there_in_an_arrow() -> None:
     """A dot at the edge would be read as a difference of that size."""
-    beyond, at_edge = painted(strip(38.0), look.theme), painted(strip(1.8 * ERROR_DEG), look.theme)
+    beyond, at_edge = painted(strip(38.0), current_theme()), painted(strip(1.8 * ERROR_DEG), current_theme())
     edge = x_of(1.8 * ERROR_DEG)
     assert is_ink(at_edge, edge, 11)
     assert not is_ink(beyond, edge, 11)
@@ -103,9 +103,9 @@ def test_what_lies_beyond_the_strip_ends_there_in_an_arrow(look: ThemeNotifier) 
 
 
 @pytest.mark.parametrize("unknown", [(math.nan, ERROR_DEG, 16.0), (5.0, math.nan, math.nan), (0.0, 0.0, 0.0)])
-def test_a_strip_of_what_is_not_known_has_no_dot(look: ThemeNotifier, unknown: tuple[float, float, float]) -> None:
+def test_a_strip_of_what_is_not_known_has_no_dot(unknown: tuple[float, float, float]) -> None:
     """Nothing is known of where it would lie; a difference of none, without error, is a dot at zero."""
-    image = painted(ErrorStrip(*unknown, is_judged=True), look.theme)
+    image = painted(ErrorStrip(*unknown, is_judged=True), current_theme())
     away_from_zero = [x for x in range(image.width()) if abs(x - STRIP_WIDTH / 2) > 8]
     assert all(not is_ink(image, x) for x in away_from_zero)
 
@@ -113,10 +113,10 @@ def test_a_strip_of_what_is_not_known_has_no_dot(look: ThemeNotifier, unknown: t
 @pytest.mark.parametrize("scale", [1.0, 2.0])
 @pytest.mark.parametrize("align", [LEFT, RIGHT, CENTRE])
 def test_a_text_cell_paints_all_of_itself_into_the_width_that_it_asks_for(
-    look: ThemeNotifier, align: Qt.AlignmentFlag, scale: float
+    align: Qt.AlignmentFlag, scale: float
 ) -> None:
-    look.set_scale(scale)
-    theme = look.theme
+    set_scale(scale)
+    theme = current_theme()
     cell = TextCell("49.3", "± 1.8", align, 15, SEMIBOLD, mark=Icon.WARNING, side=Side.LEFT)
     width = cell.width(theme)
     tight, wide = painted(cell, theme, width + 2), painted(cell, theme, width + 202)
@@ -127,28 +127,28 @@ def test_a_text_cell_paints_all_of_itself_into_the_width_that_it_asks_for(
     assert len({x for x in range(tight.width()) if colour(tight, x) == theme.colours.left_text}) > 0
 
 
-def test_a_text_of_two_lines_asks_for_their_height(look: ThemeNotifier) -> None:
+def test_a_text_of_two_lines_asks_for_their_height() -> None:
     one, two = TextCell("free motion"), TextCell("free motion,\nwalking")
-    assert two.height(look.theme) > one.height(look.theme)
-    assert two.width(look.theme) < TextCell("free motion, walking").width(look.theme)
+    assert two.height(current_theme()) > one.height(current_theme())
+    assert two.width(current_theme()) < TextCell("free motion, walking").width(current_theme())
     assert two.words == "free motion, walking"
 
 
-def test_a_table_is_as_high_as_its_rows_and_shares_all_of_its_width(qtbot: QtBot, look: ThemeNotifier) -> None:
-    table = table_of(qtbot, look, [row("Knee range", "+2.0"), row("Peak knee flexion, swing", "−12.1", is_marked=True)])
+def test_a_table_is_as_high_as_its_rows_and_shares_all_of_its_width(qtbot: QtBot) -> None:
+    table = table_of(qtbot, [row("Knee range", "+2.0"), row("Peak knee flexion, swing", "−12.1", is_marked=True)])
     assert table.height() == 32 + 2 * 28
     widths = [table.columnWidth(column) for column in range(3)]
     needed = table.needed_widths
     assert sum(widths) == 640
     assert widths[1] == needed[1]
     assert abs((widths[2] - needed[2]) - 2 * (widths[0] - needed[0])) <= 2
-    look.set_scale(2.0)
+    set_scale(2.0)
     assert table.height() == 2 * (32 + 2 * 28)
     assert table.minimumWidth() == sum(table.needed_widths)
 
 
-def test_every_cell_is_stated_with_its_row_and_column(qtbot: QtBot, look: ThemeNotifier) -> None:
-    table = table_of(qtbot, look, [row("Knee range", "+2.0", hint="Over the whole stride."), row("Swing", "−12.1")])
+def test_every_cell_is_stated_with_its_row_and_column(qtbot: QtBot) -> None:
+    table = table_of(qtbot, [row("Knee range", "+2.0", hint="Over the whole stride."), row("Swing", "−12.1")])
     model = table.model()
     stated = Qt.ItemDataRole.AccessibleTextRole
     assert model.index(0, 0).data(stated) == "Knee range"
@@ -162,10 +162,10 @@ def test_every_cell_is_stated_with_its_row_and_column(qtbot: QtBot, look: ThemeN
 
 
 @pytest.mark.parametrize("is_dark", [False, True])
-def test_a_cell_that_was_clicked_stays_readable(qtbot: QtBot, look: ThemeNotifier, is_dark: bool) -> None:
+def test_a_cell_that_was_clicked_stays_readable(qtbot: QtBot, is_dark: bool) -> None:
     """Qt fills what is chosen with the palette's dark highlight before a cell is painted in ink."""
-    table = table_of(qtbot, look, [row("Knee range", "+2.0")])
-    look.set_dark(is_dark)
+    table = table_of(qtbot, [row("Knee range", "+2.0")])
+    set_dark(is_dark)
     before = table.grab().toImage()
     middle = table.visualRect(table.cells.index(0, 0)).center()
     QTest.mouseClick(table.viewport(), Qt.MouseButton.LeftButton, pos=middle)
@@ -173,9 +173,9 @@ def test_a_cell_that_was_clicked_stays_readable(qtbot: QtBot, look: ThemeNotifie
     assert table.grab().toImage() == before
 
 
-def test_a_heading_goes_over_all_columns_and_widens_none(qtbot: QtBot, look: ThemeNotifier) -> None:
+def test_a_heading_goes_over_all_columns_and_widens_none(qtbot: QtBot) -> None:
     heading = TextCell("A heading that is much longer than the names of the rows", span=3)
-    table = table_of(qtbot, look, [row("Knee", "+2.0")])
+    table = table_of(qtbot, [row("Knee", "+2.0")])
     before = table.needed_widths
     table.show_rows(COLUMNS, [TableRow((heading, EMPTY, EMPTY), is_heading=True), row("Knee", "+2.0")])
     assert table.columnSpan(0, 0) == 3
@@ -184,8 +184,8 @@ def test_a_heading_goes_over_all_columns_and_widens_none(qtbot: QtBot, look: The
     assert table.columnSpan(0, 0) == 1
 
 
-def test_a_list_is_worked_by_keys(qtbot: QtBot, look: ThemeNotifier) -> None:
-    table = table_of(qtbot, look, [row(f"row {number}", "0.0") for number in range(40)], is_list=True)
+def test_a_list_is_worked_by_keys(qtbot: QtBot) -> None:
+    table = table_of(qtbot, [row(f"row {number}", "0.0") for number in range(40)], is_list=True)
     chosen: list[object] = []
     opened: list[object] = []
     table.chosen.connect(chosen.append)
@@ -198,8 +198,8 @@ def test_a_list_is_worked_by_keys(qtbot: QtBot, look: ThemeNotifier) -> None:
     assert table.key == "row 1"
 
 
-def test_rows_that_stay_keep_the_focus_and_others_take_it(qtbot: QtBot, look: ThemeNotifier) -> None:
-    table = table_of(qtbot, look, [row("knee", "1.0"), row("ankle", "2.0")], is_list=True)
+def test_rows_that_stay_keep_the_focus_and_others_take_it(qtbot: QtBot) -> None:
+    table = table_of(qtbot, [row("knee", "1.0"), row("ankle", "2.0")], is_list=True)
     table.choose(1)
     table.show_rows(COLUMNS, [row("knee", "1.0"), row("ankle", "9.9")])
     assert table.key == "ankle"
@@ -222,11 +222,9 @@ class Counted(TableCell):
         self.counts["painted"] += 1
 
 
-def test_of_thousands_of_rows_only_those_in_sight_are_painted_and_none_is_measured(
-    qtbot: QtBot, look: ThemeNotifier
-) -> None:
+def test_of_thousands_of_rows_only_those_in_sight_are_painted_and_none_is_measured(qtbot: QtBot) -> None:
     counts = {"measured": 0, "painted": 0}
-    table = CellTable(look, "Many", head=0, is_list=True)
+    table = CellTable("Many", head=0, is_list=True)
     qtbot.addWidget(table)
     column = TableColumn(share=1, widest=EMPTY)
     table.show_rows([column], [TableRow((Counted(counts),), key=number) for number in range(5000)])

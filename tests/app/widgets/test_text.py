@@ -3,13 +3,12 @@
 import pytest
 from pytestqt.qtbot import QtBot
 
-from app.theme.notifier import ThemeNotifier
 from app.widgets.text import Text
 
 
 @pytest.mark.parametrize("unit", ["m/s", "m/s²", "°/s"])
-def test_a_unit_is_not_broken(qtbot: QtBot, look: ThemeNotifier, unit: str) -> None:
-    whole, broken = (Text(look, f"Geschwindigkeit 1,18{space}{word}", wraps=True) for space, word in (
+def test_a_unit_is_not_broken(qtbot: QtBot, unit: str) -> None:
+    whole, broken = (Text(f"Geschwindigkeit 1,18{space}{word}", wraps=True) for space, word in (
         ("\N{NO-BREAK SPACE}", unit), ("\N{NO-BREAK SPACE}", unit.replace("/", "/ "))
     ))  # fmt: skip
     for text in (whole, broken):
@@ -21,8 +20,8 @@ def test_a_unit_is_not_broken(qtbot: QtBot, look: ThemeNotifier, unit: str) -> N
     assert round(lines) == 2, "goes into the next line with its figure"
 
 
-def test_words_with_a_stroke_are_broken_as_ever(qtbot: QtBot, look: ThemeNotifier) -> None:
-    text = Text(look, "steps/step or m/s", wraps=True)
+def test_words_with_a_stroke_are_broken_as_ever(qtbot: QtBot) -> None:
+    text = Text("steps/step or m/s", wraps=True)
     qtbot.addWidget(text)
     assert super(Text, text).text() == "steps/step or m/\N{WORD JOINER}s"
     text.setWordWrap(False)

@@ -7,7 +7,7 @@ from PySide6.QtCore import QRectF
 from PySide6.QtGui import QColor, QImage, QPainter
 from PySide6.QtWidgets import QApplication
 
-from app.theme.notifier import ThemeNotifier
+from app.theme.current import current_theme, set_dark
 from app.theme.theme import Theme
 from app.widgets.trend_cell import WIDTH, TrendCell
 from core.body import Side
@@ -17,9 +17,8 @@ ROOM = QRectF(0, 0, WIDTH, 28)
 
 @pytest.fixture
 def theme(qapp: QApplication) -> Theme:
-    look = ThemeNotifier()
-    look.set_dark(False)
-    return look.theme
+    set_dark(False)
+    return current_theme()
 
 
 def painted(cell: TrendCell, theme: Theme) -> QImage:

@@ -17,7 +17,7 @@ from app.storage.library import Library
 from app.storage.slots import Cost
 from app.storage.stored import Operator, Role
 from app.system.settings import Settings
-from app.theme.notifier import ThemeNotifier, load_fonts
+from app.theme.current import load_fonts
 from app.wizard.sensors.step import SensorsStep
 from app.wizard.visit import Visit
 from app.wizard.wizard import Wizard
@@ -94,7 +94,7 @@ def visit(controller: LibraryController, choice: SourceChoice) -> Iterator[Visit
 def wizard(qtbot: QtBot, qapp: QApplication, controller: LibraryController, tmp_path: Path) -> Iterator[Wizard]:
     load_fonts()
     settings = Settings(QSettings(str(tmp_path / "settings.ini"), QSettings.Format.IniFormat))
-    wizard = Wizard(ThemeNotifier(), controller, settings)
+    wizard = Wizard(controller, settings)
     qtbot.addWidget(wizard)
     wizard.resize(1280, 800)
     wizard.show()
@@ -114,7 +114,7 @@ def step(qtbot: QtBot, visit: Visit) -> Iterator[SensorsStep]:
     visit.patient.edit(Patient(code="DEMO-7"))
     with qtbot.waitSignal(visit.patient.changed, timeout=5000):
         visit.patient.commit()
-    step = SensorsStep(ThemeNotifier(), visit)
+    step = SensorsStep(visit)
     qtbot.addWidget(step.page)
     step.page.resize(1064, 672)
     step.page.show()

@@ -16,7 +16,6 @@ from PySide6.QtWidgets import (
 )
 from pytestqt.qtbot import QtBot
 
-from app.theme.notifier import ThemeNotifier
 from app.widgets.button import Button
 from app.wizard.keys import Intent, KeyAction, Keys
 
@@ -24,9 +23,9 @@ Key, Held = Qt.Key, Qt.KeyboardModifier
 
 
 class Window(QWidget):
-    def __init__(self, look: ThemeNotifier) -> None:
+    def __init__(self) -> None:
         super().__init__()
-        self.field, self.words, self.button, self.plain = QLineEdit(), QPlainTextEdit(), Button(look, "Back"), QWidget()
+        self.field, self.words, self.button, self.plain = QLineEdit(), QPlainTextEdit(), Button("Back"), QWidget()
         self.plain.setFocusPolicy(Qt.FocusPolicy.StrongFocus)
         column = QVBoxLayout(self)
         for widget in (self.field, self.words, self.button, self.plain):
@@ -49,7 +48,7 @@ class Window(QWidget):
 
 @pytest.fixture
 def window(qtbot: QtBot) -> Window:
-    window = Window(ThemeNotifier())
+    window = Window()
     qtbot.addWidget(window)
     window.show()
     window.plain.setFocus()

@@ -20,7 +20,7 @@ from pytestqt.qtbot import QtBot
 from app.home.home import Home
 from app.storage.stored import PlacedSensor, RecordingState
 from app.system.settings import Settings
-from app.theme.notifier import ThemeNotifier, load_fonts
+from app.theme.current import load_fonts
 from app.widgets.rail_row import StepState
 from app.wizard import wizard as wizard_module
 from app.wizard.report.step import ReportStep
@@ -77,7 +77,7 @@ def start_again(
 
     def start(session: str) -> tuple[Home, Wizard]:
         settings = Settings(QSettings(str(tmp_path / "again.ini"), QSettings.Format.IniFormat))
-        home, wizard = Home(ThemeNotifier(), controller, settings), Wizard(ThemeNotifier(), controller, settings)
+        home, wizard = Home(controller, settings), Wizard(controller, settings)
         made.append(wizard)
         for widget in (home, wizard):
             qtbot.addWidget(widget)

@@ -17,7 +17,6 @@ from app.storage.opened import OpenedLibrary
 from app.storage.shared_edits import SharedEdits
 from app.storage.stored import LibraryBusyError, LibraryError, RecordingState
 from app.system.progress import Report
-from app.theme.notifier import ThemeNotifier
 from app.wizard import wizard as wizard_module
 from app.wizard.free_motion.step import FreeMotionStep
 from app.wizard.keys import Intent, KeyAction
@@ -145,7 +144,7 @@ def test_what_is_stated_of_a_late_disk_follows_its_counters(
     """Amid a walk: first nothing is lost, then something is, then the disk answers again."""
     recordings, acquisition = looked_at.recordings, looked_at.sensors.acquisition
     assert acquisition is not None
-    step = WalkingStep(ThemeNotifier(), looked_at)
+    step = WalkingStep(looked_at)
     qtbot.addWidget(step.page)
     step.enter()
     with qtbot.waitSignal(recordings.begun, timeout=WAIT_MS):
@@ -219,7 +218,7 @@ def test_a_free_motion_that_is_refused_waits_for_a_word(
         return begin_for_real(*arguments, **more)  # type: ignore[arg-type]  # whatever the caller gave
 
     monkeypatch.setattr(Recorder, "begin", refused_once)
-    step = FreeMotionStep(ThemeNotifier(), looked_at)
+    step = FreeMotionStep(looked_at)
     qtbot.addWidget(step.page)
     with qtbot.waitSignal(looked_at.recordings.refused, timeout=WAIT_MS):
         step.enter()
@@ -243,7 +242,7 @@ def test_a_step_that_was_left_before_it_began_leaves_the_samples_to_the_next(
     """The library answers when the next step looks at the sensors already."""
     acquisition, watching = looked_at.sensors.acquisition, list[object]()
     assert acquisition is not None
-    step = kind(ThemeNotifier(), looked_at)
+    step = kind(looked_at)
     qtbot.addWidget(step.page)
     step.enter()
     if not looked_at.recordings.is_recording:  # a free motion begins by itself
@@ -265,7 +264,7 @@ def test_a_new_calibration_that_is_broken_off_is_asked_for_again(qtbot: QtBot, l
     assert recordings.is_restrapped
     standing = record(qtbot, looked_at, RecordingKind.STANDING, 1.0)
     assert standing.details.is_restrapped_before
-    step = WalkingStep(ThemeNotifier(), looked_at)
+    step = WalkingStep(looked_at)
     assert not step.bar().others[0].is_enabled  # nobody has moved since
     assert "Repeat standing still and free motion" in step.bar().note
     record(qtbot, looked_at, RecordingKind.FREE_MOTION, 1.0)
@@ -295,7 +294,7 @@ def test_a_demonstration_that_was_left_gives_its_patient_to_no_other_session(
 
 
 def test_who_skips_the_free_motion_is_reported_its_price(qtbot: QtBot, looked_at: Visit) -> None:
-    step = WalkingStep(ThemeNotifier(), looked_at)
+    step = WalkingStep(looked_at)
     assert step.bar().note == "Without free motion, joint angles are uncertain or missing."
     record(qtbot, looked_at, RecordingKind.FREE_MOTION, 0.5)
     assert step.bar().note.startswith("Next:")
@@ -308,7 +307,7 @@ def test_walks_are_judged_without_sensors(qtbot: QtBot, controller: LibraryContr
     again = Visit(controller, [])
     with qtbot.waitSignal(again.resumed, timeout=WAIT_MS):
         again.resume(looked_at.session.id)
-    step = WalkingStep(ThemeNotifier(), again)
+    step = WalkingStep(again)
     qtbot.addWidget(step.page)
     assert step.cannot_enter == ""
     step.enter()

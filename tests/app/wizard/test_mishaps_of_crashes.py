@@ -12,7 +12,7 @@ from pytestqt.qtbot import QtBot
 
 from app.storage.stored import RecordingState
 from app.system.settings import Settings
-from app.theme.notifier import ThemeNotifier, load_fonts
+from app.theme.current import load_fonts
 from app.widgets.rail_row import StepState
 from app.wizard import wizard as wizard_module
 from app.wizard.free_motion.step import FreeMotionStep
@@ -43,9 +43,7 @@ def wizard(
 ) -> Iterator[Wizard]:
     load_fonts()
     monkeypatch.setattr(wizard_module, "choices", tuple)
-    wizard = Wizard(
-        ThemeNotifier(), controller, Settings(QSettings(str(tmp_path / "settings.ini"), QSettings.Format.IniFormat))
-    )
+    wizard = Wizard(controller, Settings(QSettings(str(tmp_path / "settings.ini"), QSettings.Format.IniFormat)))
     qtbot.addWidget(wizard)
     yield wizard
     wizard.finish()
@@ -81,7 +79,7 @@ def test_what_a_crash_cut_short_is_not_done(qtbot: QtBot, left: Visit) -> None:
     moved = record(qtbot, left, RecordingKind.FREE_MOTION, 0.5)
     assert standing.read_back is not None
     imu = standing.read_back.imu
-    shown, moves = StandStillStep(ThemeNotifier(), left), FreeMotionStep(ThemeNotifier(), left)
+    shown, moves = StandStillStep(left), FreeMotionStep(left)
 
     def rest(seconds: float) -> None:
         rests = {site: rest_of(block) for site, block in imu.items()}

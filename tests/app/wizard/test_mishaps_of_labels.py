@@ -6,7 +6,6 @@ from collections.abc import Iterator
 import pytest
 from pytestqt.qtbot import QtBot
 
-from app.theme.notifier import ThemeNotifier
 from app.wizard.sensors.step import SensorsStep
 from app.wizard.visit import Visit
 from core.body import Site
@@ -21,7 +20,7 @@ def sensors_step(
     """The page of a visit with sensors on, whose recordings nobody evaluates."""
     monkeypatch.setattr(visit, "evaluate", lambda: None)
     begin(qtbot, visit, worn)
-    step = SensorsStep(ThemeNotifier(), visit)
+    step = SensorsStep(visit)
     qtbot.addWidget(step.page)
     yield step
     step.deleteLater()

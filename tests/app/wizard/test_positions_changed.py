@@ -8,7 +8,6 @@ import pytest
 from PySide6.QtTest import QSignalSpy
 from pytestqt.qtbot import QtBot
 
-from app.theme.notifier import ThemeNotifier
 from app.wizard.evaluation import Evaluation
 from app.wizard.sensors.step import SensorsStep
 from app.wizard.visit import Visit
@@ -31,7 +30,7 @@ def calibrated(
     imu = {site: ImuBlock(name, *np.zeros((1, 0)), *np.zeros((2, 0, 3))) for name, site in worn.items()}
     visit.evaluation.session = Session((Recording("free motion", RecordingKind.FREE_MOTION, "f", imu),))
     monkeypatch.setattr(Evaluation, "calibration", dict.fromkeys(LEG_JOINTS))
-    step = SensorsStep(ThemeNotifier(), visit)
+    step = SensorsStep(visit)
     qtbot.addWidget(step.page)
     step.enter()
     yield step

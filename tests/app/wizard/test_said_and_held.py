@@ -16,7 +16,6 @@ from app.home.home import Home
 from app.storage.exchange import import_session
 from app.storage.opened import OpenedLibrary
 from app.system.settings import Settings
-from app.theme.notifier import ThemeNotifier
 from app.wizard.step import StepId
 from app.wizard.wizard import Wizard
 from app.workers.library_controller import LibraryController
@@ -72,7 +71,7 @@ def home_in_sight(
     qtbot: QtBot, qapp: QApplication, controller: LibraryController, opened: OpenedLibrary, tmp_path: Path
 ) -> Iterator[Any]:
     assert controller.state is not None
-    home = Home(ThemeNotifier(), controller, Settings(QSettings(str(tmp_path / "s.ini"), QSettings.Format.IniFormat)))
+    home = Home(controller, Settings(QSettings(str(tmp_path / "s.ini"), QSettings.Format.IniFormat)))
     qtbot.addWidget(home)
     home.show_library(controller.state)
     qtbot.waitUntil(lambda: bool(home.page.sessions.lines), timeout=WAIT_MS)

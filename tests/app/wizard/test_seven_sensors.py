@@ -12,7 +12,6 @@ from pytestqt.qtbot import QtBot
 
 from app.storage.analysis_content import packed
 from app.storage.exchange import session_with_samples
-from app.theme.notifier import ThemeNotifier
 from app.wizard.free_motion.step import FreeMotionStep
 from app.wizard.sensors.replays import replay_of
 from app.wizard.sensors.step import SensorsStep
@@ -173,13 +172,13 @@ def looked(qtbot: QtBot, visit: Visit) -> Iterator[list[Looked]]:
 
 @pytest.mark.endurance
 def test_live_hips_are_thin_then_sure_and_a_silent_pelvis_costs_them_alone(
-    qtbot: QtBot, visit: Visit, worn: dict[str, Site], source: ReplaySource, look: ThemeNotifier, looked: list[Looked]
+    qtbot: QtBot, visit: Visit, worn: dict[str, Site], source: ReplaySource, looked: list[Looked]
 ) -> None:
     begin(qtbot, visit, worn)
     record(qtbot, visit, RecordingKind.STANDING, 4.0)
     with qtbot.waitSignal(visit.evaluation.done, timeout=30_000):
         record(qtbot, visit, RecordingKind.FREE_MOTION, 12.0)
-    step = WalkingStep(look, visit)
+    step = WalkingStep(visit)
     qtbot.addWidget(step.page)
     looked.append(Looked(step))
     page = step.page
@@ -210,11 +209,11 @@ def test_live_hips_are_thin_then_sure_and_a_silent_pelvis_costs_them_alone(
 
 @pytest.mark.endurance
 def test_live_gauges_of_hips_close_and_never_hold_up_the_free_motion(
-    qtbot: QtBot, visit: Visit, worn: dict[str, Site], look: ThemeNotifier, looked: list[Looked]
+    qtbot: QtBot, visit: Visit, worn: dict[str, Site], looked: list[Looked]
 ) -> None:
     begin(qtbot, visit, worn)
     record(qtbot, visit, RecordingKind.STANDING, 4.0)
-    step = FreeMotionStep(look, visit)
+    step = FreeMotionStep(visit)
     qtbot.addWidget(step.page)
     looked.append(Looked(step))
     assert all(hip.isVisible() for hip in step.page.hips.values())
@@ -223,12 +222,12 @@ def test_live_gauges_of_hips_close_and_never_hold_up_the_free_motion(
 
 @pytest.mark.endurance
 def test_live_free_motion_ends_though_the_hips_are_open(
-    qtbot: QtBot, visit: Visit, worn: dict[str, Site], source: ReplaySource, look: ThemeNotifier, looked: list[Looked]
+    qtbot: QtBot, visit: Visit, worn: dict[str, Site], source: ReplaySource, looked: list[Looked]
 ) -> None:
     begin(qtbot, visit, worn)
     record(qtbot, visit, RecordingKind.STANDING, 4.0)
     source.ask(RecordingKind.FREE_MOTION)  # the lunges: the circling legs come next
-    step = FreeMotionStep(look, visit)
+    step = FreeMotionStep(visit)
     qtbot.addWidget(step.page)
     with qtbot.waitSignal(step.done, timeout=60_000):
         looked.append(Looked(step))
@@ -237,11 +236,11 @@ def test_live_free_motion_ends_though_the_hips_are_open(
 
 @pytest.mark.endurance
 def test_live_standing_does_not_wait_for_a_silent_pelvis(
-    qtbot: QtBot, visit: Visit, worn: dict[str, Site], source: ReplaySource, look: ThemeNotifier, looked: list[Looked]
+    qtbot: QtBot, visit: Visit, worn: dict[str, Site], source: ReplaySource, looked: list[Looked]
 ) -> None:
     begin(qtbot, visit, worn)
     source.silence("DEMO-pelvis")
-    step = StandStillStep(look, visit)
+    step = StandStillStep(visit)
     qtbot.addWidget(step.page)
     looked.append(Looked(step))
     with qtbot.waitSignal(visit.recordings.ended, timeout=30_000):
@@ -251,17 +250,17 @@ def test_live_standing_does_not_wait_for_a_silent_pelvis(
 
 @pytest.mark.endurance
 def test_live_motion_shows_who_wears_the_pelvis(
-    qtbot: QtBot, visit: Visit, worn: dict[str, Site], source: ReplaySource, look: ThemeNotifier, looked: list[Looked]
+    qtbot: QtBot, visit: Visit, worn: dict[str, Site], source: ReplaySource, looked: list[Looked]
 ) -> None:
     begin(qtbot, visit, worn)
-    sensors = SensorsStep(look, visit)
+    sensors = SensorsStep(visit)
     qtbot.addWidget(sensors.page)
     sensors.enter()
     sensors.page.ways.segments[2].click()
     assert visit.sensors.is_left_to_motion
     sensors.leave()
     source.ask(RecordingKind.FREE_MOTION)
-    step = FreeMotionStep(look, visit)
+    step = FreeMotionStep(visit)
     qtbot.addWidget(step.page)
     looked.append(Looked(step))
     qtbot.waitUntil(lambda: bool(visit.sensors.site_of), timeout=60_000)

@@ -9,8 +9,8 @@ from PySide6.QtTest import QTest
 from PySide6.QtWidgets import QComboBox, QPushButton, QVBoxLayout, QWidget
 from pytestqt.qtbot import QtBot
 
+from app.theme.current import load_fonts, px, set_scale
 from app.theme.icons import Icon
-from app.theme.notifier import ThemeNotifier, load_fonts
 from app.widgets.action_bar import BarState, RecordingNote
 from app.widgets.rail_row import RailForm, RailRow, StepState
 from app.widgets.sensor_strip import SensorStrip
@@ -68,8 +68,8 @@ def reconnect() -> BarState:
     return BarState(requested, others=(idle(tr("Go on without right ankle")),))
 
 
-def filled(look: ThemeNotifier) -> WizardShell:
-    shell = WizardShell(look)
+def filled() -> WizardShell:
+    shell = WizardShell()
     rows = [
         ("Patient", "Left prosthetic", StepState.DONE),
         ("Sensors", "6 of 6 assigned", StepState.DONE),
@@ -100,9 +100,9 @@ def _fonts(qapp: object) -> Iterator[None]:
 
 
 @pytest.fixture
-def shell(look: ThemeNotifier, qtbot: QtBot, monkeypatch: pytest.MonkeyPatch) -> WizardShell:
+def shell(qtbot: QtBot, monkeypatch: pytest.MonkeyPatch) -> WizardShell:
     monkeypatch.setattr(shell_module, "duration_ms", lambda _usual_ms, _theme: 0)
-    shell = filled(look)
+    shell = filled()
     qtbot.addWidget(shell)
     shell.resize(1280, 800)
     shell.show()
@@ -123,13 +123,13 @@ def shell(look: ThemeNotifier, qtbot: QtBot, monkeypatch: pytest.MonkeyPatch) ->
     ],
 )
 def test_the_frame_takes_the_form_that_the_window_has_room_for(
-    shell: WizardShell, look: ThemeNotifier, size: tuple[int, int], scale: float, is_compact: bool, form: RailForm
+    shell: WizardShell, size: tuple[int, int], scale: float, is_compact: bool, form: RailForm
 ) -> None:
-    look.set_scale(scale)
+    set_scale(scale)
     shell.resize(*size)
     settle()
     assert (shell.is_compact, shell.rail.form) == (is_compact, form)
-    assert shell.rail.width() == look.theme.px(form.value)
+    assert shell.rail.width() == px(form.value)
 
 
 def test_the_content_is_no_wider_than_can_be_read_and_in_the_middle(shell: WizardShell) -> None:
@@ -142,10 +142,10 @@ def test_the_content_is_no_wider_than_can_be_read_and_in_the_middle(shell: Wizar
     assert left == (2400 - shell.rail.width() - 1600) // 2
 
 
-def test_a_page_is_reported_its_room_in_px_of_the_design(shell: WizardShell, look: ThemeNotifier) -> None:
+def test_a_page_is_reported_its_room_in_px_of_the_design(shell: WizardShell) -> None:
     reported: list[tuple[bool, float, float]] = []
     shell.room_changed.connect(lambda *room: reported.append(room))
-    look.set_scale(2.0)
+    set_scale(2.0)
     shell.resize(1920, 1200)
     settle()
     page = shell.page
@@ -156,8 +156,8 @@ def test_a_page_is_reported_its_room_in_px_of_the_design(shell: WizardShell, loo
     assert reported
 
 
-def test_a_question_above_the_gauges_pushes_none_out_of_sight(shell: WizardShell, look: ThemeNotifier) -> None:
-    page = FreeMotionPage(look)
+def test_a_question_above_the_gauges_pushes_none_out_of_sight(shell: WizardShell) -> None:
+    page = FreeMotionPage()
     shell.show_page(StepId.PATIENT, page)
     page.ask("Both legs moved at once. Which leg has 0A31 on the shank?", "", ("Left", "Right"))
     settle()
@@ -166,8 +166,8 @@ def test_a_question_above_the_gauges_pushes_none_out_of_sight(shell: WizardShell
     assert all(page.rect().contains(gauge.geometry()) for gauge in page.gauges.values())
 
 
-def test_a_page_with_nothing_to_press_leaves_the_focus_to_the_bar(shell: WizardShell, look: ThemeNotifier) -> None:
-    page = SentencePage(look)
+def test_a_page_with_nothing_to_press_leaves_the_focus_to_the_bar(shell: WizardShell) -> None:
+    page = SentencePage()
     page.show_sentence("The results are saved.")
     shell.show_page(StepId.PATIENT, page)
     assert shell.focusWidget() is shell.bar.primary
@@ -183,8 +183,8 @@ def test_a_page_comes_into_sight_with_the_focus_where_reading_starts(shell: Wiza
     assert shell.focusWidget() is page.first
 
 
-def test_the_page_that_was_there_fades_and_leaves_nothing(look: ThemeNotifier, qtbot: QtBot) -> None:
-    shell = filled(look)
+def test_the_page_that_was_there_fades_and_leaves_nothing(qtbot: QtBot) -> None:
+    shell = filled()
     qtbot.addWidget(shell)
     shell.resize(900, 600)
     shell.show()
@@ -304,10 +304,8 @@ def test_the_toast_is_above_the_bar_at_its_left(shell: WizardShell) -> None:
     assert shell.toast.geometry().bottom() < shell.bar.mapTo(shell, QPoint(0, 0)).y()
 
 
-def test_a_window_too_low_for_all_scrolls_and_shows_the_bar_of_a_recording(
-    shell: WizardShell, look: ThemeNotifier
-) -> None:
-    look.set_scale(2.0)
+def test_a_window_too_low_for_all_scrolls_and_shows_the_bar_of_a_recording(shell: WizardShell) -> None:
+    set_scale(2.0)
     shell.resize(800, 560)
     settle()
     shell.bar.show_state(recording())
@@ -339,11 +337,11 @@ SIZES = [
 @pytest.mark.parametrize(("size", "scale"), SIZES)
 @pytest.mark.parametrize("mode", [StripMode.SHOWN, StripMode.FOLDED])
 def test_no_word_of_the_frame_is_cut(
-    look: ThemeNotifier, qtbot: QtBot, size: tuple[int, int], scale: float, mode: StripMode, language: str
+    qtbot: QtBot, size: tuple[int, int], scale: float, mode: StripMode, language: str
 ) -> None:
     use_language(language)
-    look.set_scale(scale)
-    shell = filled(look)
+    set_scale(scale)
+    shell = filled()
     qtbot.addWidget(shell)
     shell.set_strip_mode(mode)
     shell.resize(*size)

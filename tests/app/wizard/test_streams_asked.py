@@ -5,7 +5,6 @@ from collections.abc import Iterator
 import pytest
 from pytestqt.qtbot import QtBot
 
-from app.theme.notifier import ThemeNotifier
 from app.wizard.sensors.sources import SEARCH, STREAMS, Sources
 from app.wizard.sensors.step import SensorsStep
 from app.wizard.visit import Visit
@@ -30,7 +29,7 @@ def asked(monkeypatch: pytest.MonkeyPatch) -> list[str]:
 @pytest.fixture
 def step(qtbot: QtBot, visit: Visit) -> Iterator[SensorsStep]:
     visit.known_choices = Sources(SearchResult, ("127.0.0.1", "192.0.2.9"))
-    step = SensorsStep(ThemeNotifier(), visit)
+    step = SensorsStep(visit)
     qtbot.addWidget(step.page)
     step.enter()
     step.page.resize(1064, 672)

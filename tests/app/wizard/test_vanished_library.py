@@ -17,7 +17,7 @@ from app.editing.session_recording import SessionRecording
 from app.main_window import MainWindow
 from app.storage.stored import RecordingState
 from app.system.settings import Settings
-from app.theme.notifier import ThemeNotifier, load_fonts
+from app.theme.current import load_fonts
 from app.wizard import wizard as wizard_module
 from app.wizard.step import StepId
 from app.wizard.visit import Visit
@@ -153,7 +153,7 @@ def open_window(
 
     def open_it() -> MainWindow:
         settings = Settings(QSettings(str(tmp_path / "settings.ini"), QSettings.Format.IniFormat))
-        window = MainWindow(ThemeNotifier(), settings, tmp_path / "library")
+        window = MainWindow(settings, tmp_path / "library")
         qtbot.addWidget(window, before_close_func=end)
         window.resize(1280, 800)
         window.show()

@@ -12,7 +12,6 @@ from app.storage.analysis_content import packed
 from app.storage.audit import about
 from app.storage.opened import open_library
 from app.storage.stored import Limits, RecordingState
-from app.theme.notifier import ThemeNotifier
 from app.widgets.rail_row import StepState
 from app.wizard.patient.step import PatientStep
 from app.wizard.standing.step import StandStillStep
@@ -134,14 +133,14 @@ def test_what_the_body_does_not_allow_is_stored_and_taken_up_again(
     with qtbot.waitSignal(again.resumed, timeout=10_000):
         again.resume(session.id)
     assert again.without_ankle == {Side.LEFT, Side.RIGHT}
-    step = StandStillStep(ThemeNotifier(), again)
+    step = StandStillStep(again)
     qtbot.addWidget(step.page)
     step.enter()
     primary = step.bar().primary
     assert primary is not None
     assert (step.state, primary.text) == (StepState.SKIPPED, "Continue to free motion")
     step.leave()
-    patient = PatientStep(ThemeNotifier(), again)
+    patient = PatientStep(again)
     qtbot.addWidget(patient.page)
     patient.enter()
     assert patient.page.draft.without_ankle == {Side.LEFT, Side.RIGHT}

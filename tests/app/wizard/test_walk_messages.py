@@ -4,7 +4,6 @@ import pytest
 from pytestqt.qtbot import QtBot
 
 from app.acquisition.memory_fetching import Lack
-from app.theme.notifier import ThemeNotifier
 from app.wizard.losses import NOTHING
 from app.wizard.visit import Visit
 from app.wizard.walk_messages import (
@@ -77,7 +76,7 @@ def test_who_walks_without_foot_sensors_reads_why_nothing_is_counted(
     visit.sensors.assign_all({name: site for name, site in worn.items() if site not in FEET})
     for kind in (RecordingKind.STANDING, RecordingKind.FREE_MOTION):
         record(qtbot, visit, kind, 0.5)
-    step = WalkingStep(ThemeNotifier(), visit)
+    step = WalkingStep(visit)
     qtbot.addWidget(step.page)
     step.enter()
     with qtbot.waitSignal(visit.recordings.begun, timeout=10_000):

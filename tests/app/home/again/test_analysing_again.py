@@ -22,7 +22,7 @@ from app.storage.library import DEMONSTRATOR, Library
 from app.storage.opened import OpenedLibrary
 from app.system.progress import nobody
 from app.system.settings import Settings
-from app.theme.notifier import ThemeNotifier, load_fonts
+from app.theme.current import load_fonts
 from app.wizard.resuming import read_analysed, session_to_analyse
 from app.workers.library_controller import LibraryController
 from core.session import Session
@@ -107,8 +107,8 @@ def line(number: int, *, is_current: bool = False, failure: str = "") -> AgainLi
     return AgainLine(UUID(int=number), f"P-{number}", "20 Mar", "Shoes", is_current, failure)
 
 
-def test_ticks_are_turned_by_the_space_bar_and_by_whole_kinds(qtbot: QtBot, look: ThemeNotifier) -> None:
-    page = AnalyseAgainPage(look)
+def test_ticks_are_turned_by_the_space_bar_and_by_whole_kinds(qtbot: QtBot) -> None:
+    page = AnalyseAgainPage()
     qtbot.addWidget(page)
     lines = [line(1), line(2, is_current=True), line(3)]
     page.show_lines(lines, [lines[0].id])
@@ -124,8 +124,8 @@ def test_ticks_are_turned_by_the_space_bar_and_by_whole_kinds(qtbot: QtBot, look
     assert (len(page.ticked), page.none.isEnabled()) == (0, False)
 
 
-def test_why_a_session_could_not_be_analysed_is_in_its_line(qtbot: QtBot, look: ThemeNotifier) -> None:
-    page = AnalyseAgainPage(look)
+def test_why_a_session_could_not_be_analysed_is_in_its_line(qtbot: QtBot) -> None:
+    page = AnalyseAgainPage()
     qtbot.addWidget(page)
     page.show_lines([line(1, failure="this recording's file is missing"), line(2)], [])
     text = page.list.as_text().splitlines()
@@ -140,7 +140,7 @@ def test_home_leads_there_with_the_patients_sessions_ticked_and_shows_what_faile
     """Of the fixture no samples were recorded: all fail, each for its reason."""
     load_fonts()
     controller = LibraryController()
-    home = Home(ThemeNotifier(), controller, Settings(QSettings(str(tmp_path / "s.ini"), QSettings.Format.IniFormat)))
+    home = Home(controller, Settings(QSettings(str(tmp_path / "s.ini"), QSettings.Format.IniFormat)))
     qtbot.addWidget(home)
     home.show()
     with qtbot.waitSignal(controller.opened, timeout=WAIT_MS) as reported:

@@ -16,7 +16,6 @@ from app.home.cohort.cohort_page import MOST_DRAWN, QuestionsPage
 from app.home.cohort.cohort_table import MOST_ROWS, groups_table
 from app.home.cohort.cohort_text import group_name, notes, sentence
 from app.plots.group_plot import GroupLine, GroupPlot
-from app.theme.notifier import ThemeNotifier
 from tests.app.cohort.study.study_tables import MEASURE, random_rows, write_rows
 from tests.app.room import words_cut
 
@@ -33,8 +32,8 @@ def found(*rows: GroupRow, grouping: Grouping = Grouping.CONDITION, **more: int)
 
 
 @pytest.fixture
-def page(qtbot: QtBot, look: ThemeNotifier) -> QuestionsPage:
-    page = QuestionsPage(look)
+def page(qtbot: QtBot) -> QuestionsPage:
+    page = QuestionsPage()
     qtbot.addWidget(page)
     page.set_room(1064)
     page.resize(1064, 700)
@@ -184,10 +183,8 @@ def test_a_parameter_that_nobody_named_keeps_its_own_name_and_unit() -> None:
     assert (words.with_unit, words.decimals) == ("Toe angle, °", 1)
 
 
-def test_a_dot_lies_at_its_mean_is_hollow_without_interval_and_all_is_inside_the_axis(
-    qtbot: QtBot, look: ThemeNotifier
-) -> None:
-    plot = GroupPlot(look)
+def test_a_dot_lies_at_its_mean_is_hollow_without_interval_and_all_is_inside_the_axis(qtbot: QtBot) -> None:
+    plot = GroupPlot()
     qtbot.addWidget(plot)
     lines = [GroupLine("a", 50.0, 5.0, "9 sessions"), GroupLine("b", 70.0, math.nan, "1 session")]
     plot.show_groups(lines, "Knee ROM, °", "Means", "result")
@@ -206,8 +203,8 @@ def test_a_dot_lies_at_its_mean_is_hollow_without_interval_and_all_is_inside_the
 
 
 @pytest.mark.parametrize("values", [(0.0,), (60.0,), (-3.0, 4.0), (0.98, 0.981), (1e5, 1.2e5)])
-def test_any_means_have_an_axis_with_round_ends(qtbot: QtBot, look: ThemeNotifier, values: tuple[float, ...]) -> None:
-    plot = GroupPlot(look)
+def test_any_means_have_an_axis_with_round_ends(qtbot: QtBot, values: tuple[float, ...]) -> None:
+    plot = GroupPlot()
     qtbot.addWidget(plot)
     plot.show_groups([GroupLine("a", value, math.nan, "1") for value in values], "", "", "")
     low, high, step = plot.axis

@@ -8,7 +8,6 @@ from PySide6.QtTest import QTest
 from pytestqt.qtbot import QtBot
 
 from app.home.goals.goals_page import AT_LEAST, GoalDraft, GoalsPage, about
-from app.theme.notifier import ThemeNotifier
 from app.widgets.text import Text
 from core.goals import GOAL_COLUMNS, Goal, GoalOf, with_goal
 from core.timed.measures import COLUMNS
@@ -29,8 +28,8 @@ GOALS = with_goal(
 
 
 @pytest.fixture
-def page(qtbot: QtBot, look: ThemeNotifier) -> GoalsPage:
-    page = GoalsPage(look)
+def page(qtbot: QtBot) -> GoalsPage:
+    page = GoalsPage()
     page.set_room(1064)
     page.resize(1064, 728)
     qtbot.addWidget(page)
@@ -140,8 +139,8 @@ def test_who_agreed_and_when_is_beneath() -> None:
 
 @pytest.mark.usefixtures("pseudo_language")
 @pytest.mark.parametrize(("width", "height"), [(1064, 728), (896, 528)])
-def test_no_word_is_cut_in_a_longer_language(qtbot: QtBot, look: ThemeNotifier, width: int, height: int) -> None:
-    page = GoalsPage(look)
+def test_no_word_is_cut_in_a_longer_language(qtbot: QtBot, width: int, height: int) -> None:
+    page = GoalsPage()
     page.set_room(width)
     page.resize(width, height)
     qtbot.addWidget(page)

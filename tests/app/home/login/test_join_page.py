@@ -8,21 +8,20 @@ from pytestqt.qtbot import QtBot
 from app.home.login.first_start_page import FirstStartPage
 from app.home.login.join_page import JoinPage
 from app.home.login.log_in_page import LogInPage
-from app.theme.notifier import ThemeNotifier
 
 ADDRESS = "postgresql://station@server/clinic"
 
 
-def shown(qtbot: QtBot, look: ThemeNotifier) -> JoinPage:
-    page = JoinPage(look)
+def shown(qtbot: QtBot) -> JoinPage:
+    page = JoinPage()
     qtbot.addWidget(page)
     with qtbot.waitExposed(page):
         page.show()
     return page
 
 
-def test_the_first_start_offers_to_join_unless_a_library_is_missing(qtbot: QtBot, look: ThemeNotifier) -> None:
-    page = FirstStartPage(look, 12, lambda _typed, _key: False)
+def test_the_first_start_offers_to_join_unless_a_library_is_missing(qtbot: QtBot) -> None:
+    page = FirstStartPage(12, lambda _typed, _key: False)
     qtbot.addWidget(page)
     with qtbot.waitSignal(page.join_requested):
         page.join.click()
@@ -30,8 +29,8 @@ def test_the_first_start_offers_to_join_unless_a_library_is_missing(qtbot: QtBot
     assert page.join.isHidden()
 
 
-def test_without_an_address_nothing_is_asked_of_any_server(qtbot: QtBot, look: ThemeNotifier) -> None:
-    page = shown(qtbot, look)
+def test_without_an_address_nothing_is_asked_of_any_server(qtbot: QtBot) -> None:
+    page = shown(qtbot)
     with qtbot.assertNotEmitted(page.joined):
         page.join.click()
     assert page.server.address.is_wrong
@@ -39,8 +38,8 @@ def test_without_an_address_nothing_is_asked_of_any_server(qtbot: QtBot, look: T
     assert not page.server.address.is_wrong
 
 
-def test_enter_joins_with_what_was_typed_once(qtbot: QtBot, look: ThemeNotifier) -> None:
-    page = shown(qtbot, look)
+def test_enter_joins_with_what_was_typed_once(qtbot: QtBot) -> None:
+    page = shown(qtbot)
     QTest.keyClicks(page.server.address.line_edit, ADDRESS)
     QTest.keyClicks(page.server.password.line_edit, "pass word")
     with qtbot.waitSignal(page.joined) as joined:
@@ -51,8 +50,8 @@ def test_enter_joins_with_what_was_typed_once(qtbot: QtBot, look: ThemeNotifier)
         page.join.click()
 
 
-def test_a_refusal_is_at_the_field_it_is_about_and_what_was_typed_stays(qtbot: QtBot, look: ThemeNotifier) -> None:
-    page = shown(qtbot, look)
+def test_a_refusal_is_at_the_field_it_is_about_and_what_was_typed_stays(qtbot: QtBot) -> None:
+    page = shown(qtbot)
     page.server.address.set_text(ADDRESS)
     page.show_busy(True)
     page.refuse("The place is not there. Connect it.", is_place=True)
@@ -63,8 +62,8 @@ def test_a_refusal_is_at_the_field_it_is_about_and_what_was_typed_stays(qtbot: Q
     assert page.join.isEnabled()
 
 
-def test_a_server_that_the_environment_names_is_tried_again_and_never_typed(qtbot: QtBot, look: ThemeNotifier) -> None:
-    page = shown(qtbot, look)
+def test_a_server_that_the_environment_names_is_tried_again_and_never_typed(qtbot: QtBot) -> None:
+    page = shown(qtbot)
     page.show_trouble("The clinic's server does not respond. Try again when it is back.")
     assert not any(field.isVisible() for field in page.server.fields)
     assert "does not respond" in page.lead.text()
@@ -72,15 +71,15 @@ def test_a_server_that_the_environment_names_is_tried_again_and_never_typed(qtbo
         page.again.click()
 
 
-def test_asking_again_keeps_no_password(qtbot: QtBot, look: ThemeNotifier) -> None:
-    page = shown(qtbot, look)
+def test_asking_again_keeps_no_password(qtbot: QtBot) -> None:
+    page = shown(qtbot)
     page.server.password.set_text("secret")
     page.ask()
     assert page.server.reported == ("", "", "")
 
 
-def test_the_log_in_states_which_library_it_is(qtbot: QtBot, look: ThemeNotifier) -> None:
-    page = LogInPage(look, 12)
+def test_the_log_in_states_which_library_it_is(qtbot: QtBot) -> None:
+    page = LogInPage(12)
     qtbot.addWidget(page)
     with qtbot.waitExposed(page):
         page.show()

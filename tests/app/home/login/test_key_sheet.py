@@ -14,7 +14,7 @@ from pytestqt.qtbot import QtBot
 
 from app.home.login import recovery_key_sheet as key_sheet
 from app.home.login.recovery_key_sheet import KeySheet, paint_sheet, sheet
-from app.theme.notifier import ThemeNotifier, load_fonts
+from app.theme.current import load_fonts, set_scale
 from app.wording.dates import date
 
 KEY = "1234-5678-90AB-CDEF"
@@ -24,7 +24,7 @@ KEY = "1234-5678-90AB-CDEF"
 def test_the_printers_properties_open_without_a_complaint_of_qt(qapp: QApplication, qtbot: QtBot) -> None:
     """Its drawn page takes a quarter of the font's size in points, of which a font in pixels has none."""
     load_fonts()
-    ThemeNotifier().set_scale(1.0)
+    set_scale(1.0)
     window = QWidget()
     qtbot.addWidget(window)
     KeySheet(window).print("0000", Path("clinic"))

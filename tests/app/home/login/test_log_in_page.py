@@ -3,19 +3,18 @@
 from pytestqt.qtbot import QtBot
 
 from app.home.login.log_in_page import LogInPage
-from app.theme.notifier import ThemeNotifier
 
 
-def page_of(qtbot: QtBot, look: ThemeNotifier) -> LogInPage:
-    page = LogInPage(look, 10)
+def page_of(qtbot: QtBot) -> LogInPage:
+    page = LogInPage(10)
     qtbot.addWidget(page)
     page.show_operators(("hk", "ab"), latest="ab")
     page.show()
     return page
 
 
-def test_work_without_the_server_is_offered_only_where_it_does_not_answer(qtbot: QtBot, look: ThemeNotifier) -> None:
-    page = page_of(qtbot, look)
+def test_work_without_the_server_is_offered_only_where_it_does_not_answer(qtbot: QtBot) -> None:
+    page = page_of(qtbot)
     assert not page.work_away.isVisible()
     page.passphrase.set_text("four short words here")
     page.refuse("The clinic's server does not answer. Try again when it is back.")
@@ -28,16 +27,16 @@ def test_work_without_the_server_is_offered_only_where_it_does_not_answer(qtbot:
     assert not page.work_away.isVisible()
 
 
-def test_while_it_is_tried_it_is_not_tried_twice(qtbot: QtBot, look: ThemeNotifier) -> None:
-    page = page_of(qtbot, look)
+def test_while_it_is_tried_it_is_not_tried_twice(qtbot: QtBot) -> None:
+    page = page_of(qtbot)
     page.offer_away()
     page.show_busy(True)
     with qtbot.assertNotEmitted(page.away_requested):
         page.work_away.click()
 
 
-def test_the_cover_offers_no_other_library(qtbot: QtBot, look: ThemeNotifier) -> None:
-    page = page_of(qtbot, look)
+def test_the_cover_offers_no_other_library(qtbot: QtBot) -> None:
+    page = page_of(qtbot)
     page.offer_away()
     page.show_cover("hk", is_recording=False)
     assert not page.work_away.isVisible()

@@ -14,7 +14,7 @@ from app.demonstration.patients import ReportedOfWalk, SimulatedPatient, Simulat
 from app.home.home import Home
 from app.storage.opened import OpenedLibrary
 from app.system.settings import Settings
-from app.theme.notifier import ThemeNotifier, load_fonts
+from app.theme.current import load_fonts
 from app.workers.library_controller import LibraryController
 from core.session import Patient, Session
 from devices.simulation.walker import Standing, Walk, WalkerSettings
@@ -97,7 +97,7 @@ def home(
         lambda required: replace(session, started=required.started.isoformat(timespec="seconds")),
     )
     load_fonts()
-    home = Home(ThemeNotifier(), controller, settings)
+    home = Home(controller, settings)
     home.resize(1280, 800)
     qtbot.addWidget(home)
     home.show()

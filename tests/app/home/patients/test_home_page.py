@@ -14,7 +14,7 @@ from pytestqt.qtbot import QtBot
 
 from app.home.patients.home_page import HomePage
 from app.summary.progress_words import Arrow
-from app.theme.notifier import ThemeNotifier
+from app.theme.current import current_theme, px, set_scale
 from app.widgets.line_list import TEXT_ROW, LineCell, PatientLine, SessionLine, VisitCell, VisitColumns, VisitHead
 
 MANY = 5000
@@ -22,8 +22,8 @@ MOST_S = 0.1  # what the screen's thread may take for anything
 
 
 @pytest.fixture
-def page(qtbot: QtBot, look: ThemeNotifier) -> HomePage:
-    page = HomePage(look)
+def page(qtbot: QtBot) -> HomePage:
+    page = HomePage()
     page.set_room(1064)
     page.resize(1064, 728)
     qtbot.addWidget(page)
@@ -106,9 +106,9 @@ def test_a_line_states_all_of_itself_to_a_reader_of_screens(page: HomePage) -> N
 
 @pytest.mark.parametrize(("width", "scale"), [(1064, 1.0), (736, 1.0), (736, 0.8), (1216, 2.0)])
 def test_no_word_of_a_line_is_cut_or_lies_on_another(
-    page: HomePage, look: ThemeNotifier, qapp: QApplication, width: int, scale: float
+    page: HomePage, qapp: QApplication, width: int, scale: float
 ) -> None:
-    look.set_scale(scale)
+    set_scale(scale)
     page.set_room(width / scale)
     page.resize(width, 728)
     page.show_patients([patient(1), patient(2, "1951, female · both sides affected, microprocessor knee")])
@@ -120,13 +120,13 @@ def test_no_word_of_a_line_is_cut_or_lies_on_another(
         for at in range(view.cells.rowCount()):
             (cell,) = view.cells.rows[at].cells
             assert isinstance(cell, LineCell)
-            rows = cell.word_rows(view.word_room, look.theme)
+            rows = cell.word_rows(view.word_room, current_theme())
             for words in rows:
-                spans = sorted((word.left, word.left + word.width(look.theme)) for word in words)
+                spans = sorted((word.left, word.left + word.width(current_theme())) for word in words)
                 assert all(before[1] <= after[0] for before, after in pairwise(spans))
                 assert spans[0][0] >= 0
                 assert spans[-1][1] <= view.word_room
-            assert view.rowHeight(at) >= len(rows) * look.theme.px(TEXT_ROW)
+            assert view.rowHeight(at) >= len(rows) * px(TEXT_ROW)
             painted = " ".join(word.text for words in rows for word in words).replace(" \N{MIDDLE DOT}", "")
             stated = cell.words.replace(" \N{MIDDLE DOT}", "")
             assert sorted(painted.replace(",", "").split()) == sorted(stated.replace(",", "").split())
@@ -170,7 +170,7 @@ def test_sessions_that_are_read_again_keep_the_one_that_is_chosen(page: HomePage
     assert page.sessions.line.id == UUID(int=1)
 
 
-def test_values_and_states_of_visits_stand_under_one_another(look: ThemeNotifier) -> None:
+def test_values_and_states_of_visits_stand_under_one_another() -> None:
     states = ("Bericht ausstehend", "Bericht geschrieben")
     lines = tuple(
         SessionLine(uuid4(), "20. Sept. 2026", "Shoes", "24", state, is_reported=number > 0, speed=speed, knee=knee)
@@ -181,9 +181,9 @@ def test_values_and_states_of_visits_stand_under_one_another(look: ThemeNotifier
     columns = VisitColumns(lines, ("Gehgeschwindigkeit", "Linkes Knie"))
     rights = []
     for line in lines:
-        first, second = VisitCell(line, columns).word_rows(660, look.theme)
+        first, second = VisitCell(line, columns).word_rows(660, current_theme())
         placed = sorted(first, key=lambda word: word.left)
-        ends = [word.left + word.width(look.theme) for word in placed]
+        ends = [word.left + word.width(current_theme()) for word in placed]
         assert [word.text for word in placed] == ["20. Sept. 2026", line.speed, line.knee, line.state]
         assert [word.text for word in second] == ["Shoes"]
         assert all(end + 8 < after.left for end, after in zip(ends, placed[1:], strict=False))
@@ -193,14 +193,14 @@ def test_values_and_states_of_visits_stand_under_one_another(look: ThemeNotifier
 
 
 @pytest.mark.parametrize("speed", ["", "1.13 m/s"])
-def test_a_heading_is_shown_only_over_a_column_that_has_values(look: ThemeNotifier, speed: str) -> None:
+def test_a_heading_is_shown_only_over_a_column_that_has_values(speed: str) -> None:
     line = replace(session(1, "Shoes"), speed=speed)
     painted = []
     for heads in (("Walking speed", "Left knee"), ("", "")):
         image = QImage(660, 38, QImage.Format.Format_RGB32)
-        image.fill(look.theme.colours.surface)
+        image.fill(current_theme().colours.surface)
         with QPainter(image) as painter:
-            VisitHead("Visits", VisitColumns([line], heads)).paint(painter, QRectF(image.rect()), look.theme)
+            VisitHead("Visits", VisitColumns([line], heads)).paint(painter, QRectF(image.rect()), current_theme())
         painted.append(image)
     assert (painted[0] != painted[1]) == bool(speed)
 

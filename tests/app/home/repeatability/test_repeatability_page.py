@@ -9,7 +9,6 @@ from pytestqt.qtbot import QtBot
 from app.cohort.repeatability.study import FIGURES, write_figures
 from app.home.home import QUESTIONS, Home
 from app.home.repeatability.repeatability_page import RepeatabilityPage, study_sentence
-from app.theme.notifier import ThemeNotifier
 from app.workers.library_controller import LibraryController
 from core.verdicts.sigmas import PUBLISHED, in_use, use
 from tests.app.cohort.repeatability.own_study import own_study
@@ -84,10 +83,8 @@ def test_a_file_of_something_else_is_refused_and_simulated_figures_cannot_be_use
     assert shown.sentence.text().startswith("SIMULATED.")
 
 
-def test_the_page_states_each_figure_with_its_limits_beside_the_published_one(
-    qtbot: QtBot, look: ThemeNotifier
-) -> None:
-    page = RepeatabilityPage(look)
+def test_the_page_states_each_figure_with_its_limits_beside_the_published_one(qtbot: QtBot) -> None:
+    page = RepeatabilityPage()
     qtbot.addWidget(page)
     page.show_study(own_study(), ())
     cells = [[cell.words for cell in row.cells] for row in page.table.cells.rows]

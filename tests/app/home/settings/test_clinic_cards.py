@@ -4,12 +4,11 @@ import pytest
 from pytestqt.qtbot import QtBot
 
 from app.home.settings.clinic_cards import MoreStationsCard, StationCard, StationView
-from app.theme.notifier import ThemeNotifier
 
 
 @pytest.fixture
-def station(qtbot: QtBot, look: ThemeNotifier) -> StationCard:
-    card = StationCard(look)
+def station(qtbot: QtBot) -> StationCard:
+    card = StationCard()
     qtbot.addWidget(card)
     with qtbot.waitExposed(card):
         card.show()
@@ -60,8 +59,8 @@ def test_who_may_not_bring_it_back_is_not_offered_it(station: StationCard) -> No
     assert station.copy.isVisible()
 
 
-def test_a_move_needs_an_address_and_a_place(qtbot: QtBot, look: ThemeNotifier) -> None:
-    card = MoreStationsCard(look)
+def test_a_move_needs_an_address_and_a_place(qtbot: QtBot) -> None:
+    card = MoreStationsCard()
     qtbot.addWidget(card)
     with qtbot.assertNotEmitted(card.move_requested):
         card.move_there.click()

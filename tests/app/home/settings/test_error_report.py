@@ -9,7 +9,6 @@ from pytestqt.qtbot import QtBot
 from app.home.settings.error_report import FILE_NAME, ErrorReport
 from app.home.settings.settings_page import SettingsPage
 from app.system.logs import version_of
-from app.theme.notifier import ThemeNotifier
 
 
 @pytest.fixture
@@ -54,7 +53,7 @@ def test_the_dialog_asks_and_writes_where_it_was_reported(qtbot: QtBot, report: 
 
 
 def test_the_settings_offer_it_and_say_where_it_went(qtbot: QtBot) -> None:
-    page = SettingsPage(ThemeNotifier(), 12, [])
+    page = SettingsPage(12, [])
     qtbot.addWidget(page)
     with qtbot.waitSignal(page.error_report_requested):
         page.report_error.click()

@@ -24,7 +24,6 @@ from app.summary.headline import headline_of
 from app.summary.request import AnalysedVisit, ReportRequest, default_walks
 from app.summary.trend_lines import trend_lines
 from app.summary.what_differs import what_differs
-from app.theme.notifier import ThemeNotifier
 from core.body import Side
 from core.goals import NO_GOALS
 from core.parameters import KNEE
@@ -131,7 +130,7 @@ def test_the_screen_states_first_what_a_report_states_first(qtbot: QtBot, now: A
     facts = facts_of(request)
     summary = first_page(request, facts, comparison_of(request))["summary"]
     assert isinstance(summary, dict)
-    page = ResultPage(ThemeNotifier())
+    page = ResultPage()
     qtbot.addWidget(page)
     page.show_visit(now, course=request.course)
     assert summary["first"] in page.headline.text

@@ -8,7 +8,6 @@ from PySide6.QtTest import QTest
 from pytestqt.qtbot import QtBot
 
 from app.system.prompts import prompter
-from app.theme.notifier import ThemeNotifier
 from app.widgets.action_bar import VerbButton
 from app.widgets.body_figure import SensorMark
 from app.widgets.gauge import GaugeState
@@ -42,7 +41,7 @@ def moved(
     monkeypatch.setattr(visit, "evaluate", lambda: None)
     begin(qtbot, visit, worn)
     record(qtbot, visit, RecordingKind.FREE_MOTION, 0.5)
-    step = FreeMotionStep(ThemeNotifier(), visit)
+    step = FreeMotionStep(visit)
     qtbot.addWidget(step.page)
     step.page.show()
     step.enter()
@@ -113,7 +112,7 @@ def test_sensors_that_look_swapped_take_the_hints_place_and_walking_waits_for_th
     bar = moved.bar()
     assert bar.primary is not None
     assert (bar.primary.is_enabled, bar.note) == (False, "Correct the sensor positions first.")
-    walking = WalkingStep(ThemeNotifier(), visit)
+    walking = WalkingStep(visit)
     assert walking.cannot_enter == bar.note
     filled = [button for button in page.findChildren(VerbButton) if button.is_filled and not button.isHidden()]
     assert filled == [page.swapped.use]
@@ -181,7 +180,7 @@ def test_positions_can_be_checked_and_kept_as_they_are(
     with qtbot.waitSignal(moved.jumped) as jumped:
         press(moved, "Check positions")
     assert jumped.args == [StepId.SENSORS]
-    sensors = SensorsStep(ThemeNotifier(), visit)
+    sensors = SensorsStep(visit)
     qtbot.addWidget(sensors.page)
     sensors.enter()
     words = (

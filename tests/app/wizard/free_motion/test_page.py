@@ -10,7 +10,7 @@ from PySide6.QtGui import QAccessible, QAccessibleAnnouncementEvent, QAccessible
 from PySide6.QtWidgets import QApplication
 from pytestqt.qtbot import QtBot
 
-from app.theme.notifier import ThemeNotifier, load_fonts
+from app.theme.current import load_fonts, set_dark
 from app.widgets.gauge import Gauge, GaugeFace, GaugeMeasure, GaugeState
 from app.widgets.hint import Hint
 from app.widgets.hip_gauge import hip_face
@@ -36,9 +36,8 @@ def view(**faces: GaugeFace) -> FreeMotionFace:
 @pytest.fixture
 def page(qtbot: QtBot, qapp: QApplication) -> Iterator[FreeMotionPage]:
     load_fonts()
-    look = ThemeNotifier()
-    look.set_dark(False)
-    page = FreeMotionPage(look)
+    set_dark(False)
+    page = FreeMotionPage()
     qtbot.addWidget(page)
     page.resize(1064, 600)
     with qtbot.waitExposed(page):

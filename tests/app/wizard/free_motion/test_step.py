@@ -10,7 +10,6 @@ from pytestqt.qtbot import QtBot
 from app.storage.stored import Limits
 from app.system import sounds
 from app.system.sounds import Sound
-from app.theme.notifier import ThemeNotifier
 from app.widgets.gauge import GaugeState
 from app.widgets.rail_row import StepState
 from app.wizard.free_motion.estimator import FreeMotionView
@@ -42,7 +41,7 @@ def step(
     monkeypatch.setattr(visit, "evaluate", lambda: None)  # a second each, and tried elsewhere
     begin(qtbot, visit, worn)
     patient_time.is_held = lambda: visit.recordings.is_recording and not visit.recordings.has_begun
-    step = FreeMotionStep(ThemeNotifier(), visit)
+    step = FreeMotionStep(visit)
     qtbot.addWidget(step.page)
     step.page.show()
     yield step

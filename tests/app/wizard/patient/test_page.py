@@ -8,7 +8,6 @@ from PySide6.QtTest import QTest
 from PySide6.QtWidgets import QAbstractButton, QLabel, QLineEdit
 from pytestqt.qtbot import QtBot
 
-from app.theme.notifier import ThemeNotifier
 from app.wizard.patient.cards import LastVisit
 from app.wizard.patient.page import PatientDraft, PatientPage
 from core.body import Side
@@ -29,7 +28,7 @@ KNOWN = Patient(
 
 @pytest.fixture
 def page(qtbot: QtBot) -> PatientPage:
-    page = PatientPage(ThemeNotifier(), today=date(2026, 11, 21))
+    page = PatientPage(today=date(2026, 11, 21))
     qtbot.addWidget(page)
     page.resize(1064, 672)
     page.show()

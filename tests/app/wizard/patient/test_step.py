@@ -10,7 +10,6 @@ from pytestqt.qtbot import QtBot
 
 from app.storage.opened import OpenedLibrary
 from app.storage.stored import PlacedSensor, StoredPatient
-from app.theme.notifier import ThemeNotifier
 from app.widgets.rail_row import StepState
 from app.wizard.patient.page import PatientDraft
 from app.wizard.patient.step import PatientStep
@@ -24,7 +23,7 @@ from tests.app.wizard.pressing import press
 
 @pytest.fixture
 def step(qtbot: QtBot, visit: Visit) -> Iterator[PatientStep]:
-    step = PatientStep(ThemeNotifier(), visit)
+    step = PatientStep(visit)
     qtbot.addWidget(step.page)
     step.page.show()
     step.enter()

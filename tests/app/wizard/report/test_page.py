@@ -9,7 +9,6 @@ from PySide6.QtGui import QImage
 from PySide6.QtTest import QTest
 from pytestqt.qtbot import QtBot
 
-from app.theme.notifier import ThemeNotifier
 from app.widgets.sheets import PAPER_INCH
 from app.wizard.report.comment_editor import REBUILT_AFTER_MS
 from app.wizard.report.page import ReportPage
@@ -19,7 +18,7 @@ from tests.app.room import settle, words_cut
 
 @pytest.fixture
 def page(qtbot: QtBot) -> ReportPage:
-    page = ReportPage(ThemeNotifier())
+    page = ReportPage()
     qtbot.addWidget(page)
     page.resize(1000, 600)
     page.show()
@@ -78,8 +77,8 @@ def language(request: pytest.FixtureRequest) -> Iterator[str]:
 
 
 @pytest.mark.usefixtures("language")
-def test_the_card_beside_the_pages_is_as_wide_as_its_words_in_each_language(qtbot: QtBot, look: ThemeNotifier) -> None:
-    page = ReportPage(look)
+def test_the_card_beside_the_pages_is_as_wide_as_its_words_in_each_language(qtbot: QtBot) -> None:
+    page = ReportPage()
     qtbot.addWidget(page)
     page.resize(1064, 640)
     page.set_room(1064, 640)
@@ -87,8 +86,8 @@ def test_the_card_beside_the_pages_is_as_wide_as_its_words_in_each_language(qtbo
     assert words_cut(page) == []
 
 
-def test_a_long_condition_of_an_earlier_visit_does_not_widen_the_card(qtbot: QtBot, look: ThemeNotifier) -> None:
-    page = ReportPage(look)
+def test_a_long_condition_of_an_earlier_visit_does_not_widen_the_card(qtbot: QtBot) -> None:
+    page = ReportPage()
     qtbot.addWidget(page)
     page.resize(1064, 640)
     page.set_room(1064, 640)

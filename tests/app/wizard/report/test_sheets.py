@@ -6,14 +6,13 @@ from PySide6.QtTest import QTest
 from PySide6.QtWidgets import QScrollBar
 from pytestqt.qtbot import QtBot
 
-from app.theme.notifier import ThemeNotifier
 from app.wizard.report.page import ReportPage
 from tests.app.wizard.report.test_page import png
 
 
 @pytest.fixture
 def page(qtbot: QtBot) -> ReportPage:
-    page = ReportPage(ThemeNotifier())
+    page = ReportPage()
     qtbot.addWidget(page)
     page.resize(1280, 620)
     page.set_room(1280, 620)

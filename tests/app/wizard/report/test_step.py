@@ -21,7 +21,6 @@ from app.storage.operators import CLINIC
 from app.storage.shared_edits import SharedEdits
 from app.storage.stored import Action, LibraryError
 from app.summary.request import ReportRequest
-from app.theme.notifier import ThemeNotifier
 from app.widgets.rail_row import StepState
 from app.wizard.keys import Intent, KeyAction
 from app.wizard.report.comment_editor import CommentState
@@ -58,7 +57,7 @@ def step(
     """On its page, the library's earlier visits read."""
     begin(qtbot, visit, worn)
     visit.evaluation.session, visit.evaluation.analysis = simulated_session, analysis
-    step = ReportStep(ThemeNotifier(), visit, controller)
+    step = ReportStep(visit, controller)
     qtbot.addWidget(step.page)
     step.page.resize(1016, 600)
     step.page.show()
@@ -451,7 +450,7 @@ def test_an_earlier_visit_that_cannot_be_read_leaves_no_page_of_another_comparis
 
 
 def test_ctrl_s_saves_as_its_cap_states(qtbot: QtBot, visit: Visit, monkeypatch: pytest.MonkeyPatch) -> None:
-    step = ReportStep(ThemeNotifier(), visit, visit.controller)
+    step = ReportStep(visit, visit.controller)
     qtbot.addWidget(step.page)
     pressed = []
     monkeypatch.setattr(step, "_save", lambda: pressed.append("save"))

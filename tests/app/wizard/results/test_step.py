@@ -18,7 +18,7 @@ from app.results.thin_line import ThinLine
 from app.storage.exchange import import_session
 from app.storage.opened import OpenedLibrary
 from app.summary.comparison import Contrast
-from app.theme.notifier import ThemeNotifier, load_fonts
+from app.theme.current import load_fonts, set_dark
 from app.wizard import reviewing
 from app.wizard.keys import Intent, KeyAction
 from app.wizard.results.step import ResultsStep
@@ -61,9 +61,8 @@ def session_id(qtbot: QtBot, controller: LibraryController, one_walk: Session) -
 @pytest.fixture
 def step(qtbot: QtBot, qapp: QApplication, visit: Visit, session_id: UUID) -> ResultsStep:
     load_fonts()
-    look = ThemeNotifier()
-    look.set_dark(False)
-    step = ResultsStep(look, visit)
+    set_dark(False)
+    step = ResultsStep(visit)
     with qtbot.waitSignals([visit.resumed, visit.evaluation.done], timeout=30_000):
         visit.resume(session_id)
     qtbot.addWidget(step.page)
@@ -92,7 +91,7 @@ def angle_of(visit: Visit, joint: Joint) -> FloatArray:
 def test_results_are_on_the_screen_quickly_once_they_are_known(visit: Visit, step: ResultsStep) -> None:
     assert step.page.currentWidget() is step.page.results()
     began = process_time()
-    other = ResultsStep(ThemeNotifier(), visit)
+    other = ResultsStep(visit)
     other.page.set_room(1064, 672)
     other.enter()
     assert process_time() - began < QUICK_S
@@ -105,7 +104,7 @@ def test_results_that_are_made_ready_ahead_open_with_the_walk(visit: Visit, step
     session, analysis = visit.evaluation.session, visit.evaluation.analysis
     assert session is not None
     assert analysis is not None
-    ahead = ResultsStep(ThemeNotifier(), visit)
+    ahead = ResultsStep(visit)
     ahead.page.results()
     of_motion = (one for one in analysis.recordings if one.kind is not RecordingKind.WALKING)
     visit.evaluation.take_over(session, replace(analysis, recordings=tuple(of_motion)))

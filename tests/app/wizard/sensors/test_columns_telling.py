@@ -8,7 +8,6 @@ import pytest
 from pytestqt.qtbot import QtBot
 
 from app.system import known_columns as kept
-from app.theme.notifier import ThemeNotifier
 from app.wizard.sensors.columns_form import ColumnsForm, Meaning
 from app.wizard.sensors.sources import COLUMNS, SEARCH
 from app.wizard.sensors.step import SensorsStep
@@ -44,7 +43,7 @@ def step(qtbot: QtBot, visit: Visit, place: str) -> Iterator[SensorsStep]:
         SourceChoice(COLUMNS, "Text lines (CSV)", search, lines=lines),  # type: ignore[arg-type]  # it only refuses
         SourceChoice(SEARCH, "Search", search),  # type: ignore[arg-type]  # it only refuses
     )
-    step = SensorsStep(ThemeNotifier(), visit)
+    step = SensorsStep(visit)
     qtbot.addWidget(step.page)
     step.enter()
     step.page.resize(1064, 672)

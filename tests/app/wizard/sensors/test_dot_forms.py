@@ -7,7 +7,6 @@ from PySide6.QtCore import QPoint, Qt
 from PySide6.QtTest import QTest
 from pytestqt.qtbot import QtBot
 
-from app.theme.notifier import ThemeNotifier
 from app.widgets.sensors_progress import LineState, ProgressShown, SensorLine, SensorsProgress
 from app.wizard.sensors.dot_form import DotChoice, DotForm, DotLine
 from app.wizard.sensors.memories_form import HeldLine, MemoriesForm
@@ -35,8 +34,8 @@ SYNCHRONISING = ProgressShown(
 
 
 @pytest.fixture
-def form(look: ThemeNotifier, qtbot: QtBot) -> DotForm:
-    form = DotForm(look)
+def form(qtbot: QtBot) -> DotForm:
+    form = DotForm()
     qtbot.addWidget(form)
     form.resize(1016, 540)
     form.show_dots(LINES)
@@ -109,8 +108,8 @@ def test_choices_stand_below_the_list_where_the_words_of_a_language_are_too_long
 
 
 @pytest.mark.parametrize("size", SIZES)
-def test_everything_of_the_memories_has_its_room(look: ThemeNotifier, qtbot: QtBot, size: tuple[int, int]) -> None:
-    form = MemoriesForm(look)
+def test_everything_of_the_memories_has_its_room(qtbot: QtBot, size: tuple[int, int]) -> None:
+    form = MemoriesForm()
     qtbot.addWidget(form)
     form.resize(*size)
     form.show_lines(HELD)
@@ -122,8 +121,8 @@ def test_everything_of_the_memories_has_its_room(look: ThemeNotifier, qtbot: QtB
 
 
 @pytest.mark.parametrize("size", SIZES)
-def test_everything_of_the_progress_has_its_room(look: ThemeNotifier, qtbot: QtBot, size: tuple[int, int]) -> None:
-    progress = SensorsProgress(look)
+def test_everything_of_the_progress_has_its_room(qtbot: QtBot, size: tuple[int, int]) -> None:
+    progress = SensorsProgress()
     qtbot.addWidget(progress)
     progress.resize(*size)
     progress.show_state(SYNCHRONISING)

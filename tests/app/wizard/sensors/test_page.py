@@ -11,7 +11,7 @@ from PySide6.QtTest import QTest
 from PySide6.QtWidgets import QApplication, QMenu, QWidget
 from pytestqt.qtbot import QtBot
 
-from app.theme.notifier import ThemeNotifier
+from app.theme.current import current_theme, set_scale
 from app.wizard.sensors.page import SensorsPage, Way
 from app.wizard.sensors.sensor_drag import DRAGGED
 from app.wizard.sensors.sensor_row import SensorRow
@@ -44,7 +44,7 @@ def rows(*sites: Site | None, **changes: dict[str, object]) -> tuple[SensorRow, 
 
 @pytest.fixture
 def page(qtbot: QtBot) -> Iterator[SensorsPage]:
-    page = SensorsPage(ThemeNotifier())
+    page = SensorsPage()
     qtbot.addWidget(page)
     page.resize(1064, 672)
     page.show_sources(OPTIONS, "serial")
@@ -62,9 +62,9 @@ def german() -> Iterator[None]:
 
 
 @pytest.mark.usefixtures("german")
-def test_in_german_the_demonstrations_sensors_stand_beside_the_figure(qtbot: QtBot, look: ThemeNotifier) -> None:
+def test_in_german_the_demonstrations_sensors_stand_beside_the_figure(qtbot: QtBot) -> None:
     """At 1280 x 800 of the whole window."""
-    page = SensorsPage(look)
+    page = SensorsPage()
     qtbot.addWidget(page)
     page.resize(1064, 672)
     named = zip(("DEMO-09", "DEMO-31", "DEMO-2C", "DEMO-17", "DEMO-1B", "DEMO-22"), LEG_SITES, strict=True)
@@ -76,10 +76,10 @@ def test_in_german_the_demonstrations_sensors_stand_beside_the_figure(qtbot: QtB
 
 
 @pytest.mark.usefixtures("german")
-def test_no_tile_lies_over_the_letters_of_the_legs(qtbot: QtBot, look: ThemeNotifier) -> None:
+def test_no_tile_lies_over_the_letters_of_the_legs(qtbot: QtBot) -> None:
     """Tiles are high where names are long, and near the legs where everything is large."""
-    look.set_scale(2.0)
-    page = SensorsPage(look)
+    set_scale(2.0)
+    page = SensorsPage()
     qtbot.addWidget(page)
     page.set_compact(True)
     page.resize(1790, 1006)
@@ -87,7 +87,7 @@ def test_no_tile_lies_over_the_letters_of_the_legs(qtbot: QtBot, look: ThemeNoti
     page.show()
     settle()
     figure = page.places.figure
-    picture, letters = figure.grab().toImage(), {look.theme.text(side).name() for side in Side}
+    picture, letters = figure.grab().toImage(), {current_theme().text(side).name() for side in Side}
     for tile in page.places.shown_tiles.values():
         box = tile.geometry().translated(-figure.pos())
         under = {
@@ -159,7 +159,7 @@ def test_only_a_sensor_may_be_dropped_on_the_figure(page: SensorsPage, is_sensor
 def test_the_mouse_carries_a_sensor_by_its_name(page: SensorsPage, monkeypatch: pytest.MonkeyPatch) -> None:
     carried: list[str] = []
     drag = "app.wizard.sensors.sensor_drag.drag_sensor"
-    monkeypatch.setattr(drag, lambda _source, _look, sensor: carried.append(sensor))
+    monkeypatch.setattr(drag, lambda _source, sensor: carried.append(sensor))
     row = page.list.rows["0A2C"]
     QTest.mousePress(row, Qt.MouseButton.LeftButton, pos=QPoint(60, 20))
     QTest.mouseMove(row, QPoint(62, 20))
@@ -296,7 +296,7 @@ def test_a_refusal_goes_before_all_else_and_is_seen_without_a_source(page: Senso
 
 
 def test_the_sources_take_the_focus_as_soon_as_they_are_offered(qtbot: QtBot) -> None:
-    page = SensorsPage(ThemeNotifier())
+    page = SensorsPage()
     qtbot.addWidget(page)
     page.show()
     page.show_sources(OPTIONS)
@@ -355,7 +355,7 @@ def test_tiles_turn_with_the_figure(page: SensorsPage) -> None:
 def test_nothing_lies_over_another_or_outside(
     page: SensorsPage, scale: float, size: tuple[int, int], is_compact: bool
 ) -> None:
-    page._look.set_scale(scale)
+    set_scale(scale)
     page.resize(round(size[0] * scale), round(size[1] * scale))
     page.set_compact(is_compact)
     page.show_sensors(rows(*LEG_SITES, s0A22={"silent_s": 3.0}, s0A2C={"battery": 0.1}))

@@ -11,7 +11,6 @@ from pytestqt.qtbot import QtBot
 from app.storage.exchange import import_session
 from app.storage.opened import OpenedLibrary
 from app.storage.stored import LibraryError
-from app.theme.notifier import ThemeNotifier
 from app.wizard.sensors.replays import Replays, replay_of
 from app.wizard.sensors.step import REPLAY, SensorsStep
 from app.wizard.visit import Visit
@@ -149,7 +148,7 @@ def test_whoever_chooses_other_sensors_meanwhile_has_those(
 
 def test_only_demonstration_patients_are_offered_a_replay(qtbot: QtBot, visit: Visit) -> None:
     visit.patient.edit(Patient(code="P-7"))
-    step = SensorsStep(ThemeNotifier(), visit)
+    step = SensorsStep(visit)
     qtbot.addWidget(step.page)
     step.page.show()
     step.enter()

@@ -7,7 +7,6 @@ import pytest
 from pytestqt.qtbot import QtBot
 
 from app.acquisition.acquisition import Acquisition
-from app.theme.notifier import ThemeNotifier
 from app.widgets.rail_row import StepState
 from app.wizard.free_motion.step import FreeMotionStep
 from app.wizard.keys import Intent, KeyAction
@@ -196,7 +195,7 @@ def test_without_the_last_visits_set_up_no_source_opens_by_itself(visit: Visit, 
 
 def test_a_real_patient_is_offered_no_simulated_sensors(qtbot: QtBot, visit: Visit) -> None:
     visit.known_choices = ()
-    step = SensorsStep(ThemeNotifier(), visit)
+    step = SensorsStep(visit)
     qtbot.addWidget(step.page)
     assert step.cannot_enter == "Enter the patient's code first."
     step.enter()
@@ -287,7 +286,7 @@ def test_simulated_sensors_are_refused_at_once_on_a_patient_of_the_clinic(
     assert (bar.primary.text, bar.others[0].text) == ("Choose other sensors", "Start with a demonstration patient")
     assert (step.state, step.note) == (StepState.ATTENTION, "not for this patient")
     for other in (StandStillStep, FreeMotionStep, WalkingStep):
-        assert other(ThemeNotifier(), visit).cannot_enter == bar.note
+        assert other(visit).cannot_enter == bar.note
     press(step)
     assert visit.sensors.acquisition is None
     assert step.page.nothing.isVisible()

@@ -10,8 +10,8 @@ from PySide6.QtTest import QTest
 from PySide6.QtWidgets import QApplication
 from pytestqt.qtbot import QtBot
 
+from app.theme.current import set_scale
 from app.theme.icons import Icon
-from app.theme.notifier import ThemeNotifier
 from app.widgets.stillness import MovementBars
 from app.wizard.standing.page import (
     StandPhase,
@@ -35,8 +35,8 @@ def counting(still_s: float = 1.2, **more: object) -> StandStillView:
 
 
 @pytest.fixture
-def page(qtbot: QtBot, look: ThemeNotifier) -> StandStillPage:
-    page = StandStillPage(look)
+def page(qtbot: QtBot) -> StandStillPage:
+    page = StandStillPage()
     page.show_zero(dict.fromkeys(LEG_JOINTS, 0.0))
     qtbot.addWidget(page)
     page.resize(1064, 600)
@@ -170,9 +170,7 @@ def test_a_joint_without_its_sensors_has_no_angle_and_states_so(page: StandStill
     assert "right ankle" in page.zero.why
 
 
-def test_only_the_row_whose_figure_changed_is_painted(
-    qtbot: QtBot, look: ThemeNotifier, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_only_the_row_whose_figure_changed_is_painted(qtbot: QtBot, monkeypatch: pytest.MonkeyPatch) -> None:
     painted: list[int] = []
     paint = MovementBars.paintEvent
 
@@ -181,7 +179,7 @@ def test_only_the_row_whose_figure_changed_is_painted(
         paint(bars, event)
 
     monkeypatch.setattr(MovementBars, "paintEvent", noting)
-    bars = MovementBars(look)
+    bars = MovementBars()
     qtbot.addWidget(bars)
     bars.resize(268, 192)
     with qtbot.waitExposed(bars):
@@ -255,12 +253,12 @@ def test_a_sensor_moves_just_when_its_figure_reaches_the_limit() -> None:
 @pytest.mark.parametrize("language", ["en", "de"])
 @pytest.mark.parametrize("name", ["ready to stand", "cannot stand"])
 def test_at_200_percent_the_way_without_standing_is_in_sight_in_its_whole_words(
-    qtbot: QtBot, look: ThemeNotifier, name: str, language: str
+    qtbot: QtBot, name: str, language: str
 ) -> None:
     use_language(language)
     try:
-        look.set_scale(2.0)
-        shell = framed(look, name)
+        set_scale(2.0)
+        shell = framed(name)
         qtbot.addWidget(shell)
         shell.resize(1920, 1200)
         shell.show()

@@ -9,7 +9,6 @@ from pytestqt.qtbot import QtBot
 from app.acquisition.recorder import Recorder
 from app.storage.opened import OpenedLibrary
 from app.storage.stored import LibraryError
-from app.theme.notifier import ThemeNotifier
 from app.widgets.rail_row import StepState
 from app.wizard.keys import Intent, KeyAction
 from app.wizard.standing.page import StandPhase
@@ -27,7 +26,7 @@ SPACE = Intent(KeyAction.RUN)
 @pytest.fixture
 def step(qtbot: QtBot, visit: Visit, worn: dict[str, Site]) -> Iterator[StandStillStep]:
     begin(qtbot, visit, worn)
-    step = StandStillStep(ThemeNotifier(), visit)
+    step = StandStillStep(visit)
     qtbot.addWidget(step.page)
     step.page.show()
     step.enter()

@@ -13,7 +13,6 @@ from pytestqt.qtbot import QtBot
 
 from app.summary.comparison import Comparison, Contrast
 from app.summary.conditions import Part, parts_of
-from app.theme.notifier import ThemeNotifier
 from app.widgets.table_cells import TextCell
 from app.wizard.visit import Visit
 from app.wizard.walking.bench import ChangeEntry, chain_of, next_walk
@@ -161,16 +160,14 @@ def test_what_may_be_error_is_reported_with_what_fits() -> None:
 
 
 @pytest.mark.parametrize("is_biased", [True, False])
-def test_stance_of_a_prosthetic_foot_is_compared_at_the_bench_nowhere(
-    qtbot: QtBot, look: ThemeNotifier, is_biased: bool
-) -> None:
+def test_stance_of_a_prosthetic_foot_is_compared_at_the_bench_nowhere(qtbot: QtBot, is_biased: bool) -> None:
     def of(stance_percent: float) -> SideGait:
         return leg(Side.LEFT, stance_percent=stance_percent, is_toe_off_biased=is_biased)
 
     one, other = part("B", left=of(70.0)), part("A", left=of(60.0))
     outcome, *_ = reported_of(one, other)
     assert outcome is (Outcome.NOTHING if is_biased else Outcome.DIFFERS)
-    differences = BenchDifferences(look)
+    differences = BenchDifferences()
     qtbot.addWidget(differences)
     differences.show_pair(Comparison(Contrast.CONDITIONS, (other, one)), Side.LEFT, "")
     stated = [[cell.text for cell in row.cells if isinstance(cell, TextCell)] for row in differences.table.cells.rows]
@@ -194,8 +191,8 @@ def visit() -> SimpleNamespace:
 
 
 @pytest.fixture
-def bench(visit: SimpleNamespace, look: ThemeNotifier) -> Bench:
-    return Bench(cast(Visit, visit), look)
+def bench(visit: SimpleNamespace) -> Bench:
+    return Bench(cast(Visit, visit))
 
 
 def shown(bench: Bench) -> tuple[str, str]:
@@ -357,8 +354,8 @@ def test_a_walk_whose_analysis_ended_early_is_not_stated_to_be_analysed(bench: B
 
 
 @pytest.fixture
-def page(qtbot: QtBot, look: ThemeNotifier, bench: Bench) -> WalkingPage:
-    page = WalkingPage(look, bench.entry)
+def page(qtbot: QtBot, bench: Bench) -> WalkingPage:
+    page = WalkingPage(bench.entry)
     qtbot.addWidget(page)
     page.resize(1064, 600)
     page.show_walks(tuple(WalkRow(str(k), one, f"Alignment {one}", WalkState.KEPT, 12) for k, one in enumerate("ABC")))
@@ -449,10 +446,10 @@ def test_in_a_small_window_each_has_a_tab(page: WalkingPage, tab: str, visible: 
 @pytest.mark.usefixtures("pseudo_language")
 @pytest.mark.parametrize(("width", "height", "is_compact"), [(1064, 600, False), (896, 420, True)])
 def test_no_word_of_the_bench_is_cut_in_a_language_as_long_as_german(
-    qtbot: QtBot, look: ThemeNotifier, bench: Bench, width: int, height: int, is_compact: bool
+    qtbot: QtBot, bench: Bench, width: int, height: int, is_compact: bool
 ) -> None:
     bench.entry.step("turns", -3)
-    page = WalkingPage(look, bench.entry)
+    page = WalkingPage(bench.entry)
     qtbot.addWidget(page)
     page.set_compact(is_compact)
     page.resize(width, height)
@@ -504,7 +501,7 @@ def test_the_simulated_prosthesis_is_reported_by_what_it_differs_from_the_first(
 
 @pytest.mark.parametrize(("rise_deg", "is_named"), [(66.0, True), (61.0, False)])
 def test_a_measure_for_fitting_is_named_where_it_changes_by_more_than_its_error(
-    qtbot: QtBot, look: ThemeNotifier, rise_deg: float, is_named: bool
+    qtbot: QtBot, rise_deg: float, is_named: bool
 ) -> None:
     def with_rise(of: SideGait, degrees: float) -> SideGait:
         rise = np.full(len(of.strides), np.deg2rad(degrees))
@@ -514,7 +511,7 @@ def test_a_measure_for_fitting_is_named_where_it_changes_by_more_than_its_error(
         part("A", left=with_rise(leg(Side.LEFT), 60.0)),
         part("B", left=with_rise(leg(Side.LEFT), rise_deg)),
     )
-    shown_differences = BenchDifferences(look)
+    shown_differences = BenchDifferences()
     qtbot.addWidget(shown_differences)
     shown_differences.show_pair(Comparison(Contrast.CONDITIONS, (before, after)), Side.LEFT, "")
     names = [row.cells[0] for row in shown_differences.table.cells.rows]
@@ -524,14 +521,12 @@ def test_a_measure_for_fitting_is_named_where_it_changes_by_more_than_its_error(
 
 
 @pytest.mark.usefixtures("pseudo_language")
-def test_no_word_of_what_is_not_compared_is_cut(
-    qtbot: QtBot, look: ThemeNotifier, bench: Bench, visit: SimpleNamespace
-) -> None:
+def test_no_word_of_what_is_not_compared_is_cut(qtbot: QtBot, bench: Bench, visit: SimpleNamespace) -> None:
     walks = visit.evaluation.analysis.recordings
     late = [{**one.gait, Side.LEFT: replace(one.gait[Side.LEFT], is_toe_off_biased=True)} for one in walks]
     judged = tuple(judged_walk(replace(one, gait=gait)) for one, gait in zip(walks, late, strict=True))
     visit.evaluation.analysis = replace(visit.evaluation.analysis, recordings=judged)
-    page = WalkingPage(look, bench.entry)
+    page = WalkingPage(bench.entry)
     qtbot.addWidget(page)
     page.resize(1240, 600)
     page.show_bench(bench.state())

@@ -9,7 +9,6 @@ from pytestqt.qtbot import QtBot
 from app.storage.opened import OpenedLibrary
 from app.summary.course import Course, timed_tests_of
 from app.summary.course_lanes import CourseVisit, LaneKind, lanes
-from app.theme.notifier import ThemeNotifier
 from app.widgets.text import Text
 from app.wizard.resuming import current_course_key
 from app.wizard.visit import Visit
@@ -61,8 +60,8 @@ def test_the_latest_earlier_result_under_the_same_condition_is_named(
     assert control.before("Barefoot") == {}
 
 
-def test_the_chooser_names_it_with_its_test_and_with_no_other(qtbot: QtBot, look: ThemeNotifier) -> None:
-    chooser = TimedChooser(look)
+def test_the_chooser_names_it_with_its_test_and_with_no_other(qtbot: QtBot) -> None:
+    chooser = TimedChooser()
     qtbot.addWidget(chooser)
     chooser.show_before({UP: "3 Oct: 11.4 s"})
     assert chooser.box.itemText(1 + list(TimedProtocol).index(UP)) == "Timed Up and Go · 3 Oct: 11.4 s"
@@ -70,9 +69,9 @@ def test_the_chooser_names_it_with_its_test_and_with_no_other(qtbot: QtBot, look
     assert chooser.box.itemText(1 + list(TimedProtocol).index(UP)) == "Timed Up and Go"
 
 
-def results(look: ThemeNotifier, *times_s: float) -> TimedResultView:
+def results(*times_s: float) -> TimedResultView:
     """The result of a 10-metre walk after visits with as many."""
-    view, kind = TimedResultView(look), LaneKind(COLUMNS[TEN])
+    view, kind = TimedResultView(), LaneKind(COLUMNS[TEN])
     visits = [
         CourseVisit(UUID(int=number), datetime.date(2026, 6 + number, 20), this_visit(time_s))
         for number, time_s in enumerate(times_s)
@@ -88,8 +87,8 @@ def this_visit(time_s: float) -> Course:
     return Course(None, timed_tests_of(analysis(walk), recordings((walk, SHOES))))
 
 
-def test_the_result_shows_what_has_changed_and_draws_it(qtbot: QtBot, look: ThemeNotifier) -> None:
-    view = results(look, 14.1, 9.4, 8.9)
+def test_the_result_shows_what_has_changed_and_draws_it(qtbot: QtBot) -> None:
+    view = results(14.1, 9.4, 8.9)
     qtbot.addWidget(view)
     view.show()
     space, error = "\N{NO-BREAK SPACE}", "error (0.18)"
@@ -101,8 +100,8 @@ def test_the_result_shows_what_has_changed_and_draws_it(qtbot: QtBot, look: Them
     assert "+0.41 since 20 Jun" in [text.text() for text in view.course.findChildren(Text)]
 
 
-def test_a_first_test_has_no_course_and_nothing_is_stated_of_a_change(qtbot: QtBot, look: ThemeNotifier) -> None:
-    view = results(look, 8.9)
+def test_a_first_test_has_no_course_and_nothing_is_stated_of_a_change(qtbot: QtBot) -> None:
+    view = results(8.9)
     qtbot.addWidget(view)
     view.show()
     assert not view.course.isVisible()

@@ -8,7 +8,7 @@ from PySide6.QtGui import QImage
 from PySide6.QtWidgets import QApplication
 from pytestqt.qtbot import QtBot
 
-from app.theme.notifier import ThemeNotifier
+from app.theme.current import current_theme, set_dark
 from app.wizard.walking.live_lanes import LiveLanes
 from app.wizard.walking.readout import LiveLane, PhaseSpan
 from core.body import Side
@@ -20,8 +20,8 @@ SHARES = ((LOADING, 0.0, 0.12), (FLAT, 0.12, 0.45), (PRE_SWING, 0.45, 0.6), (SWI
 
 
 @pytest.fixture
-def lanes(qtbot: QtBot, look: ThemeNotifier) -> LiveLanes:
-    lanes = LiveLanes(look)
+def lanes(qtbot: QtBot) -> LiveLanes:
+    lanes = LiveLanes()
     qtbot.addWidget(lanes)
     lanes.resize(780, 84)
     lanes.show()
@@ -63,51 +63,53 @@ def test_lanes_that_moved_on_look_as_if_drawn_again(lanes: LiveLanes) -> None:
     assert picture(lanes) == moved
 
 
-def test_each_phase_has_its_look(lanes: LiveLanes, look: ThemeNotifier) -> None:
+def test_each_phase_has_its_look(lanes: LiveLanes) -> None:
     walk(lanes, 20.0, 20.1)
     ago_s = 20.0 + 2 * FRAME_S - 16.0  # of the stride that began at 16
-    assert colour_at(lanes, ago_s - 0.06, Side.LEFT) == look.theme.curve(Side.LEFT).name()
-    assert colour_at(lanes, ago_s - 0.3, Side.LEFT) == look.theme.soft(Side.LEFT).name()
-    assert colour_at(lanes, ago_s - 0.8, Side.LEFT) == look.theme.colours.surface.lower()
-    assert colour_at(lanes, ago_s - 0.5 - 0.06, Side.RIGHT) == look.theme.curve(Side.RIGHT).name()
+    assert colour_at(lanes, ago_s - 0.06, Side.LEFT) == current_theme().curve(Side.LEFT).name()
+    assert colour_at(lanes, ago_s - 0.3, Side.LEFT) == current_theme().soft(Side.LEFT).name()
+    assert colour_at(lanes, ago_s - 0.8, Side.LEFT) == current_theme().colours.surface.lower()
+    assert colour_at(lanes, ago_s - 0.5 - 0.06, Side.RIGHT) == current_theme().curve(Side.RIGHT).name()
 
 
-def test_a_phase_reported_late_is_mended(lanes: LiveLanes, look: ThemeNotifier) -> None:
+def test_a_phase_reported_late_is_mended(lanes: LiveLanes) -> None:
     lanes.show_lanes(10.0, {Side.LEFT: LiveLane((PhaseSpan(FLAT, 7.0, None),))})
-    assert colour_at(lanes, 0.5, Side.LEFT) == look.theme.soft(Side.LEFT).name()
+    assert colour_at(lanes, 0.5, Side.LEFT) == current_theme().soft(Side.LEFT).name()
     mended = (PhaseSpan(FLAT, 7.0, 9.0), PhaseSpan(LOADING, 9.0, None))
     lanes.show_lanes(10.01, {Side.LEFT: LiveLane(mended)})
-    assert colour_at(lanes, 0.5, Side.LEFT) == look.theme.curve(Side.LEFT).name()
-    assert colour_at(lanes, 1.5, Side.LEFT) == look.theme.soft(Side.LEFT).name()
+    assert colour_at(lanes, 0.5, Side.LEFT) == current_theme().curve(Side.LEFT).name()
+    assert colour_at(lanes, 1.5, Side.LEFT) == current_theme().soft(Side.LEFT).name()
 
 
-def test_a_silent_foot_is_stated_in_its_lane(lanes: LiveLanes, look: ThemeNotifier) -> None:
+def test_a_silent_foot_is_stated_in_its_lane(lanes: LiveLanes) -> None:
     silent = LiveLane((PhaseSpan(FLAT, 5.0, 9.8),), ((9.8, None),))
     lanes.show_lanes(10.0, {Side.LEFT: silent})
-    assert colour_at(lanes, 0.7, Side.LEFT) == look.theme.colours.caution.lower()  # the words take the room they need
+    assert (
+        colour_at(lanes, 0.7, Side.LEFT) == current_theme().colours.caution.lower()
+    )  # the words take the room they need
     back = LiveLane((PhaseSpan(FLAT, 5.0, 9.8), PhaseSpan(FLAT, 10.2, None)), ((9.8, 10.2),))
     lanes.show_lanes(11.0, {Side.LEFT: back})
-    assert colour_at(lanes, 1.0, Side.LEFT) == look.theme.colours.caution.lower()
-    assert colour_at(lanes, 0.5, Side.LEFT) == look.theme.soft(Side.LEFT).name()
+    assert colour_at(lanes, 1.0, Side.LEFT) == current_theme().colours.caution.lower()
+    assert colour_at(lanes, 0.5, Side.LEFT) == current_theme().soft(Side.LEFT).name()
 
 
-def test_a_leg_without_a_lane_stays_empty(lanes: LiveLanes, look: ThemeNotifier) -> None:
+def test_a_leg_without_a_lane_stays_empty(lanes: LiveLanes) -> None:
     walk(lanes, 20.0, 20.1)
     lanes.show_lanes(20.2, {Side.LEFT: lane(20.2)})
-    assert colour_at(lanes, 2.0, Side.RIGHT) == look.theme.colours.surface.lower()
+    assert colour_at(lanes, 2.0, Side.RIGHT) == current_theme().colours.surface.lower()
 
 
 @pytest.mark.parametrize("change", ["size", "theme", "seconds"])
-def test_lanes_come_back_from_what_they_show(lanes: LiveLanes, look: ThemeNotifier, change: str) -> None:
+def test_lanes_come_back_from_what_they_show(lanes: LiveLanes, change: str) -> None:
     walk(lanes, 20.0, 21.0)
     if change == "size":
         lanes.resize(1000, 84)
     elif change == "theme":
-        look.set_dark(True)
+        set_dark(True)
     else:
         lanes.set_seconds(4.0)
     image = picture(lanes)
-    required = look.theme.curve(Side.LEFT).name()
+    required = current_theme().curve(Side.LEFT).name()
     columns = [x for x in range(image.width()) if image.pixelColor(x, 6).name() == required]
     assert max(columns) > 0.7 * lanes.width()
     assert min(column for column in columns if column > 40) < 0.3 * lanes.width()

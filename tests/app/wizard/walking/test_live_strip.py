@@ -7,7 +7,7 @@ from PySide6.QtWidgets import QApplication
 from pytestqt.qtbot import QtBot
 
 from app.charts.axes import ANKLE_DEG, KNEE_DEG
-from app.theme.notifier import ThemeNotifier
+from app.theme.current import current_theme, set_dark, set_scale, set_theme
 from app.wizard.walking.live_strip import LiveStrip, _Trace
 from app.wizard.walking.readout import LiveTrace
 from core.body import Side
@@ -21,8 +21,8 @@ PERIOD_S = 1.1
 
 
 @pytest.fixture
-def strip(qtbot: QtBot, look: ThemeNotifier) -> LiveStrip:
-    strip = LiveStrip(look, KNEE_DEG, 30)
+def strip(qtbot: QtBot) -> LiveStrip:
+    strip = LiveStrip(KNEE_DEG, 30)
     qtbot.addWidget(strip)
     strip.resize(780, 160)
     strip.show()
@@ -72,19 +72,19 @@ def coloured(pixels: IntArray, colour: str) -> IntArray:
     return np.argwhere(np.abs(pixels - blue_green_red).max(axis=2) < 24)
 
 
-def test_a_strip_that_moved_on_looks_as_if_drawn_again(strip: LiveStrip, look: ThemeNotifier) -> None:
+def test_a_strip_that_moved_on_looks_as_if_drawn_again(strip: LiveStrip) -> None:
     walk(strip, 0.0, 13.0, gap_s=(8.0, 10.0))
     moved = picture(strip)
-    look.changed.emit()  # everything is drawn from the history
+    set_theme(current_theme())  # everything is drawn from the history
     np.testing.assert_array_equal(picture(strip), moved)
-    assert len(coloured(moved, look.theme.colours.left)) > 1000
+    assert len(coloured(moved, current_theme().colours.left)) > 1000
 
 
-def test_dashes_stand_still_in_time(strip: LiveStrip, look: ThemeNotifier) -> None:
+def test_dashes_stand_still_in_time(strip: LiveStrip) -> None:
     walk(strip, 0.0, 10.0)
-    before = coloured(picture(strip), look.theme.colours.right)
+    before = coloured(picture(strip), current_theme().colours.right)
     walk(strip, 10.0, 12.0)
-    after = coloured(picture(strip), look.theme.colours.right)
+    after = coloured(picture(strip), current_theme().colours.right)
     width = 780 - 40 - 16
     moved_px = int((12.0 - FRAME_S / 2) * width / 8) - int((10.0 - FRAME_S / 2) * width / 8)
     for shift_px in (moved_px - 1, moved_px, moved_px + 1):  # the last frames lie a fraction of a pixel before
@@ -95,15 +95,15 @@ def test_dashes_stand_still_in_time(strip: LiveStrip, look: ThemeNotifier) -> No
     pytest.fail("the dashes of 2 s ago are not where they were drawn")
 
 
-def test_a_gap_stays_empty_and_is_stated(strip: LiveStrip, look: ThemeNotifier) -> None:
+def test_a_gap_stays_empty_and_is_stated(strip: LiveStrip) -> None:
     walk(strip, 0.0, 11.0, gap_s=(7.0, 9.0))
     assert rounded(strip) == [(Side.RIGHT, 7.0, 9.0)]
     pixels = picture(strip)
-    box = coloured(pixels[12:13], look.theme.colours.caution)  # above the curves
+    box = coloured(pixels[12:13], current_theme().colours.caution)  # above the curves
     left, right = box[:, 1].min(), box[:, 1].max()
     assert right - left == pytest.approx(2.0 * 724 / 8, abs=4)
-    assert not len(coloured(pixels[:, left + 3 : right - 2], look.theme.colours.right))
-    assert len(coloured(pixels[:, left + 3 : right - 2], look.theme.colours.left)) > 100
+    assert not len(coloured(pixels[:, left + 3 : right - 2], current_theme().colours.right))
+    assert len(coloured(pixels[:, left + 3 : right - 2], current_theme().colours.left)) > 100
 
 
 def test_a_leg_that_falls_silent_is_reported_until_it_is_back(strip: LiveStrip) -> None:
@@ -113,33 +113,33 @@ def test_a_leg_that_falls_silent_is_reported_until_it_is_back(strip: LiveStrip) 
     assert rounded(strip) == [(Side.RIGHT, 4.0, 5.2)]
 
 
-def test_a_short_break_ends_the_line_without_words(strip: LiveStrip, look: ThemeNotifier) -> None:
+def test_a_short_break_ends_the_line_without_words(strip: LiveStrip) -> None:
     walk(strip, 0.0, 6.0, gap_s=(5.0, 5.3))
     assert rounded(strip) == []
     pixels = picture(strip)
     x = 40 + round((5.15 - 6.0 + 8.0) * 724 / 8)
-    assert not len(coloured(pixels[:, x - 8 : x + 8], look.theme.colours.right))
+    assert not len(coloured(pixels[:, x - 8 : x + 8], current_theme().colours.right))
 
 
-def test_what_is_provisional_is_thin(strip: LiveStrip, look: ThemeNotifier) -> None:
+def test_what_is_provisional_is_thin(strip: LiveStrip) -> None:
     walk(strip, 0.0, 6.0)  # provisional for 3 s
 
     def ink(from_s: float) -> int:
         left = 40 + round((from_s - 6.0 + 8.0) * 724 / 8)
-        return len(coloured(picture(strip)[:, left : left + 100], look.theme.colours.right))
+        return len(coloured(picture(strip)[:, left : left + 100], current_theme().colours.right))
 
     assert ink(0.8) < 0.6 * ink(3.0 + 0.8)
 
 
 @pytest.mark.parametrize("change", ["size", "theme", "scale", "seconds", "hidden"])
-def test_the_strip_comes_back_from_its_history(strip: LiveStrip, look: ThemeNotifier, change: str) -> None:
+def test_the_strip_comes_back_from_its_history(strip: LiveStrip, change: str) -> None:
     walk(strip, 0.0, 9.0)
     if change == "size":
         strip.resize(1000, 200)
     elif change == "theme":
-        look.set_dark(True)
+        set_dark(True)
     elif change == "scale":
-        look.set_scale(1.5)
+        set_scale(1.5)
     elif change == "seconds":
         strip.set_seconds(4.0)
     else:
@@ -147,15 +147,15 @@ def test_the_strip_comes_back_from_its_history(strip: LiveStrip, look: ThemeNoti
         walk(strip, 9.0, 10.0)
         strip.show()
     pixels = picture(strip)
-    colours = look.theme.colours
+    colours = current_theme().colours
     for colour in (colours.left, colours.right):
         columns = coloured(pixels, colour)[:, 1]
         assert columns.min() < strip.width() * 0.15
         assert columns.max() > strip.width() * 0.9
 
 
-def test_axes_stay_until_a_walk_leaves_them_and_then_stay_wider(qtbot: QtBot, look: ThemeNotifier) -> None:
-    strip = LiveStrip(look, ANKLE_DEG, 20)
+def test_axes_stay_until_a_walk_leaves_them_and_then_stay_wider(qtbot: QtBot) -> None:
+    strip = LiveStrip(ANKLE_DEG, 20)
     qtbot.addWidget(strip)
     time_s = np.arange(100) / RATE_HZ
     strip.show_traces(1.0, {Side.LEFT: LiveTrace(time_s, np.deg2rad(25 * np.sin(6 * time_s)))})

@@ -5,7 +5,6 @@ from collections.abc import Callable, Iterator
 import pytest
 from pytestqt.qtbot import QtBot
 
-from app.theme.notifier import ThemeNotifier
 from app.widgets.action_bar import BarState
 from app.wizard.keys import Intent, KeyAction
 from app.wizard.sensors.step import SensorsStep
@@ -36,7 +35,7 @@ def walking(qtbot: QtBot, visit: Visit, step: SensorsStep) -> Iterator[Callable[
         open_dots(qtbot, visit, step, record_hz)
         with qtbot.waitSignal(visit.changed, timeout=WAIT_MS):
             step.leave()
-        one = WalkingStep(ThemeNotifier(), visit)
+        one = WalkingStep(visit)
         qtbot.addWidget(one.page)
         one.page.resize(1064, 672)
         one.page.show()

@@ -11,7 +11,7 @@ from PySide6.QtTest import QTest
 from PySide6.QtWidgets import QAbstractButton, QApplication, QLabel, QPushButton, QScrollArea, QVBoxLayout, QWidget
 from pytestqt.qtbot import QtBot
 
-from app.theme.notifier import ThemeNotifier
+from app.theme.current import set_scale
 from app.widgets.field import Field
 from app.wizard.walking.page import WalkingPage
 from app.wizard.walking.readout import LiveLane, LiveTrace, PhaseSpan, WalkingReadout
@@ -29,10 +29,10 @@ LABELS = ("Barefoot", "Shoes", "AFO")
 
 
 @pytest.fixture
-def page(qtbot: QtBot, look: ThemeNotifier, request: pytest.FixtureRequest) -> WalkingPage:
+def page(qtbot: QtBot, request: pytest.FixtureRequest) -> WalkingPage:
     if "pseudo_language" in request.fixturenames:
         request.getfixturevalue("pseudo_language")  # before anything is stated
-    page = WalkingPage(look)
+    page = WalkingPage()
     qtbot.addWidget(page)
     page.resize(1064, 600)
     page.show_labels(LABELS, "Shoes")
@@ -329,14 +329,13 @@ ROOMS = [(0.8, 850, 480, False), (1.0, 1064, 600, False), (1.0, 736, 388, True),
 @pytest.mark.parametrize("rows", [(KEPT, RECORDING), (KEPT, DISCARDED, ASKING), ()])
 def test_no_word_is_cut_in_a_language_as_long_as_german(
     page: WalkingPage,
-    look: ThemeNotifier,
     scale: float,
     width: int,
     height: int,
     is_compact: bool,
     rows: tuple[WalkRow, ...],
 ) -> None:
-    look.set_scale(scale)
+    set_scale(scale)
     page.set_compact(is_compact)
     page.resize(width, height)
     page.show_labels((*LABELS, "Alignment A"), "a knee with more friction")
@@ -352,9 +351,9 @@ def test_no_word_is_cut_in_a_language_as_long_as_german(
     assert words_cut(page) == []
 
 
-def test_a_walk_stopped_in_a_small_window_leaves_the_focus_on_no_button(qtbot: QtBot, look: ThemeNotifier) -> None:
+def test_a_walk_stopped_in_a_small_window_leaves_the_focus_on_no_button(qtbot: QtBot) -> None:
     window = QWidget()
-    page = WalkingPage(look)
+    page = WalkingPage()
     column = QVBoxLayout(window)
     column.addWidget(page)
     column.addWidget(QPushButton("Back"))  # which Space would press
@@ -375,8 +374,8 @@ def test_a_walk_stopped_in_a_small_window_leaves_the_focus_on_no_button(qtbot: Q
     assert not isinstance(QApplication.focusWidget(), QAbstractButton)
 
 
-def test_a_walk_that_does_not_begin_leaves_the_focus_where_space_starts_it(qtbot: QtBot, look: ThemeNotifier) -> None:
-    page = WalkingPage(look)
+def test_a_walk_that_does_not_begin_leaves_the_focus_where_space_starts_it(qtbot: QtBot) -> None:
+    page = WalkingPage()
     window = QWidget()
     qtbot.addWidget(window)
     column = QVBoxLayout(window)

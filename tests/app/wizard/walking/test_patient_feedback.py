@@ -13,7 +13,6 @@ from pytestqt.qtbot import QtBot
 from app.patient_screen.controls import ControlsCard
 from app.system import sounds
 from app.system.sounds import Sound
-from app.theme.notifier import ThemeNotifier
 from app.wizard.walking.patient_feedback import PatientFeedback, reasons_against
 from app.wizard.walking.readout import WalkingReadout
 from core.body import LEG_JOINTS, LEG_SITES, Joint, Side, Site
@@ -61,17 +60,15 @@ def estimator() -> Reported:
 
 
 @pytest.fixture
-def feedback(
-    qtbot: QtBot, look: ThemeNotifier, estimator: Reported, received: list[Sound]
-) -> Iterator[PatientFeedback]:
+def feedback(qtbot: QtBot, estimator: Reported, received: list[Sound]) -> Iterator[PatientFeedback]:
     page = QWidget()
     qtbot.addWidget(page)
-    card = ControlsCard(look)
+    card = ControlsCard()
     card.setParent(page)
     page.show()
     sensors = SimpleNamespace(sensor_at={site: name for name, site in WORN.items()}, site_of=WORN)
     visit: Any = SimpleNamespace(sensors=sensors, calibration=SURE, prosthetic_sides=frozenset(), rests=WORN)
-    feedback = PatientFeedback(look, visit, card, page)
+    feedback = PatientFeedback(visit, card, page)
     feedback.toggle()
     reported: Any = estimator
     feedback.watch(reported)

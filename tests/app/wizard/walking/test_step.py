@@ -12,7 +12,6 @@ from pytestqt.qtbot import QtBot
 from app.acquisition.recorder import Recorder
 from app.patient_screen.window import PatientWindow
 from app.storage.stored import LibraryError
-from app.theme.notifier import ThemeNotifier
 from app.wizard.keys import Intent, KeyAction
 from app.wizard.results.step import ResultsStep
 from app.wizard.resuming import rests_of
@@ -37,13 +36,11 @@ RUN = Intent(KeyAction.RUN)
 
 
 @pytest.fixture
-def step(
-    qtbot: QtBot, look: ThemeNotifier, visit: Visit, worn: dict[str, Site], patient_time: PatientTime
-) -> Iterator[WalkingStep]:
+def step(qtbot: QtBot, visit: Visit, worn: dict[str, Site], patient_time: PatientTime) -> Iterator[WalkingStep]:
     """Of a patient who wears six sensors, entered, and looked at as the wizard does."""
     begin(qtbot, visit, worn, Patient(code="DEMO-7", birth_year=1970, prosthetic_side="left"))
     patient_time.is_held = lambda: visit.recordings.is_recording and not visit.recordings.has_begun
-    step = WalkingStep(look, visit)
+    step = WalkingStep(visit)
     qtbot.addWidget(step.page)
     step.page.resize(1064, 600)
     step.page.show()
@@ -184,7 +181,7 @@ def bar_states_change(step: WalkingStep) -> bool:
 
 
 def test_five_strides_find_the_ankles_axes_again(
-    qtbot: QtBot, look: ThemeNotifier, step: WalkingStep, visit: Visit, patient_time: PatientTime
+    qtbot: QtBot, step: WalkingStep, visit: Visit, patient_time: PatientTime
 ) -> None:
     calibrate(qtbot, visit, patient_time)
     with qtbot.waitSignal(visit.recordings.begun, timeout=PATIENCE_MS):
@@ -199,7 +196,7 @@ def test_five_strides_find_the_ankles_axes_again(
     assert looked_at.recordings[-1].condition == "Alignment A"  # a part of it is at the bench under its own name
     with qtbot.waitSignal(visit.recordings.ended, timeout=PATIENCE_MS):
         step.on_intent(RUN)
-    results = ResultsStep(look, visit)
+    results = ResultsStep(visit)
     qtbot.addWidget(results.page)
     results.enter()  # what was evaluated last holds a part of this walk only
     qtbot.waitUntil(lambda: not visit.evaluation.is_busy, timeout=PATIENCE_MS)
@@ -362,7 +359,7 @@ def test_while_no_sensor_is_received_no_walk_is_started(
     assert primary.is_enabled
 
 
-def test_without_sensors_it_cannot_be_entered(look: ThemeNotifier, visit: Visit) -> None:
-    step = WalkingStep(look, visit)
+def test_without_sensors_it_cannot_be_entered(visit: Visit) -> None:
+    step = WalkingStep(visit)
     assert step.cannot_enter == "Enter the patient's code first."
     assert Joint.LEFT_KNEE not in visit.sensors.joints

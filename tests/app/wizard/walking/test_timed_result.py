@@ -4,7 +4,6 @@ from dataclasses import replace
 
 from pytestqt.qtbot import QtBot
 
-from app.theme.notifier import ThemeNotifier
 from app.widgets.table import TableRow
 from app.widgets.table_cells import TextCell
 from app.wizard.evaluation import failure_in_words
@@ -25,7 +24,7 @@ def texts(row: TableRow) -> list[str]:
 
 
 def shown(qtbot: QtBot, *attempts: TimedAttempt) -> list[list[str]]:
-    view = TimedResultView(ThemeNotifier())
+    view = TimedResultView()
     qtbot.addWidget(view)
     view.show_state(TimedResult(attempts, [f"A{k} Shoes" for k in range(1, len(attempts) + 1)]))
     return list(map(texts, view.attempts.cells.rows))
@@ -42,7 +41,7 @@ def test_one_attempt_has_no_mean(qtbot: QtBot) -> None:
 
 
 def test_what_an_analysis_that_ended_early_left_open_is_not_stated_to_be_analysed(qtbot: QtBot) -> None:
-    view = TimedResultView(ThemeNotifier())
+    view = TimedResultView()
     qtbot.addWidget(view)
     open_still = TimedResult([replace(attempt(1, 9.0), found=None)], ["A1 Shoes"])
     view.show_state(open_still)

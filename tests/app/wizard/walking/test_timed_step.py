@@ -7,7 +7,6 @@ import pytest
 from PySide6.QtCore import QTimer
 from pytestqt.qtbot import QtBot
 
-from app.theme.notifier import ThemeNotifier
 from app.wizard.keys import Intent, KeyAction
 from app.wizard.visit import Visit
 from app.wizard.walking.step import WalkingStep
@@ -30,9 +29,7 @@ def simulated_session() -> Session:
 
 
 @pytest.fixture
-def step(
-    qtbot: QtBot, look: ThemeNotifier, visit: Visit, worn: dict[str, Site], patient_time: PatientTime
-) -> Iterator[WalkingStep]:
+def step(qtbot: QtBot, visit: Visit, worn: dict[str, Site], patient_time: PatientTime) -> Iterator[WalkingStep]:
     """Of a patient who has stood still, entered, and looked at as the wizard does."""
     begin(qtbot, visit, worn, Patient(code="DEMO-7"))
     patient_time.is_held = lambda: visit.recordings.is_recording and not visit.recordings.has_begun
@@ -44,7 +41,7 @@ def step(
     patient_time.wait(qtbot, 4.0)
     with qtbot.waitSignal(visit.recordings.ended, timeout=PATIENCE_MS):
         visit.recordings.stop()
-    step = WalkingStep(look, visit)
+    step = WalkingStep(visit)
     qtbot.addWidget(step.page)
     step.page.resize(1064, 600)
     step.page.show()

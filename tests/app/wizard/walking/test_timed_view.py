@@ -6,7 +6,6 @@ from dataclasses import replace
 import pytest
 from pytestqt.qtbot import QtBot
 
-from app.theme.notifier import ThemeNotifier
 from app.wizard.walking.timed_view import TimedView, TimedViewState, distance_words, status_words, time_text
 from app.wording.translation import use_language
 from core.body import Side, Site
@@ -51,9 +50,9 @@ def test_a_distance_that_cannot_be_reported_is_a_dash_with_its_reason() -> None:
     assert distance_words(far) == ("362", "")
 
 
-def test_the_status_has_its_room_in_german(qtbot: QtBot, look: ThemeNotifier) -> None:
+def test_the_status_has_its_room_in_german(qtbot: QtBot) -> None:
     use_language("de")
-    view = TimedView(look)
+    view = TimedView()
     qtbot.addWidget(view)
     view.resize(1016, 640)
     view.show()
@@ -66,7 +65,7 @@ def test_the_status_has_its_room_in_german(qtbot: QtBot, look: ThemeNotifier) ->
 
 
 def test_every_digit_has_a_cell_of_its_own(qtbot: QtBot) -> None:
-    view = TimedView(ThemeNotifier())
+    view = TimedView()
     qtbot.addWidget(view)
     view.resize(1016, 600)
     view.show()
@@ -81,7 +80,7 @@ def test_every_digit_has_a_cell_of_its_own(qtbot: QtBot) -> None:
 
 
 def test_who_listens_is_reported_once_a_second_and_the_end(qtbot: QtBot) -> None:
-    view = TimedView(ThemeNotifier())
+    view = TimedView()
     qtbot.addWidget(view)
     view.show_state(replace(TIMING, now_s=4.2))
     first = view.accessibleDescription()
