@@ -24,10 +24,22 @@ DOT, DOT_EDGE = 2.6, 1.3
 CHIP, KEY_LINE, KEY_GAP, KEY_APART = 13.0, 15.0, 8.0, 4.0
 SWATCH: Size = (12.0, 7.0)
 DROP = 3.2  # from the middle of small letters to the line that they stand on
+HIDDEN_PADDING = 6.0
 LENGTHS = Lengths(
-    *(3.0, 6.0, 12.5 - DROP, 0.5, 0.6),
-    *(BAR, 0.7, DOT + DOT_EDGE, 2.6, 11.5),
-    *(CHIP, 6.0, 3 * 6.0 + CHIP, 30.0),
+    tick=3.0,
+    label_apart=6.0,
+    percents_below=12.5 - DROP,
+    zero=0.5,
+    axis=0.6,
+    bar=BAR,
+    leader=0.7,
+    dot=DOT + DOT_EDGE,
+    halo=2.6,
+    line=11.5,
+    chip=CHIP,
+    hidden_padding=HIDDEN_PADDING,
+    hidden_margins=3 * HIDDEN_PADDING + CHIP,
+    hidden_height=30.0,
 )
 CURVES = {Side.LEFT: LIGHT.left, Side.RIGHT: LIGHT.right}
 LETTERS = {Side.LEFT: LIGHT.left_text, Side.RIGHT: LIGHT.right_text}

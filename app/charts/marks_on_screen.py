@@ -39,9 +39,20 @@ class ScreenCanvas:
         c, px = theme.colours, theme.px
         self._tones = {Tone.INK: c.ink, Tone.NOTE: c.ink2, Tone.AXIS: c.control, Tone.INSIDE_ERROR: c.control}
         self.lengths = Lengths(
-            *(px(TICK), 2 * px(TICK), px(TICK) + (px(TICKS_HEIGHT) - px(TICK)) / 2, 1, 1),
-            *(BAR_PX, HAIRLINE_PX, px(LABEL_DOT + LABEL_DOT_EDGE_PX), px(HALO_PX), px(LINE_HEIGHT)),
-            *(px(CHIP), px(HIDDEN_PADDING), px(3 * HIDDEN_PADDING + CHIP), px(HIDDEN_HEIGHT)),
+            tick=px(TICK),
+            label_apart=2 * px(TICK),
+            percents_below=px(TICK) + (px(TICKS_HEIGHT) - px(TICK)) / 2,
+            zero=HAIRLINE_PX,
+            axis=HAIRLINE_PX,
+            bar=BAR_PX,
+            leader=HAIRLINE_PX,
+            dot=px(LABEL_DOT + LABEL_DOT_EDGE_PX),
+            halo=px(HALO_PX),
+            line=px(LINE_HEIGHT),
+            chip=px(CHIP),
+            hidden_padding=px(HIDDEN_PADDING),
+            hidden_margins=px(3 * HIDDEN_PADDING + CHIP),
+            hidden_height=px(HIDDEN_HEIGHT),
         )
 
     def stroke(self, start: tuple[float, float], end: tuple[float, float], tone: Tone, width: float) -> None:
