@@ -10,6 +10,7 @@ from PySide6.QtGui import QAccessible, QColor, QPainter, QPainterPath, QPen, QPo
 from PySide6.QtWidgets import QStyleOptionGraphicsItem, QWidget
 
 from app.charts.axes import AXIS_WIDTH, RIGHT_MARGIN, range_for
+from app.charts.marks import stretches
 from app.plots.thinning import envelope, thin
 from app.theme.current import current_theme
 from app.wording.numbers import MINUS, clock
@@ -283,9 +284,7 @@ class _CurveItem(pg.GraphicsObject):  # type: ignore[misc]  # pyqtgraph has no t
 
 def runs(values: FloatArray) -> list[slice]:
     """Give the stretches without a gap."""
-    known = np.concatenate([[False], np.isfinite(values), [False]]).astype(np.int8)
-    borders = np.flatnonzero(np.diff(known))
-    return [slice(int(start), int(end)) for start, end in borders.reshape(-1, 2)]
+    return [slice(first, last + 1) for first, last in stretches(np.isfinite(values))]
 
 
 def _polygon(x: FloatArray, y: FloatArray) -> QPolygonF:

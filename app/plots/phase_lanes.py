@@ -13,6 +13,7 @@ from PySide6.QtGui import QAccessible, QColor, QMouseEvent, QPainter, QPaintEven
 from PySide6.QtWidgets import QGridLayout, QHBoxLayout, QSizePolicy, QWidget
 
 from app.charts.axes import AXIS_WIDTH, RIGHT_MARGIN
+from app.charts.marks import stretches
 from app.theme.current import current_theme, px
 from app.theme.leg_chip import CHIP, paint_chip
 from app.theme.theme import Theme
@@ -295,10 +296,9 @@ class PhaseLanes(QWidget):
     ) -> None:
         """Where the phases are known, in one piece each, with what to do."""
         theme = current_theme()
-        edges = np.flatnonzero(np.diff(np.concatenate([[False], known, [False]]).astype(np.int8)))
         painter.setFont(theme.font(12))
-        for start, end in edges.reshape(-1, 2).tolist():
-            box = QRectF(left[start], area.top(), right[end - 1] - left[start], area.height())
+        for start, last in stretches(known):
+            box = QRectF(left[start], area.top(), right[last] - left[start], area.height())
             painter.fillRect(box, QColor(theme.colours.sunken))
             seen = box.intersected(area)
             painter.setPen(QColor(theme.colours.ink2))

@@ -18,6 +18,7 @@ from app.widgets.limb import limb_outline
 from app.widgets.painted_text import LEFT, PaintedText
 from app.widgets.text import MEDIUM, SEMIBOLD, Text
 from app.widgets.themed import Themed
+from app.wording.numbers import MINUS
 from app.wording.translation import later, tr
 from core.body import Side
 from core.samples import FloatArray
@@ -172,7 +173,7 @@ class _Picture(Themed):
             if curve is None or not np.isfinite(curve).all():
                 continue
             angle = float(np.interp(self.percent, np.arange(len(curve)), curve))
-            found[side] = tr("knee {angle:.0f}°").format(angle=angle).replace("-", "\N{MINUS SIGN}")
+            found[side] = tr("knee {angle:.0f}°").format(angle=angle).replace("-", MINUS)
         return found
 
     def paintEvent(self, _event: QPaintEvent) -> None:
