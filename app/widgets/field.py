@@ -3,7 +3,7 @@
 import math
 import unicodedata
 
-from PySide6.QtCore import QEvent, QRectF, QSize, Qt, Signal
+from PySide6.QtCore import QRectF, QSize, Qt, Signal
 from PySide6.QtGui import (
     QAccessible,
     QAccessibleAnnouncementEvent,
@@ -18,7 +18,7 @@ from PySide6.QtGui import (
 )
 from PySide6.QtWidgets import QHBoxLayout, QLineEdit, QSizePolicy, QVBoxLayout, QWidget
 
-from app.theme.current import current_theme, px, scaled
+from app.theme.current import current_theme, on_theme, px, scaled
 from app.theme.icons import Icon
 from app.theme.leg_chip import paint_chip
 from app.theme.style import IS_WRONG
@@ -272,7 +272,7 @@ class _Box(QLineEdit):
         self.setSizePolicy(QSizePolicy.Policy.Expanding, QSizePolicy.Policy.Fixed)
         if side is not None:
             self.setAlignment(Qt.AlignmentFlag.AlignRight)
-        self._apply_theme()
+        on_theme(self._apply_theme)
 
     def set_unit(self, unit: str) -> None:
         self.unit = unit
@@ -295,11 +295,6 @@ class _Box(QLineEdit):
 
     def wheelEvent(self, event: QWheelEvent) -> None:
         event.ignore()  # who scrolls past must not change a number
-
-    def changeEvent(self, event: QEvent) -> None:
-        super().changeEvent(event)
-        if event.type() is QEvent.Type.StyleChange:
-            self._apply_theme()
 
     def paintEvent(self, event: QPaintEvent) -> None:
         super().paintEvent(event)

@@ -14,7 +14,6 @@ from app.widgets.button import Button, ButtonKind
 from app.widgets.notice import Notice
 from app.widgets.painted_text import LEFT, PaintedText
 from app.widgets.text import MEDIUM, SEMIBOLD, Text
-from app.widgets.themed import Themed
 from app.wording.translation import tr
 
 LINE, MARK, GAP = 28, 18, 10
@@ -134,7 +133,7 @@ class SensorsProgress(QWidget):
         self._inside.setFixedWidth(min(px(WIDEST), self.width()))
 
 
-class _SensorLines(Themed):
+class _SensorLines(QWidget):
     """The sensors one below the other; screen readers are given all of them."""
 
     def __init__(self) -> None:
@@ -181,10 +180,6 @@ class _SensorLines(Themed):
             paint_icon(painter, _ICONS[line.state], mark, c.ink2 if line.state is LineState.TO_DO else c.ink)
         for text in self.painted_texts():
             text.paint(painter, c)
-
-    def _apply_theme(self) -> None:
-        self.updateGeometry()
-        self.update()
 
 
 _ICONS = {

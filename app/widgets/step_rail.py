@@ -11,14 +11,13 @@ from PySide6.QtGui import (
 )
 from PySide6.QtWidgets import QFrame, QScrollArea, QSizePolicy, QVBoxLayout, QWidget
 
-from app.theme.current import current_theme, scaled
+from app.theme.current import current_theme, on_theme, scaled
 from app.theme.ground import Ground, set_ground
 from app.theme.icons import Icon
 from app.widgets.header import ProductMark
 from app.widgets.heard_order import hear_as_laid_out
 from app.widgets.rail_row import BelowRow, RailButton, RailForm, RailRow
 from app.widgets.text import REGULAR, SEMIBOLD, Text
-from app.widgets.themed import Themed
 from app.wording.translation import tr
 
 
@@ -40,7 +39,7 @@ def home_below(*, can_lock: bool) -> tuple[BelowRow, ...]:
     )
 
 
-class StepRail(Themed):
+class StepRail(QWidget):
     """One stop for Tab: within it the arrows go from row to row, Enter or Space presses one."""
 
     accessible_role = QAccessible.Role.Grouping
@@ -63,7 +62,7 @@ class StepRail(Themed):
         self._tag = _NameTag(self)
         self._build()
         self.show_below(wizard_below())
-        self._apply_theme()
+        on_theme(self._apply_theme)
 
     @property
     def form(self) -> RailForm:

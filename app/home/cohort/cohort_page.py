@@ -10,7 +10,7 @@ from app.cohort.study.measures import in_order, measure_words
 from app.home.cohort.cohort_table import MOST_ROWS, groups_table
 from app.home.cohort.cohort_text import group_name, grouping_word, notes, sentence
 from app.plots.group_plot import GroupLine, GroupPlot
-from app.theme.current import current_theme
+from app.theme.current import current_theme, scaled
 from app.theme.icons import Icon
 from app.widgets.button import Button, ButtonKind
 from app.widgets.card import Card
@@ -19,7 +19,6 @@ from app.widgets.notice import Notice
 from app.widgets.segmented import Segmented
 from app.widgets.table import CellTable
 from app.widgets.text import MEDIUM, SEMIBOLD, Text
-from app.widgets.themed import Themed
 from app.widgets.toggle import Toggle
 from app.wording.translation import figure_text, tr, tr_n
 
@@ -30,7 +29,7 @@ NARROW_BELOW = 860  # px of the design: the table leaves columns out
 MOST_DRAWN = 16  # groups; those with most sessions
 
 
-class QuestionsPage(Themed):
+class QuestionsPage(QWidget):
     """Signals
     -------
     table_requested
@@ -82,7 +81,6 @@ class QuestionsPage(Themed):
         self._build()
         self._connect()
         self.show_nothing()
-        self._apply_theme()
 
     @property
     def question(self) -> GroupQuestion | None:
@@ -241,6 +239,11 @@ class QuestionsPage(Themed):
         for widget in (self.refusal, self._empty, self._controls, self.answer):
             self._column.addWidget(widget)
         self._column.addStretch(1)
+        scaled(self._column.setContentsMargins, MARGIN, 16, MARGIN, 20)
+        scaled(self._column.setSpacing, 12)
+        scaled(self._answer_column.setSpacing, 8)
+        for row in (self._halves, self._first_half, self._second_half):
+            scaled(row.setSpacing, GAP)
 
     def _connect(self) -> None:
         self.make_table.clicked.connect(self.making_requested)
@@ -254,14 +257,6 @@ class QuestionsPage(Themed):
     def _on_changed(self, _value: object = None) -> None:
         if (question := self.question) is not None:
             self.question_changed.emit(question)
-
-    def _apply_theme(self) -> None:
-        px = current_theme().px
-        self._column.setContentsMargins(px(MARGIN), px(16), px(MARGIN), px(20))
-        self._column.setSpacing(px(12))
-        self._answer_column.setSpacing(px(8))
-        for row in (self._halves, self._first_half, self._second_half):
-            row.setSpacing(px(GAP))
 
 
 def _drawn(found: GroupAnswer) -> list[GroupRow]:

@@ -14,7 +14,6 @@ from app.widgets.field import Field, NumberField
 from app.widgets.segmented import Segmented
 from app.widgets.tall_page import TallPage
 from app.widgets.text import MEDIUM, SEMIBOLD, Text
-from app.widgets.themed import Themed
 from app.wording.dates import date
 from app.wording.measures import goal_in_words, measure_name, required, short_unit, whose_name
 from app.wording.translation import tr
@@ -206,7 +205,7 @@ class GoalsPage(TallPage):
         self.value.set_unit(short_unit(self._column).strip())
 
 
-class _GoalRow(Themed):
+class _GoalRow(QWidget):
     """One goal: what it asks for, who agreed on it and when, and a button to take it back while it holds."""
 
     taken_back = Signal(object)

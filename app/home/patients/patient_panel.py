@@ -22,7 +22,7 @@ from app.summary.course_lanes import (
 from app.summary.course_words import NextKind, NextStep, value_in_words
 from app.summary.progress_words import progress_words
 from app.summary.visits import condition_in_words
-from app.theme.current import current_theme
+from app.theme.current import on_theme, scaled
 from app.theme.icons import Icon
 from app.widgets.button import Button, ButtonKind
 from app.widgets.card import Card
@@ -96,7 +96,7 @@ class PatientPanel(TallPage):
         self.none_yet.setText(tr("No visit yet."))
         self._build()
         self._connect()
-        self._apply_theme()
+        on_theme(self._fit_sessions)
 
     @property
     def tab_order(self) -> list[QWidget]:
@@ -203,15 +203,11 @@ class PatientPanel(TallPage):
         self.column.addWidget(self.course)
         self.column.addWidget(self.visits_card)
         self.column.addStretch(1)
-
-    def _apply_theme(self) -> None:
-        px = current_theme().px
-        self.column.setSpacing(px(12))
-        self._statement.setSpacing(px(2))
+        scaled(self.column.setSpacing, 12)
+        scaled(self._statement.setSpacing, 2)
         for row in (self._who, self._next_row):
-            row.setSpacing(px(16))
-        self.none_yet.setMinimumHeight(px(72))
-        self._fit_sessions()
+            scaled(row.setSpacing, 16)
+        scaled(self.none_yet.setMinimumHeight, 72)
 
     def _fit_sessions(self) -> None:
         """As high as all lines are: it is the panel that scrolls."""

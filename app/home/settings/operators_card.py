@@ -8,7 +8,7 @@ from PySide6.QtWidgets import QHBoxLayout, QVBoxLayout, QWidget
 
 from app.home.settings.settings_card import SettingsCard
 from app.system.passphrases import REFUSED, strength_in_words, strength_of
-from app.theme.current import px
+from app.theme.current import scaled
 from app.theme.icons import Icon
 from app.widgets.button import Button, ButtonKind
 from app.widgets.choice import Choice
@@ -52,6 +52,7 @@ class OperatorsCard(SettingsCard):
         self.add = Button(tr("Add user"), ButtonKind.SECONDARY, Icon.ADD)
         super().__init__(tr("Users of this library"))
         self.column.addLayout(self.rows)
+        scaled(self.rows.setSpacing, 4)
         self.fill(self.leaving_words)
         self.add_left(self.remove, self.keep)
         self.fill(self.code, self.name, Text(tr("Role"), weight=MEDIUM))
@@ -147,10 +148,6 @@ class OperatorsCard(SettingsCard):
         else:
             name = self.name.text.strip()
             self.added.emit(self.code.text.strip(), name, str(self.role.currentData()), self.first.text)
-
-    def _apply_theme(self) -> None:
-        super()._apply_theme()
-        self.rows.setSpacing(px(4))
 
 
 class _OperatorRow(QWidget):
