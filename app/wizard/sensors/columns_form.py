@@ -10,14 +10,13 @@ from enum import StrEnum
 from PySide6.QtCore import QSignalBlocker, Signal
 from PySide6.QtWidgets import QBoxLayout, QGridLayout, QHBoxLayout, QVBoxLayout, QWidget
 
-from app.theme.current import current_theme, px
+from app.theme.current import px, scaled
 from app.theme.icons import Icon
 from app.widgets.button import Button, ButtonKind
 from app.widgets.card import Card
 from app.widgets.choice import Choice
 from app.widgets.notice import Notice
 from app.widgets.text import SEMIBOLD, Text
-from app.widgets.themed import Themed
 from app.wording.translation import tr
 
 PADDING = 24
@@ -57,7 +56,7 @@ class ColumnsReported:
         )
 
 
-class ColumnsForm(Themed):
+class ColumnsForm(QWidget):
     """
     Signals
     -------
@@ -72,7 +71,6 @@ class ColumnsForm(Themed):
 
     def __init__(self) -> None:
         super().__init__()
-        self._title = Text(tr("Meaning of the columns"), 20, SEMIBOLD, wraps=True)
         self._where = Text(size=14, tone="ink2", wraps=True)
         self._room = 0
         self.meanings: list[Choice] = []
@@ -101,7 +99,6 @@ class ColumnsForm(Themed):
         self.back = Button(tr("Other sources"), ButtonKind.QUIET)
         self._build()
         self.back.clicked.connect(self.back_pressed)
-        self._apply_theme()
 
     @property
     def reported(self) -> ColumnsReported:
@@ -192,10 +189,9 @@ class ColumnsForm(Themed):
         self._body.setDirection(way)
 
     def _build(self) -> None:
-        self._card = Card()
-        self._heading = QVBoxLayout()
-        self._heading.addWidget(self._title)
-        self._heading.addWidget(self._where)
+        card, heading = Card(), QVBoxLayout()
+        heading.addWidget(Text(tr("Meaning of the columns"), 20, SEMIBOLD, wraps=True))
+        heading.addWidget(self._where)
         self._grid = QGridLayout()
         self._grid.setColumnStretch(1, 1)
         self._units = QGridLayout()
@@ -206,27 +202,23 @@ class ColumnsForm(Themed):
         self._body = QBoxLayout(QBoxLayout.Direction.LeftToRight)
         self._body.addLayout(self._grid, 3)
         self._body.addLayout(self._units, 2)
-        self._card.column.addLayout(self._heading)
-        self._card.column.addWidget(self.notice)
-        self._card.column.addLayout(self._body)
-        self._card.column.addStretch(1)
+        card.column.addLayout(heading)
+        card.column.addWidget(self.notice)
+        card.column.addLayout(self._body)
+        card.column.addStretch(1)
         verbs = QHBoxLayout()
         verbs.addWidget(self.back)
         verbs.addStretch(1)
-        self._column = QVBoxLayout(self)
-        self._column.setContentsMargins(0, 0, 0, 0)
-        self._column.addWidget(self._card, 1)
-        self._column.addLayout(verbs)
-
-    def _apply_theme(self) -> None:
-        px = current_theme().px
-        self._column.setSpacing(px(12))
-        self._heading.setSpacing(px(4))
-        self._body.setSpacing(px(32))
+        column = QVBoxLayout(self)
+        column.setContentsMargins(0, 0, 0, 0)
+        column.addWidget(card, 1)
+        column.addLayout(verbs)
+        scaled(column.setSpacing, 12)
+        scaled(heading.setSpacing, 4)
+        scaled(self._body.setSpacing, 32)
         for grid in (self._grid, self._units):
-            grid.setHorizontalSpacing(px(16))
-            grid.setVerticalSpacing(px(8))
-        self._fit()
+            scaled(grid.setHorizontalSpacing, 16)
+            scaled(grid.setVerticalSpacing, 8)
 
 
 def _choose(choice: Choice, key: str) -> None:

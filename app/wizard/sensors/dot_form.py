@@ -11,7 +11,7 @@ from PySide6.QtCore import QModelIndex, QRectF, QSignalBlocker, Qt, Signal
 from PySide6.QtGui import QColor, QFontMetrics, QKeyEvent, QPainter
 from PySide6.QtWidgets import QBoxLayout, QHBoxLayout, QVBoxLayout, QWidget
 
-from app.theme.current import current_theme
+from app.theme.current import current_theme, scaled
 from app.theme.icons import Icon, paint_icon
 from app.theme.theme import Theme
 from app.widgets.button import Button, ButtonKind
@@ -21,7 +21,6 @@ from app.widgets.notice import Notice
 from app.widgets.table import CellTable, TableColumn, TableRow
 from app.widgets.table_cells import TableCell, TextCell
 from app.widgets.text import SEMIBOLD, Text
-from app.widgets.themed import Themed
 from app.wording.translation import tr, tr_n
 
 ROW, HEAD, PADDING, MARK = 44, 32, 10, 20
@@ -112,7 +111,7 @@ class DotList(CellTable):
             super().keyPressEvent(event)
 
 
-class DotForm(Themed):
+class DotForm(QWidget):
     """
     Signals
     -------
@@ -157,7 +156,6 @@ class DotForm(Themed):
         self._build()
         self._connect()
         self._show_consequence()
-        self._apply_theme()
 
     @property
     def tab_order(self) -> list[QWidget]:
@@ -256,9 +254,9 @@ class DotForm(Themed):
 
     def _build(self) -> None:
         self._card = Card()
-        self._heading = QVBoxLayout()
-        self._heading.addWidget(self._title)
-        self._heading.addWidget(self._lead)
+        heading = QVBoxLayout()
+        heading.addWidget(self._title)
+        heading.addWidget(self._lead)
         left, self._choices = QVBoxLayout(), QVBoxLayout()
         left.addWidget(self.list, 1)
         below = QHBoxLayout()
@@ -273,16 +271,21 @@ class DotForm(Themed):
         self._body = QBoxLayout(QBoxLayout.Direction.LeftToRight)
         self._body.addLayout(left, 3)
         self._body.addLayout(self._choices, 2)
-        self._card.column.addLayout(self._heading)
+        self._card.column.addLayout(heading)
         self._card.column.addWidget(self.notice)
         self._card.column.addLayout(self._body, 1)
         verbs = QHBoxLayout()
         verbs.addWidget(self.back)
         verbs.addStretch(1)
-        self._column = QVBoxLayout(self)
-        self._column.setContentsMargins(0, 0, 0, 0)
-        self._column.addWidget(self._card, 1)
-        self._column.addLayout(verbs)
+        column = QVBoxLayout(self)
+        column.setContentsMargins(0, 0, 0, 0)
+        column.addWidget(self._card, 1)
+        column.addLayout(verbs)
+        scaled(column.setSpacing, 12)
+        scaled(heading.setSpacing, 4)
+        scaled(self._body.setSpacing, 32)
+        scaled(self._choices.setSpacing, 6)
+        scaled(self.list.setMinimumHeight, HEAD + AT_LEAST_ROWS * ROW)
         self.show_message("")
 
     def _connect(self) -> None:
@@ -323,11 +326,3 @@ class DotForm(Themed):
     def _on_chosen(self) -> None:
         self._show_consequence()
         self.changed.emit()
-
-    def _apply_theme(self) -> None:
-        px = current_theme().px
-        self._column.setSpacing(px(12))
-        self._heading.setSpacing(px(4))
-        self._body.setSpacing(px(32))
-        self._choices.setSpacing(px(6))
-        self.list.setMinimumHeight(px(HEAD + AT_LEAST_ROWS * ROW))

@@ -6,14 +6,13 @@ from dataclasses import dataclass
 from PySide6.QtCore import Signal
 from PySide6.QtWidgets import QVBoxLayout, QWidget
 
-from app.theme.current import current_theme
+from app.theme.current import scaled
 from app.theme.icons import Icon
 from app.widgets.card import Card
 from app.widgets.notice import Notice
 from app.widgets.table import CellTable, TableColumn, TableRow
 from app.widgets.table_cells import TextCell
 from app.widgets.text import SEMIBOLD, Text
-from app.widgets.themed import Themed
 from app.wording.translation import tr, tr_n
 
 ROW, HEAD, PADDING = 48, 32, 10
@@ -31,7 +30,7 @@ class HeldLine:
     can_fetch: bool = False
 
 
-class MemoriesForm(Themed):
+class MemoriesForm(QWidget):
     """
     Signals
     -------
@@ -54,13 +53,13 @@ class MemoriesForm(Themed):
         card.column.addWidget(self.notice)
         card.column.addWidget(self.list, 1)
         card.column.addStretch()  # where there is no list
-        self._column = QVBoxLayout(self)
-        self._column.setContentsMargins(0, 0, 0, 0)
-        self._column.addWidget(card, 1)
+        column = QVBoxLayout(self)
+        column.setContentsMargins(0, 0, 0, 0)
+        column.addWidget(card, 1)
+        scaled(self.list.setMinimumHeight, HEAD + AT_LEAST_ROWS * ROW)
         self.list.chosen.connect(self._on_chosen)
         self.show_message("")
         self.show_lines(())
-        self._apply_theme()
 
     @property
     def tab_order(self) -> list[QWidget]:
@@ -114,10 +113,6 @@ class MemoriesForm(Themed):
 
     def _on_chosen(self, _number: object) -> None:
         self.chosen.emit()
-
-    def _apply_theme(self) -> None:
-        px = current_theme().px
-        self.list.setMinimumHeight(px(HEAD + AT_LEAST_ROWS * ROW))
 
 
 def _row(number: int, line: HeldLine) -> TableRow:
