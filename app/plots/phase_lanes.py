@@ -9,16 +9,17 @@ from dataclasses import dataclass
 
 import numpy as np
 from PySide6.QtCore import QPointF, QRectF, QSize, Qt, Signal
-from PySide6.QtGui import QAccessible, QColor, QMouseEvent, QPainter, QPaintEvent, QWheelEvent
-from PySide6.QtWidgets import QGridLayout, QHBoxLayout, QSizePolicy, QWidget
+from PySide6.QtGui import QAccessible, QColor, QMouseEvent, QPainter, QWheelEvent
+from PySide6.QtWidgets import QGridLayout, QHBoxLayout, QSizePolicy
 
 from app.charts.axes import AXIS_WIDTH, RIGHT_MARGIN
-from app.theme.current import current_theme, px
+from app.theme.current import current_theme, scaled
 from app.theme.leg_chip import CHIP, paint_chip
 from app.theme.theme import Theme
 from app.widgets.card import Card
 from app.widgets.chip import Chip
 from app.widgets.heard_order import hear_as_laid_out
+from app.widgets.painted import Painted
 from app.widgets.text import MEDIUM, SEMIBOLD, Text
 from app.wording.translation import joined, later, tr, tr_n
 from core.body import Side
@@ -190,7 +191,7 @@ class PhaseFrame(Card):
         self._reserve_room()
 
 
-class PhaseLanes(QWidget):
+class PhaseLanes(Painted):
     """Left above right, as wide as the curves above it. The mouse acts as on the curves."""
 
     accessible_role = QAccessible.Role.Chart
@@ -210,7 +211,8 @@ class PhaseLanes(QWidget):
 
     def show_lanes(self, lanes: Mapping[Side, Lane]) -> None:
         self.lanes = lanes
-        self._refresh()
+        self.updateGeometry()
+        self.update()
 
     def see(self, first_s: float, last_s: float) -> None:
         self._visible_s = (first_s, last_s)
@@ -220,12 +222,9 @@ class PhaseLanes(QWidget):
         self._cursor_s = time_s
         self.update()
 
-    def sizeHint(self) -> QSize:
+    def minimumSizeHint(self) -> QSize:
         px, count = current_theme().px, max(len(self.lanes), 1)
         return QSize(px(320), count * px(LANE) + (count - 1) * px(BETWEEN))
-
-    def minimumSizeHint(self) -> QSize:
-        return self.sizeHint()
 
     def area(self, side: Side) -> QRectF:
         """The lane of a leg in px of the widget."""
@@ -239,10 +238,8 @@ class PhaseLanes(QWidget):
         width = self.width() - px(AXIS_WIDTH) - px(RIGHT_MARGIN)
         return px(AXIS_WIDTH) + width * (time_s - first) / (last - first)
 
-    def paintEvent(self, _event: QPaintEvent) -> None:
+    def draw(self, painter: QPainter) -> None:
         theme = current_theme()
-        painter = QPainter(self)
-        painter.setRenderHint(QPainter.RenderHint.Antialiasing)
         for side, lane in self.lanes.items():
             area, chip = self.area(side), theme.px(CHIP)
             paint_chip(painter, QRectF(0, area.center().y() - chip / 2, chip, chip), side, theme)
@@ -305,28 +302,18 @@ class PhaseLanes(QWidget):
             if painter.fontMetrics().horizontalAdvance(tr(ZOOM_IN)) + theme.px(16) < seen.width():
                 painter.drawText(seen, Qt.AlignmentFlag.AlignCenter, tr(ZOOM_IN))
 
-    def _refresh(self) -> None:
-        self.updateGeometry()
-        self.update()
 
-
-class Swatch(QWidget):
+class Swatch(Painted):
     """How one phase looks, in grey."""
 
     def __init__(self, phase: Phase) -> None:
         super().__init__()
         self._phase = phase
-        self.setSizePolicy(QSizePolicy.Policy.Fixed, QSizePolicy.Policy.Fixed)
+        scaled(self.setFixedSize, 22, 12)
 
-    def sizeHint(self) -> QSize:
-        return QSize(px(22), px(12))
-
-    def paintEvent(self, _event: QPaintEvent) -> None:
-        theme = current_theme()
-        painter = QPainter(self)
-        painter.setRenderHint(QPainter.RenderHint.Antialiasing)
-        c = theme.colours
-        paint_phase(painter, self._phase, QRectF(self.rect()), QColor(c.ink2), QColor(c.band_1sd), theme)
+    def draw(self, painter: QPainter) -> None:
+        c = current_theme().colours
+        paint_phase(painter, self._phase, QRectF(self.rect()), QColor(c.ink2), QColor(c.band_1sd), current_theme())
 
 
 def paint_phase(painter: QPainter, phase: Phase, box: QRectF, full: QColor, pale: QColor, theme: Theme) -> None:
