@@ -204,16 +204,16 @@ class _TopicList(QWidget):
         self.setAccessibleName(tr("Topics"))
         self._group = QButtonGroup(self)
         self._by_topic = {topic: _TopicRow(topic_title(topic)) for topic in Topic}
-        self._column = QVBoxLayout(self)
-        self._column.setContentsMargins(0, 0, 0, 0)
-        self._column.setSpacing(2)
+        column = QVBoxLayout(self)
+        column.setContentsMargins(0, 0, 0, 0)
+        column.setSpacing(2)
         begun = {Topic(group): group for group in TopicGroup}
         for topic, row in self._by_topic.items():
             if topic in begun:
-                self._column.addWidget(_GroupTitle(group_title(begun[topic])))
+                column.addWidget(_GroupTitle(group_title(begun[topic])))
             self._group.addButton(row)
-            self._column.addWidget(row)
-        self._column.addStretch(1)
+            column.addWidget(row)
+        column.addStretch(1)
         self._group.buttonClicked.connect(self._on_clicked)
         self._group.buttonToggled.connect(self._on_toggled)
 

@@ -3,7 +3,7 @@
 from pathlib import Path
 
 from PySide6.QtCore import Qt, Signal
-from PySide6.QtGui import QColor, QKeySequence, QPainter, QPaintEvent, QResizeEvent, QShortcut
+from PySide6.QtGui import QKeySequence, QResizeEvent, QShortcut
 from PySide6.QtWidgets import QFrame, QHBoxLayout, QScrollArea, QStackedWidget, QVBoxLayout, QWidget
 
 from app.home.again.analyse_again_page import AnalyseAgainPage
@@ -27,7 +27,7 @@ from app.home.settings.controller import SettingsController
 from app.home.settings.settings_page import SettingsPage
 from app.summary.course_words import NextKind, NextStep
 from app.system.settings import Scheme, Settings
-from app.theme.current import current_theme
+from app.theme.current import current_theme, on_theme, scaled
 from app.theme.icons import Icon
 from app.widgets.action_bar import ActionBar, BarAction, BarState
 from app.widgets.banner import Banner
@@ -35,7 +35,6 @@ from app.widgets.grid import COMPACT_BELOW
 from app.widgets.rail_row import RailForm, RailRow, StepState
 from app.widgets.start_pages import WorkingPage
 from app.widgets.step_rail import StepRail, home_below
-from app.widgets.themed import Themed
 from app.widgets.toast import Toast
 from app.wording.findings import place
 from app.wording.translation import tr
@@ -46,7 +45,7 @@ WIDE_FROM = 1800
 PATIENTS, DEMONSTRATION, IMPORT, QUESTIONS = range(4)
 
 
-class Home(Themed):
+class Home(QWidget):
     session_requested = Signal(object)  # the StoredPatient of a new session, or None: a new patient
     session_opened = Signal(object)  # UUID
     report_requested = Signal(object)  # UUID of the session
@@ -81,7 +80,8 @@ class Home(Themed):
         self._build()
         self._connect()
         self._go_to(self.page)
-        self._apply_theme()
+        scaled(self._banner_row.setContentsMargins, 24, 0, 24, 0)
+        on_theme(self._fit)
 
     @property
     def settings(self) -> SettingsController:
@@ -230,9 +230,6 @@ class Home(Themed):
             AnalyseAgainPage | GoalsPage | HomePage | ImportPage | RepeatabilityPage | SettingsPage | QuestionsPage,
         ):
             page.focus()
-
-    def paintEvent(self, _event: QPaintEvent) -> None:
-        QPainter(self).fillRect(self.rect(), QColor(current_theme().colours.ground))
 
     def resizeEvent(self, event: QResizeEvent) -> None:
         super().resizeEvent(event)
@@ -571,9 +568,3 @@ class Home(Themed):
             self._repeatability.stop()
         else:
             self.importing.stop()
-
-    def _apply_theme(self) -> None:
-        px = current_theme().px
-        self._banner_row.setContentsMargins(px(24), 0, px(24), 0)
-        self._fit()
-        self.update()

@@ -7,7 +7,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from PySide6.QtCore import QSize, Qt, QUrl, Signal
-from PySide6.QtGui import QColor, QPainter, QPaintEvent, QResizeEvent
+from PySide6.QtGui import QResizeEvent
 from PySide6.QtWidgets import (
     QFileDialog,
     QFrame,
@@ -19,8 +19,10 @@ from PySide6.QtWidgets import (
 )
 
 from app.results.detail_pages import DetailPages
-from app.theme.current import current_theme, px
+from app.theme.current import current_theme, on_theme, px, scaled
+from app.theme.ground import set_ground
 from app.theme.icons import Icon
+from app.widgets.action_bar import BAR_GROUND
 from app.widgets.banner import Banner
 from app.widgets.button import Button, ButtonKind
 from app.widgets.folder_dialog import ask_for_folder
@@ -28,7 +30,6 @@ from app.widgets.header import Header
 from app.widgets.page_stack import PageStack
 from app.widgets.start_pages import EmptyPage, WorkingPage
 from app.widgets.text import Text
-from app.widgets.themed import Themed
 from app.wording.body import side_name
 from app.wording.findings import place
 from app.wording.translation import PURPOSE, filled, later, tr
@@ -58,7 +59,7 @@ ENDED_EARLY = (
 )
 
 
-class SessionScreen(Themed):
+class SessionScreen(QWidget):
     """A header, a page, an action bar. `set_way_back`: where there is something to go back to."""
 
     left = Signal()
@@ -81,7 +82,8 @@ class SessionScreen(Themed):
         self.bar = _ActionBar()
         self._build()
         self._connect()
-        self._apply_theme()
+        scaled(self._banner_row.setContentsMargins, 24, 0, 24, 0)
+        on_theme(self._fit)
         self._show_page(self.empty)
 
     @property
@@ -149,9 +151,6 @@ class SessionScreen(Themed):
     def resizeEvent(self, event: QResizeEvent) -> None:
         super().resizeEvent(event)
         self._fit()
-
-    def paintEvent(self, _event: QPaintEvent) -> None:
-        QPainter(self).fillRect(self.rect(), QColor(current_theme().colours.ground))
 
     def _build(self) -> None:
         for page in (self.empty, self.working):
@@ -288,14 +287,8 @@ class SessionScreen(Themed):
             _log.error("the analysis ended early", exc_info=error)
             self.banner.show_message(*map(tr, ENDED_EARLY))
 
-    def _apply_theme(self) -> None:
-        px = current_theme().px
-        self._banner_row.setContentsMargins(px(24), 0, px(24), 0)
-        self._fit()
-        self.update()
 
-
-class _ActionBar(Themed):
+class _ActionBar(QWidget):
     """The ways on from a result. Where they do not all fit, the demonstration, which has its key, is left out."""
 
     def __init__(self) -> None:
@@ -315,7 +308,9 @@ class _ActionBar(Themed):
         self._row.addWidget(self.open_demonstration)
         self._row.addWidget(self.how_found)
         self._row.addWidget(self._purpose, 1)
-        self._apply_theme()
+        set_ground(self, BAR_GROUND)
+        scaled(self.setFixedHeight, BAR)
+        self.set_narrow(is_narrow=False)
 
     def show_message(self, note: str) -> None:
         """Say what must be known of the curves, before what the program is for."""
@@ -324,7 +319,9 @@ class _ActionBar(Themed):
     def set_narrow(self, is_narrow: bool) -> None:
         self._is_narrow = is_narrow
         self._purpose.setVisible(not is_narrow)
-        self._apply_theme()
+        side = 16 if is_narrow else 24
+        scaled(self._row.setContentsMargins, side, 0, side, 0)
+        scaled(self._row.setSpacing, 8 if is_narrow else 16)
         self._leave_out()
 
     def minimumSizeHint(self) -> QSize:
@@ -342,21 +339,6 @@ class _ActionBar(Themed):
         needed += [] if self._is_narrow else [px(PURPOSE_WIDTH)]
         room = self.width() - 2 * self._row.contentsMargins().left() - self._row.spacing() * (len(needed) - 1)
         self.open_demonstration.setVisible(sum(needed) <= room)
-
-    def paintEvent(self, _event: QPaintEvent) -> None:
-        theme = current_theme()
-        painter = QPainter(self)
-        painter.fillRect(self.rect(), QColor(theme.colours.surface))
-        painter.setPen(theme.pen(theme.colours.line, 1))
-        painter.drawLine(self.rect().topLeft(), self.rect().topRight())
-
-    def _apply_theme(self) -> None:
-        px = current_theme().px
-        side = px(16 if self._is_narrow else 24)
-        self._row.setContentsMargins(side, 0, side, 0)
-        self._row.setSpacing(px(8 if self._is_narrow else 16))
-        self.setFixedHeight(px(BAR))
-        self.update()
 
 
 def _in_words(patient: "Patient") -> str:

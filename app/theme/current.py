@@ -40,6 +40,11 @@ def scaled(setter: Callable[..., object], *lengths: float) -> None:
     setter(*(px(one) if one else 0 for one in lengths))
 
 
+def on_theme(method: Callable[[], object]) -> None:
+    """Call a method of a widget now and whenever the theme changes, for what it measures by hand."""
+    scaled(method)
+
+
 def set_dark(is_dark: bool) -> None:
     set_theme(replace(current_theme(), colours=DARK if is_dark else LIGHT))
 

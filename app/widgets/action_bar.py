@@ -11,17 +11,16 @@ from PySide6.QtCore import QPoint, QRect, QRectF, QSize, Qt, Signal
 from PySide6.QtGui import (
     QAccessible,
     QAccessibleAnnouncementEvent,
-    QColor,
     QFontMetrics,
     QMouseEvent,
     QPainter,
     QPaintEvent,
-    QPalette,
     QResizeEvent,
 )
 from PySide6.QtWidgets import QSizePolicy, QWidget
 
 from app.theme.current import current_theme, px
+from app.theme.ground import Ground, set_ground
 from app.theme.icons import Icon, paint_icon
 from app.widgets.button import HEIGHT, Button, ButtonKind
 from app.widgets.grid import LEAST, NARROW_BELOW, side_margin
@@ -37,6 +36,8 @@ PRIMARY_WIDTH = 208
 NOTE_WIDTH = 300  # longer words beside a verb take a second line
 NOTE_AT_LEAST = 170
 DOT = 16
+BAR_GROUND = Ground("surface", "line", edge=Qt.Edge.TopEdge)
+INVERSE = Ground("inv", edge=Qt.Edge.TopEdge)
 
 Row = Sequence[QWidget]
 
@@ -177,16 +178,6 @@ class ActionBar(Themed):
         if event.size().width() != event.oldSize().width():
             self._arrange()
 
-    def paintEvent(self, _event: QPaintEvent) -> None:
-        theme = current_theme()
-        c = theme.colours
-        is_inverse = self._state.recording is not None
-        painter = QPainter(self)
-        painter.fillRect(self.rect(), QColor(c.inv if is_inverse else c.surface))
-        if not is_inverse:
-            painter.setPen(theme.pen(c.line, 1))
-            painter.drawLine(self.rect().topLeft(), self.rect().topRight())
-
     def _show(self) -> None:
         state = self._state
         recording = state.recording
@@ -231,16 +222,10 @@ class ActionBar(Themed):
                 part.raise_()  # in reading order: Qt lists the parts as they are stacked
 
     def _colour(self) -> None:
-        c = current_theme().colours
         is_inverse = self._state.recording is not None
-        for text, colour in (
-            (self._title, c.inv_ink if is_inverse else c.ink),
-            (self._note, c.inv_ink2 if is_inverse else c.ink2),
-        ):
-            palette = text.palette()
-            palette.setColor(QPalette.ColorRole.WindowText, QColor(colour))
-            text.setPalette(palette)
-        self.update()
+        self._title.set_tone("inv_ink" if is_inverse else "ink")
+        self._note.set_tone("inv_ink2" if is_inverse else "ink2")
+        set_ground(self, INVERSE if is_inverse else BAR_GROUND)
 
     def _arrange(self) -> None:
         """Put all in one row, or the words above the verbs, or the verbs in as many rows as they need."""

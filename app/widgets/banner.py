@@ -2,13 +2,12 @@
 
 from PySide6.QtCore import QPointF, QRectF, Signal
 from PySide6.QtGui import QAccessible, QAccessibleAnnouncementEvent, QColor, QPainter, QPaintEvent
-from PySide6.QtWidgets import QHBoxLayout, QSizePolicy, QVBoxLayout
+from PySide6.QtWidgets import QHBoxLayout, QSizePolicy, QVBoxLayout, QWidget
 
-from app.theme.current import current_theme
+from app.theme.current import current_theme, scaled
 from app.theme.icons import Icon, paint_icon
 from app.widgets.button import Button, ButtonKind
 from app.widgets.text import SEMIBOLD, Text
-from app.widgets.themed import Themed
 from app.wording.translation import tr
 
 HEIGHT = 64
@@ -16,7 +15,7 @@ MARK = 36
 ABOVE = 12  # clear of the header; gone together with the banner
 
 
-class Banner(Themed):
+class Banner(QWidget):
     """Hidden until it is given something to show."""
 
     accessible_role = QAccessible.Role.AlertMessage
@@ -37,13 +36,15 @@ class Banner(Themed):
         words.addWidget(self._what)
         words.addWidget(self._next)
         words.addStretch(1)
-        self._row = QHBoxLayout(self)
-        self._row.addLayout(words, 1)
-        self._row.addWidget(self.act)
-        self._row.addWidget(self.dismiss)
+        row = QHBoxLayout(self)
+        row.addLayout(words, 1)
+        row.addWidget(self.act)
+        row.addWidget(self.dismiss)
         self.act.clicked.connect(self.acted)
         self.dismiss.clicked.connect(self._on_dismiss_clicked)
-        self._apply_theme()
+        scaled(row.setContentsMargins, 16 + MARK + 12, ABOVE + 8, 8, 8)
+        scaled(row.setSpacing, 16)
+        scaled(self.setMinimumHeight, HEIGHT + ABOVE)
         self.hide()
 
     @property
@@ -78,9 +79,3 @@ class Banner(Themed):
     def _on_dismiss_clicked(self) -> None:
         self.hide()
         self.dismissed.emit()
-
-    def _apply_theme(self) -> None:
-        px = current_theme().px
-        self._row.setContentsMargins(px(16 + MARK + 12), px(ABOVE + 8), px(8), px(8))
-        self._row.setSpacing(px(16))
-        self.setMinimumHeight(px(HEIGHT + ABOVE))

@@ -1,11 +1,11 @@
 """The arrow before a change of the patient: filled beyond measurement error, outlined within."""
 
-from PySide6.QtCore import QPointF, QRectF, QSize, Qt
+from PySide6.QtCore import QPointF, QRectF, Qt
 from PySide6.QtGui import QColor, QPainter, QPaintEvent, QPolygonF
-from PySide6.QtWidgets import QSizePolicy, QWidget
+from PySide6.QtWidgets import QWidget
 
 from app.summary.progress_words import Arrow
-from app.theme.current import current_theme, px
+from app.theme.current import current_theme, scaled
 from app.theme.theme import Theme
 
 ARROW = 10  # px, wide and high
@@ -31,11 +31,7 @@ class ChangeArrow(QWidget):
     def __init__(self, arrow: Arrow) -> None:
         super().__init__()
         self.arrow = arrow
-        self.setSizePolicy(QSizePolicy.Policy.Fixed, QSizePolicy.Policy.Fixed)
-
-    def sizeHint(self) -> QSize:
-        side = px(ARROW + 2)
-        return QSize(side, side)
+        scaled(self.setFixedSize, ARROW + 2, ARROW + 2)
 
     def paintEvent(self, _event: QPaintEvent) -> None:
         paint_change_arrow(QPainter(self), QRectF(self.rect()), self.arrow, current_theme())

@@ -4,7 +4,7 @@ from PySide6.QtCore import QRectF, QSize
 from PySide6.QtGui import QAccessible, QPainter, QPaintEvent
 from PySide6.QtWidgets import QSizePolicy, QWidget
 
-from app.theme.current import current_theme, px
+from app.theme.current import current_theme, scaled
 from app.theme.leg_chip import CHIP, paint_chip
 from app.wording.translation import tr
 from core.body import Side
@@ -20,7 +20,7 @@ class Chip(QWidget):
     def __init__(self, side: Side) -> None:
         super().__init__()
         self._side = side
-        self.setSizePolicy(QSizePolicy.Policy.Fixed, QSizePolicy.Policy.Fixed)
+        scaled(self.setFixedSize, CHIP, CHIP)
         self.setAccessibleName(leg_name(side))
 
     @property
@@ -32,10 +32,6 @@ class Chip(QWidget):
             self._side = side
             self.setAccessibleName(leg_name(side))
             self.update()
-
-    def sizeHint(self) -> QSize:
-        chip = px(CHIP)
-        return QSize(chip, chip)
 
     def paintEvent(self, _event: QPaintEvent) -> None:
         paint_chip(QPainter(self), QRectF(self.rect()), self._side, current_theme())

@@ -16,15 +16,14 @@ from PySide6.QtGui import (
     QPalette,
     QWheelEvent,
 )
-from PySide6.QtWidgets import QHBoxLayout, QLineEdit, QSizePolicy, QVBoxLayout
+from PySide6.QtWidgets import QHBoxLayout, QLineEdit, QSizePolicy, QVBoxLayout, QWidget
 
-from app.theme.current import current_theme, px
+from app.theme.current import current_theme, px, scaled
 from app.theme.icons import Icon
 from app.theme.leg_chip import paint_chip
 from app.theme.style import IS_WRONG
 from app.widgets.icons import IconMark
 from app.widgets.text import MEDIUM, REGULAR, SEMIBOLD, Text
-from app.widgets.themed import Themed
 from app.wording.numbers import MINUS
 from app.wording.translation import short_figure, tr, within_sentence
 from core.body import Side
@@ -37,7 +36,7 @@ KEPT_CLEAR = 3  # px: Qt's own, on either side of the text
 TEXT, SIDE_TEXT = 16, 20  # a side's fields hold one figure each, read beside the patient
 
 
-class Field(Themed):
+class Field(QWidget):
     """Keeps what was typed, right or wrong.
 
     Parameters
@@ -87,16 +86,16 @@ class Field(Themed):
             self._box.setEchoMode(QLineEdit.EchoMode.Password)
         self.setFocusProxy(self._box)
         self.setSizePolicy(QSizePolicy.Policy.Expanding, QSizePolicy.Policy.Maximum)
-        self._above = QHBoxLayout()
-        self._above.addWidget(self._caption, 1)
-        self._above.addWidget(self._optional, 0, Qt.AlignmentFlag.AlignBottom)
-        self._below = QHBoxLayout()
-        self._below.addWidget(self._wrong_mark, 0, Qt.AlignmentFlag.AlignTop)
-        self._below.addWidget(self._wrong, 1)
-        self._column = QVBoxLayout(self)
-        self._column.addLayout(self._above)
-        self._column.addWidget(self._box)
-        self._column.addLayout(self._below)
+        above = QHBoxLayout()
+        above.addWidget(self._caption, 1)
+        above.addWidget(self._optional, 0, Qt.AlignmentFlag.AlignBottom)
+        below = QHBoxLayout()
+        below.addWidget(self._wrong_mark, 0, Qt.AlignmentFlag.AlignTop)
+        below.addWidget(self._wrong, 1)
+        column = QVBoxLayout(self)
+        column.addLayout(above)
+        column.addWidget(self._box)
+        column.addLayout(below)
         self._caption.setVisible(has_label)  # not before it has a parent: alone it would be a window
         self._optional.setVisible(has_label and is_optional)
         self._make_room("")
@@ -105,7 +104,10 @@ class Field(Themed):
         self._box.editingFinished.connect(self._on_editing_finished)
         self.set_unit(unit)
         self.set_wrong("")
-        self._apply_theme()
+        scaled(column.setContentsMargins, 0, 0, 0, 0)
+        scaled(column.setSpacing, 6)
+        scaled(above.setSpacing, 8)
+        scaled(below.setSpacing, 8)
 
     @property
     def line_edit(self) -> QLineEdit:
@@ -187,13 +189,6 @@ class Field(Themed):
     def _on_editing_finished(self) -> None:
         self._is_pending = False
         self.committed.emit()
-
-    def _apply_theme(self) -> None:
-        px = current_theme().px
-        self._column.setContentsMargins(0, 0, 0, 0)
-        self._column.setSpacing(px(6))
-        self._above.setSpacing(px(8))
-        self._below.setSpacing(px(8))
 
 
 def one_line(text: str) -> str:

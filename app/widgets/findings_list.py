@@ -6,7 +6,7 @@ from PySide6.QtCore import QSize, Qt
 from PySide6.QtGui import QAccessible
 from PySide6.QtWidgets import QFrame, QHBoxLayout, QScrollArea, QVBoxLayout, QWidget
 
-from app.theme.current import current_theme, px
+from app.theme.current import px, scaled
 from app.theme.icons import SEVERITY_ICONS, Icon
 from app.widgets.icons import IconMark
 from app.widgets.text import SEMIBOLD, Text
@@ -35,6 +35,7 @@ class FindingsList(QScrollArea):
         self.setFocusPolicy(Qt.FocusPolicy.StrongFocus)  # so that the keys can scroll it
         self.setHorizontalScrollBarPolicy(Qt.ScrollBarPolicy.ScrollBarAlwaysOff)
         self.setAccessibleName(tr("Findings"))
+        scaled(self.setMinimumSize, *LEAST_SIZE)
 
     def show_findings(self, findings: Sequence[Finding]) -> None:
         findings = [one for one in findings if one.key not in USUAL]
@@ -53,11 +54,7 @@ class FindingsList(QScrollArea):
         self.setAccessibleDescription(" ".join(sentence(finding) for finding in findings) or tr(NOTHING))
 
     def sizeHint(self) -> QSize:
-        px = current_theme().px
-        return QSize(px(LEAST_SIZE[0]), px(LEAST_SIZE[1]))
-
-    def minimumSizeHint(self) -> QSize:
-        return self.sizeHint()
+        return self.minimumSize()
 
 
 class FindingRow(QWidget):

@@ -1,10 +1,10 @@
 """An icon in a page, beside its words."""
 
-from PySide6.QtCore import QRectF, QSize
+from PySide6.QtCore import QRectF
 from PySide6.QtGui import QPainter, QPaintEvent
-from PySide6.QtWidgets import QSizePolicy, QWidget
+from PySide6.QtWidgets import QWidget
 
-from app.theme.current import current_theme, px
+from app.theme.current import current_theme, scaled
 from app.theme.icons import Icon, paint_icon
 
 
@@ -13,16 +13,12 @@ class IconMark(QWidget):
 
     def __init__(self, icon: Icon, size: float = 20, tone: str = "ink") -> None:
         super().__init__()
-        self._icon, self._size, self._tone = icon, size, tone
-        self.setSizePolicy(QSizePolicy.Policy.Fixed, QSizePolicy.Policy.Fixed)
+        self._icon, self._tone = icon, tone
+        scaled(self.setFixedSize, size, size)
 
     def set_icon(self, icon: Icon) -> None:
         self._icon = icon
         self.update()
-
-    def sizeHint(self) -> QSize:
-        side = px(self._size)
-        return QSize(side, side)
 
     def paintEvent(self, _event: QPaintEvent) -> None:
         painter = QPainter(self)

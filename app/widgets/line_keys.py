@@ -2,11 +2,10 @@
 
 from collections.abc import Callable, Sequence
 
-from PySide6.QtCore import QSize
 from PySide6.QtGui import QPainter, QPaintEvent, QPen
-from PySide6.QtWidgets import QHBoxLayout, QSizePolicy, QWidget
+from PySide6.QtWidgets import QHBoxLayout, QWidget
 
-from app.theme.current import px
+from app.theme.current import px, scaled
 from app.widgets.text import Text
 
 KEY = 28
@@ -37,10 +36,8 @@ class _Line(QWidget):
     def __init__(self, pen_of: Callable[[], QPen]) -> None:
         super().__init__()
         self._pen_of = pen_of
-        self.setSizePolicy(QSizePolicy.Policy.Fixed, QSizePolicy.Policy.Preferred)
-
-    def sizeHint(self) -> QSize:
-        return QSize(px(KEY), px(16))
+        scaled(self.setFixedWidth, KEY)
+        scaled(self.setMinimumHeight, 16)
 
     def paintEvent(self, _event: QPaintEvent) -> None:
         painter = QPainter(self)

@@ -2,18 +2,18 @@
 
 from PySide6.QtCore import QRectF, Qt
 from PySide6.QtGui import QAccessible, QAccessibleAnnouncementEvent, QPainter, QPaintEvent
-from PySide6.QtWidgets import QHBoxLayout, QSizePolicy, QVBoxLayout
+from PySide6.QtWidgets import QHBoxLayout, QSizePolicy, QVBoxLayout, QWidget
 
-from app.theme.current import current_theme
+from app.theme.current import current_theme, scaled
+from app.theme.ground import Ground, set_ground
 from app.theme.icons import Icon, paint_icon
 from app.widgets.text import SEMIBOLD, Text
-from app.widgets.themed import Themed
 
 ICON = 22
 PADDING = 10
 
 
-class Notice(Themed):
+class Notice(QWidget):
     """Keeps its place while it has nothing to say, unless it is hidden. `padding`: above and below, px."""
 
     accessible_role = QAccessible.Role.Note
@@ -26,12 +26,13 @@ class Notice(Themed):
         self.setSizePolicy(QSizePolicy.Policy.Preferred, QSizePolicy.Policy.Preferred)  # fixed ones may not wrap
         self._what = Text(size=size, weight=SEMIBOLD, wraps=True)
         self._then = Text(size=14, tone="ink2", wraps=True)
-        self._words = QVBoxLayout()
-        self._words.addWidget(self._what)
-        self._words.addWidget(self._then)
-        self._row = QHBoxLayout(self)
-        self._row.addLayout(self._words, 1)
-        self._apply_theme()
+        words = QVBoxLayout()
+        words.addWidget(self._what)
+        words.addWidget(self._then)
+        row = QHBoxLayout(self)
+        row.addLayout(words, 1)
+        scaled(row.setContentsMargins, PADDING + ICON + 8, self._padding, PADDING, self._padding)
+        scaled(words.setSpacing, 2)
 
     @property
     def text(self) -> str:
@@ -43,6 +44,7 @@ class Notice(Themed):
             return
         is_news = what != self._what.text()
         self._icon, self._is_caution = icon, is_caution
+        set_ground(self, Ground("caution", "caution_edge") if is_caution else None)
         self._what.setText(what)
         self._what.setVisible(bool(what))
         self._then.setText(then)
@@ -58,9 +60,6 @@ class Notice(Themed):
         theme = current_theme()
         c, px = theme.colours, theme.px
         painter = QPainter(self)
-        if self._is_caution:
-            box = QRectF(self.rect()).adjusted(0.5, 0.5, -0.5, -0.5)
-            theme.paint_box(painter, box, c.caution, c.caution_edge, 1)
         if self._icon is not None:
             first = self._what if self._what.text() else self._then
             wraps = Qt.TextFlag.TextWordWrap
@@ -69,9 +68,3 @@ class Notice(Themed):
             middle = first.y() + above + first.fontMetrics().height() / 2
             mark = QRectF(px(PADDING), middle - px(ICON) / 2, px(ICON), px(ICON))
             paint_icon(painter, self._icon, mark, c.caution_ink if self._is_caution else c.ink)
-
-    def _apply_theme(self) -> None:
-        px = current_theme().px
-        above = px(self._padding)
-        self._row.setContentsMargins(px(PADDING + ICON + 8), above, px(PADDING), above)
-        self._words.setSpacing(px(2))

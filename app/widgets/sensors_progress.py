@@ -8,7 +8,7 @@ from PySide6.QtCore import QRectF, QSize, Qt, Signal
 from PySide6.QtGui import QFontMetrics, QPainter, QPaintEvent, QResizeEvent
 from PySide6.QtWidgets import QHBoxLayout, QProgressBar, QSizePolicy, QVBoxLayout, QWidget
 
-from app.theme.current import current_theme, px
+from app.theme.current import current_theme, on_theme, px, scaled
 from app.theme.icons import Icon, paint_icon
 from app.widgets.button import Button, ButtonKind
 from app.widgets.notice import Notice
@@ -52,7 +52,7 @@ class ProgressShown:
     is_running: bool = True
 
 
-class SensorsProgress(Themed):
+class SensorsProgress(QWidget):
     """
     Signals
     -------
@@ -73,13 +73,13 @@ class SensorsProgress(Themed):
         self.notice = Notice(size=16)
         self.stop = Button(tr("Cancel"), ButtonKind.SECONDARY, Icon.STOP)
         self._inside = QWidget()
-        self._column = QVBoxLayout(self._inside)
-        self._column.setContentsMargins(0, 0, 0, 0)
+        column = QVBoxLayout(self._inside)
+        column.setContentsMargins(0, 0, 0, 0)
         for part in (self._title, self._sentence):
             part.setAlignment(Qt.AlignmentFlag.AlignHCenter)
         for widget in (self._title, self._sentence, self._bar, self._lines, self.notice):
-            self._column.addWidget(widget)
-        self._column.addWidget(self.stop, 0, Qt.AlignmentFlag.AlignHCenter)
+            column.addWidget(widget)
+        column.addWidget(self.stop, 0, Qt.AlignmentFlag.AlignHCenter)
         outer = QVBoxLayout(self)
         outer.setContentsMargins(0, 0, 0, 0)
         middle = QHBoxLayout()
@@ -90,7 +90,9 @@ class SensorsProgress(Themed):
         outer.addLayout(middle)
         outer.addStretch(2)
         self.stop.clicked.connect(self.stop_pressed)
-        self._apply_theme()
+        scaled(column.setSpacing, 14)
+        scaled(self._bar.setFixedHeight, 8)
+        on_theme(self._fit)
 
     @property
     def shown(self) -> ProgressShown:
@@ -130,12 +132,6 @@ class SensorsProgress(Themed):
     def _fit(self) -> None:
         """Give it a width of its own: sentences that wrap ask for their height by that."""
         self._inside.setFixedWidth(min(px(WIDEST), self.width()))
-
-    def _apply_theme(self) -> None:
-        px = current_theme().px
-        self._column.setSpacing(px(14))
-        self._bar.setFixedHeight(px(8))
-        self._fit()
 
 
 class _SensorLines(Themed):

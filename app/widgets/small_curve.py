@@ -1,18 +1,17 @@
 """A curve as large as a line of words: whether there is anything in a recording, and when."""
 
 import numpy as np
-from PySide6.QtCore import QPointF, QSize
+from PySide6.QtCore import QPointF
 from PySide6.QtGui import QAccessible, QPainter, QPaintEvent, QPolygonF
-from PySide6.QtWidgets import QSizePolicy
+from PySide6.QtWidgets import QWidget
 
-from app.theme.current import current_theme, px
-from app.widgets.themed import Themed
+from app.theme.current import current_theme, scaled
 from core.samples import FloatArray
 
 SIZE = (120, 28)
 
 
-class SmallCurve(Themed):
+class SmallCurve(QWidget):
     """`name` is what readers of screens say of it. A gap in the values is one in the line."""
 
     accessible_role = QAccessible.Role.Graphic
@@ -21,16 +20,13 @@ class SmallCurve(Themed):
         super().__init__()
         self._time_s: FloatArray = np.empty(0)
         self._values: FloatArray = np.empty(0)
-        self.setSizePolicy(QSizePolicy.Policy.Fixed, QSizePolicy.Policy.Fixed)
+        scaled(self.setFixedSize, *SIZE)
         self.setAccessibleName(name)
 
     def show_curve(self, time_s: FloatArray, values: FloatArray) -> None:
         """(n,) each, thinned already; the lowest value is at the bottom."""
         self._time_s, self._values = time_s, values
         self.update()
-
-    def sizeHint(self) -> QSize:
-        return QSize(px(SIZE[0]), px(SIZE[1]))
 
     def paintEvent(self, _event: QPaintEvent) -> None:
         known = np.isfinite(self._values)
@@ -48,7 +44,3 @@ class SmallCurve(Themed):
         for start, end in zip(ends[::2], ends[1::2], strict=True):
             part = zip(x[start:end], y[start:end], strict=True)
             painter.drawPolyline(QPolygonF([QPointF(float(a), float(b)) for a, b in part]))
-
-    def _apply_theme(self) -> None:
-        self.updateGeometry()
-        self.update()

@@ -1,19 +1,18 @@
 """What is shown in place of a result before there is one: an empty page, and a page that works."""
 
 from PySide6.QtCore import Qt, Signal
-from PySide6.QtWidgets import QHBoxLayout, QProgressBar, QVBoxLayout
+from PySide6.QtWidgets import QHBoxLayout, QProgressBar, QVBoxLayout, QWidget
 
-from app.theme.current import current_theme
+from app.theme.current import scaled
 from app.theme.icons import Icon
 from app.widgets.button import Button, ButtonKind
 from app.widgets.text import SEMIBOLD, Text
-from app.widgets.themed import Themed
 from app.wording.translation import later, tr
 
 SENTENCE = later("No session is open.")
 
 
-class EmptyPage(Themed):
+class EmptyPage(QWidget):
     """One sentence and the two ways on."""
 
     def __init__(self) -> None:
@@ -33,21 +32,17 @@ class EmptyPage(Themed):
         self._column.addLayout(self._row)
         self._column.addWidget(self._hint, 0, Qt.AlignmentFlag.AlignHCenter)
         self._column.addStretch(1)
-        self._apply_theme()
+        scaled(self._column.setContentsMargins, 24, 24, 24, 24)
+        scaled(self._column.setSpacing, 24)
+        scaled(self._row.setSpacing, 16)
 
     def set_narrow(self, is_narrow: bool) -> None:
         """Stack the two buttons where they do not fit side by side."""
         way = QHBoxLayout.Direction.TopToBottom if is_narrow else QHBoxLayout.Direction.LeftToRight
         self._row.setDirection(way)
 
-    def _apply_theme(self) -> None:
-        px = current_theme().px
-        self._column.setContentsMargins(px(24), px(24), px(24), px(24))
-        self._column.setSpacing(px(24))
-        self._row.setSpacing(px(16))
 
-
-class WorkingPage(Themed):
+class WorkingPage(QWidget):
     """What is being done, how far it is, and the way out."""
 
     stop_pressed = Signal()
@@ -70,7 +65,9 @@ class WorkingPage(Themed):
         self._column.addWidget(self.stop, 0, Qt.AlignmentFlag.AlignHCenter)
         self._column.addStretch(1)
         self.stop.clicked.connect(self.stop_pressed)
-        self._apply_theme()
+        scaled(self._column.setContentsMargins, 24, 24, 24, 24)
+        scaled(self._column.setSpacing, 16)
+        scaled(self._line.setFixedSize, 400, 8)
 
     def begin(self, title: str) -> None:
         self._title.setText(title)
@@ -83,9 +80,3 @@ class WorkingPage(Themed):
     @property
     def progress(self) -> tuple[float, str]:
         return self._line.value() / 1000, self._what.text()
-
-    def _apply_theme(self) -> None:
-        px = current_theme().px
-        self._column.setContentsMargins(px(24), px(24), px(24), px(24))
-        self._column.setSpacing(px(16))
-        self._line.setFixedSize(px(400), px(8))

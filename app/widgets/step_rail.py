@@ -5,18 +5,15 @@ Its rows are the steps of a session, or the ways on from Home.
 
 from collections.abc import Callable
 
-from PySide6.QtCore import QPoint, QRectF, Qt, Signal
+from PySide6.QtCore import QPoint, Qt, Signal
 from PySide6.QtGui import (
     QAccessible,
-    QColor,
-    QPainter,
-    QPaintEvent,
 )
 from PySide6.QtWidgets import QFrame, QScrollArea, QSizePolicy, QVBoxLayout, QWidget
 
-from app.theme.current import current_theme
+from app.theme.current import current_theme, scaled
+from app.theme.ground import Ground, set_ground
 from app.theme.icons import Icon
-from app.theme.theme import CONTROL_RADIUS
 from app.widgets.header import ProductMark
 from app.widgets.heard_order import hear_as_laid_out
 from app.widgets.rail_row import BelowRow, RailButton, RailForm, RailRow
@@ -54,6 +51,7 @@ class StepRail(Themed):
     def __init__(self) -> None:
         super().__init__()
         self._form = RailForm.USUAL
+        set_ground(self, Ground("sunken", edge=Qt.Edge.RightEdge))
         self._below_names: list[str] = []
         self.setSizePolicy(QSizePolicy.Policy.Fixed, QSizePolicy.Policy.Expanding)
         self.setAccessibleName(tr("Steps"))
@@ -97,9 +95,6 @@ class StepRail(Themed):
         current = next((row for row in self.rows if row.is_current), next(iter(self._all()), None))
         if current is not None:
             current.setFocus(Qt.FocusReason.OtherFocusReason)
-
-    def paintEvent(self, _event: QPaintEvent) -> None:
-        QPainter(self).fillRect(self.rect(), QColor(current_theme().colours.sunken))
 
     def _build(self) -> None:
         self._head = QWidget()
@@ -189,9 +184,8 @@ class StepRail(Themed):
         self.setFixedWidth(px(self._form.value))
         self._head.setFixedHeight(px(53 if is_compact else 72))
         left = px(6 if is_compact else 12)
-        side = self._mark.sizeHint()
         x, y = (18, 12) if is_compact else (17, 14)
-        self._mark.setGeometry(px(x) - left, px(y), side.width(), side.height())
+        self._mark.move(px(x) - left, px(y))
         self._name.setGeometry(px(50) - left, 0, px(self._form.value - 50), px(56))
         self._column.setContentsMargins(left, 0, 0, px(6 if is_compact else 20))
         beside_note = (px(31) - left, px(12), px(12), px(8))
@@ -200,7 +194,6 @@ class StepRail(Themed):
             row.set_form(self._form)
         self._tag.hide()
         self._show_words()
-        self.update()
 
 
 class _NameTag(Text):
@@ -210,6 +203,8 @@ class _NameTag(Text):
         super().__init__(size=14, weight=REGULAR, tone="inv_ink", parent=rail)
         self._rail = rail
         self.setAttribute(Qt.WidgetAttribute.WA_TransparentForMouseEvents)
+        set_ground(self, Ground("inv", inset=0))
+        scaled(self.setContentsMargins, 12, 8, 12, 8)
         self.hide()
 
     def name(self, row: RailButton) -> None:
@@ -218,20 +213,8 @@ class _NameTag(Text):
         if self.parentWidget() is not window:
             self.setParent(window)
         self.setText(", ".join(filter(None, [row.text(), row.note])))
-        self.setContentsMargins(px(12), px(8), px(12), px(8))
         self.adjustSize()
         corner = row.mapTo(window, QPoint(row.width() + px(8), (row.height() - self.height()) // 2))
         self.move(corner)
         self.raise_()
         self.show()
-
-    def paintEvent(self, event: QPaintEvent) -> None:
-        theme = current_theme()
-        painter = QPainter(self)
-        painter.setRenderHint(QPainter.RenderHint.Antialiasing)
-        painter.setPen(Qt.PenStyle.NoPen)
-        painter.setBrush(QColor(theme.colours.inv))
-        radius = CONTROL_RADIUS * theme.scale
-        painter.drawRoundedRect(QRectF(self.rect()), radius, radius)
-        painter.end()
-        super().paintEvent(event)

@@ -6,7 +6,7 @@ from dataclasses import dataclass
 from PySide6.QtCore import Qt, Signal
 from PySide6.QtWidgets import QBoxLayout, QHBoxLayout, QVBoxLayout, QWidget
 
-from app.theme.current import current_theme
+from app.theme.current import scaled
 from app.widgets.button import Button, ButtonKind
 from app.widgets.card import Card
 from app.widgets.choice import Choice
@@ -81,7 +81,11 @@ class GoalsPage(TallPage):
         self._build()
         self._connect()
         self._on_measure_chosen()
-        self._apply_theme()
+        scaled(self.column.setContentsMargins, MARGIN, 16, MARGIN, GAP)
+        scaled(self.column.setSpacing, 12)
+        scaled(self._columns.setSpacing, GAP)
+        scaled(self._figures.setSpacing, 12)
+        scaled(self._list.setSpacing, 12)
 
     @property
     def tab_order(self) -> list[QWidget]:
@@ -201,14 +205,6 @@ class GoalsPage(TallPage):
         self.value.low, self.value.high = (0.0 if is_between else LEAST), MOST[self._column]
         self.value.set_unit(short_unit(self._column).strip())
 
-    def _apply_theme(self) -> None:
-        px = current_theme().px
-        self.column.setContentsMargins(px(MARGIN), px(16), px(MARGIN), px(GAP))
-        self.column.setSpacing(px(12))
-        self._columns.setSpacing(px(GAP))
-        self._figures.setSpacing(px(12))
-        self._list.setSpacing(px(12))
-
 
 class _GoalRow(Themed):
     """One goal: what it asks for, who agreed on it and when, and a button to take it back while it holds."""
@@ -229,14 +225,14 @@ class _GoalRow(Themed):
         column.setSpacing(0)
         for part in (self.words, self.limit, self.about):
             column.addWidget(part)
-        self._row = QHBoxLayout(self)
-        self._row.setContentsMargins(0, 0, 0, 0)
-        self._row.addLayout(column, 1)
+        row = QHBoxLayout(self)
+        row.setContentsMargins(0, 0, 0, 0)
+        row.addLayout(column, 1)
         if goal.is_held:
             self.take_back = Button(tr("Withdraw"), ButtonKind.QUIET, height=36)
             self.take_back.setAccessibleName(tr("Withdraw: {goal}").format(goal=goal_in_words(goal)))
             self.take_back.clicked.connect(self._on_take_back)
-            self._row.addWidget(self.take_back, 0, Qt.AlignmentFlag.AlignTop)
+            row.addWidget(self.take_back, 0, Qt.AlignmentFlag.AlignTop)
 
     @property
     def key(self) -> GoalKey:

@@ -8,14 +8,13 @@ from PySide6.QtCore import Signal
 from PySide6.QtWidgets import QHBoxLayout, QVBoxLayout, QWidget
 
 from app.home.importing.import_draft import DraftCards
-from app.theme.current import current_theme
+from app.theme.current import scaled
 from app.theme.icons import Icon
 from app.widgets.button import Button, ButtonKind
 from app.widgets.card import Card
 from app.widgets.field import Field, NumberField
 from app.widgets.findings_list import FindingsList
 from app.widgets.text import SEMIBOLD, Text
-from app.widgets.themed import Themed
 from app.wording.translation import tr, tr_n
 from core.findings import Finding
 
@@ -26,7 +25,7 @@ RATE_HZ = (1.0, 2000.0)
 NARROW_BELOW = 900  # px of the design
 
 
-class ImportPage(Themed):
+class ImportPage(QWidget):
     """Signals
     -------
     code_changed, changed
@@ -71,7 +70,8 @@ class ImportPage(Themed):
         )
         self.read_again = Button(tr("Read again"), ButtonKind.SECONDARY, Icon.IMPORT, height=48)
         self._build()
-        self._apply_theme()
+        scaled(self._column.setContentsMargins, 24, 16, 24, 20)
+        scaled(self._column.setSpacing, 16)
 
     @property
     def tab_order(self) -> list[QWidget]:
@@ -183,8 +183,3 @@ class ImportPage(Themed):
             self.reading_requested.emit(self.rate.value)
         else:
             self.rate.setFocus()
-
-    def _apply_theme(self) -> None:
-        px = current_theme().px
-        self._column.setContentsMargins(px(24), px(16), px(24), px(20))
-        self._column.setSpacing(px(16))

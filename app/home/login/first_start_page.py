@@ -13,7 +13,7 @@ from PySide6.QtWidgets import QBoxLayout, QWidget
 
 from app.home.login.typed_entry import COLUMN, EntryPage
 from app.system.passphrases import REFUSED, strength_in_words, strength_of
-from app.theme.current import current_theme, px
+from app.theme.current import current_theme, on_theme, scaled
 from app.theme.icons import Icon
 from app.widgets.button import Button, ButtonKind
 from app.widgets.card import Card
@@ -90,7 +90,9 @@ class FirstStartPage(EntryPage):
         self._build()
         self._connect()
         self._show()
-        self._apply_theme()
+        scaled(self._keep_row.setSpacing, 12)
+        scaled(self._other_ways.setSpacing, 4)
+        on_theme(self._fit)
 
     @property
     def tab_order(self) -> list[QWidget]:
@@ -294,9 +296,3 @@ class FirstStartPage(EntryPage):
         self._key_words.show_groups([])
         self.typed.set_text("")
         self.done.emit()
-
-    def _apply_theme(self) -> None:
-        super()._apply_theme()
-        self._keep_row.setSpacing(px(12))
-        self._other_ways.setSpacing(px(4))
-        self._fit()

@@ -8,7 +8,7 @@ from PySide6.QtGui import QAccessible, QAccessibleAnnouncementEvent
 from PySide6.QtWidgets import QHBoxLayout, QWidget
 
 from app.home.login.typed_entry import EntryPage
-from app.theme.current import px
+from app.theme.current import scaled
 from app.theme.icons import Icon
 from app.widgets.button import Button, ButtonKind
 from app.widgets.card import Card
@@ -43,7 +43,7 @@ class JoinPage(EntryPage):
         self._build()
         self._connect()
         self.ask()
-        self._apply_theme()
+        scaled(self._quiet.setSpacing, 12)
 
     @property
     def tab_order(self) -> list[QWidget]:
@@ -114,7 +114,3 @@ class JoinPage(EntryPage):
     def _on_join(self) -> None:
         if self.join.isEnabled() and self.server.is_complete:
             self.joined.emit(*self.server.reported)
-
-    def _apply_theme(self) -> None:
-        super()._apply_theme()
-        self._quiet.setSpacing(px(12))

@@ -11,7 +11,7 @@ from PySide6.QtWidgets import QHBoxLayout, QVBoxLayout, QWidget
 
 from app.home.login.typed_entry import EntryPage
 from app.system.passphrases import REFUSED, strength_in_words, strength_of
-from app.theme.current import current_theme
+from app.theme.current import scaled
 from app.theme.icons import Icon
 from app.widgets.button import Button, ButtonKind
 from app.widgets.card import Card
@@ -70,7 +70,8 @@ class LogInPage(EntryPage):
         self._connect()
         self.show_library("")
         self._show()
-        self._apply_theme()
+        scaled(self._who.setSpacing, 6)
+        scaled(self._quiet.setSpacing, 4)
 
     @property
     def tab_order(self) -> list[QWidget]:
@@ -316,9 +317,3 @@ class LogInPage(EntryPage):
         if self._left_s == 0:
             self._second.stop()
         self._show_go()
-
-    def _apply_theme(self) -> None:
-        super()._apply_theme()
-        px = current_theme().px
-        self._who.setSpacing(px(6))
-        self._quiet.setSpacing(px(4))

@@ -11,7 +11,7 @@ from app.home.settings.clinic_cards import MoreStationsCard, StationCard
 from app.home.settings.operators_card import OperatorsCard
 from app.home.settings.settings_card import SettingsCard
 from app.system.passphrases import REFUSED, strength_in_words, strength_of
-from app.theme.current import SCALES, current_theme
+from app.theme.current import SCALES, scaled
 from app.theme.icons import Icon
 from app.widgets.button import Button, ButtonKind
 from app.widgets.choice import Choice
@@ -81,7 +81,10 @@ class SettingsPage(TallPage):
         self._build_trouble()
         self.column.addStretch(1)
         self._connect()
-        self._apply_theme()
+        scaled(self.setMaximumWidth, COLUMN + 48)
+        scaled(self.column.setContentsMargins, 24, 16, 24, 20)
+        scaled(self.column.setSpacing, 16)
+        scaled(self.deleted_rows.setSpacing, 4)
 
     @property
     def tab_order(self) -> list[QWidget]:
@@ -382,13 +385,6 @@ class SettingsPage(TallPage):
     @property
     def _known(self) -> tuple[str, ...]:
         return *self._own, self.clinic.text
-
-    def _apply_theme(self) -> None:
-        px = current_theme().px
-        self.setMaximumWidth(px(COLUMN + 48))
-        self.column.setContentsMargins(px(24), px(16), px(24), px(20))
-        self.column.setSpacing(px(16))
-        self.deleted_rows.setSpacing(px(4))
 
 
 class _DeletedRow(QWidget):
