@@ -4,10 +4,10 @@ from collections.abc import Mapping
 
 from PySide6.QtCore import Qt, Signal
 from PySide6.QtGui import QKeyEvent, QResizeEvent
-from PySide6.QtWidgets import QBoxLayout, QSizePolicy, QWidget
+from PySide6.QtWidgets import QBoxLayout, QHBoxLayout, QSizePolicy, QWidget
 
 from app.patient_screen.metronome import LEAST, MOST
-from app.theme.current import current_theme, px
+from app.theme.current import px, scaled
 from app.theme.icons import Icon
 from app.widgets.button import Button, ButtonKind
 from app.widgets.card import Card
@@ -50,6 +50,7 @@ class ControlsCard(Card):
     close_pressed = Signal()
 
     def __init__(self) -> None:
+        super().__init__()
         self._typed: dict[TargetMeasure, int] = {}
         self._reasons: Mapping[Choice, str] = {}
         self._is_ticking = False
@@ -68,18 +69,19 @@ class ControlsCard(Card):
         self.full = Button(tr("Full screen"), ButtonKind.QUIET, Icon.WHOLE, key="F11")
         self.close_screen = Button(tr("Close"), ButtonKind.QUIET, Icon.CLOSE, key="F8")
         self._reason, self._wrong = Notice(size=14), Notice(size=14)
-        self._choose, self._set = QBoxLayout(ACROSS), QBoxLayout(ACROSS)
-        super().__init__()
+        self._choose, below = QBoxLayout(ACROSS), QHBoxLayout()
         self.setSizePolicy(QSizePolicy.Policy.Preferred, QSizePolicy.Policy.Maximum)
         self.setAccessibleName(tr("Patient screen"))
         self._choose.addWidget(self.measure, 1)
         self._choose.addWidget(self.side)
         for field in (self.target, self.rate):
-            self._set.addWidget(field)
+            below.addWidget(field)
+            scaled(field.setFixedWidth, FIELD_WIDTH)
         for button in (self.tick, self.full, self.close_screen):
-            self._set.addWidget(button, 0, Qt.AlignmentFlag.AlignBottom)
-        self._set.insertStretch(3, 1)
-        for row in (self._choose, self._set):
+            below.addWidget(button, 0, Qt.AlignmentFlag.AlignBottom)
+        below.insertStretch(3, 1)
+        for row in (self._choose, below):
+            scaled(row.setSpacing, 12)
             self.column.addLayout(row)
         self.column.addWidget(self._wrong)
         self.column.addWidget(self._reason)
@@ -195,11 +197,3 @@ class ControlsCard(Card):
         else:
             self.rate.set_wrong(tr("Enter the steps per minute."))
             self._show_wrong()
-
-    def _apply_theme(self) -> None:
-        super()._apply_theme()
-        px = current_theme().px
-        for row in (self._choose, self._set):
-            row.setSpacing(px(12))
-        for field in (self.target, self.rate):
-            field.setFixedWidth(px(FIELD_WIDTH))

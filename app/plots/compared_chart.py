@@ -42,11 +42,11 @@ class ComparedFrame(Card):
     """A chart under its leg, joint and sign, with what must be known to read it."""
 
     def __init__(self, chart: ComparedChart, side: Side, kind: JointKind) -> None:
+        super().__init__(padding=12, spacing=2)
         self._side, self._kind = side, kind
         self.chart = chart
         self._mark = IconMark(Icon.DIFFERENCE, size=18)
         self._note = Text(size=12, weight=MEDIUM, wraps=True)
-        super().__init__(padding=12, spacing=2)
         self.setSizePolicy(QSizePolicy.Policy.Expanding, QSizePolicy.Policy.Expanding)
         head, notes = QHBoxLayout(), QHBoxLayout()
         head.setSpacing(8)

@@ -14,7 +14,6 @@ from PySide6.QtWidgets import QSizePolicy
 from app.theme.current import current_theme, px
 from app.widgets.painted import Painted
 from app.widgets.painted_text import LEFT, RIGHT, PaintedText
-from app.widgets.themed import Themed
 from app.wording.translation import figure_text, tr
 from core.body import Side
 from core.published.figures import CostOverSphere
@@ -31,7 +30,7 @@ CIRCLE_STEPS = 73
 X_REACH, Y_REACH = 2 * math.sqrt(2), math.sqrt(2)  # half axes of Hammer's ellipse
 
 
-class CostMap(Painted, Themed):
+class CostMap(Painted):
     """One sensor of one joint."""
 
     accessible_role = QAccessible.Role.Chart

@@ -20,7 +20,7 @@ from app.summary.course_words import (
     visit_in_words,
 )
 from app.summary.progress_words import arrow_of
-from app.theme.current import current_theme, px
+from app.theme.current import current_theme, on_theme, px, scaled
 from app.theme.icons import Icon
 from app.widgets.button import Button, ButtonKind
 from app.widgets.card import Card
@@ -28,13 +28,12 @@ from app.widgets.change_arrow import ChangeArrow
 from app.widgets.chip import Chip
 from app.widgets.heard_order import hear_as_laid_out
 from app.widgets.text import MEDIUM, REGULAR, SEMIBOLD, Text
-from app.widgets.themed import Themed
 from app.wording.translation import tr
 from core.verdicts.model import Verdict
 
 LABELS, CHANGES = 166, 196  # px: the columns of words beside the lanes
 NARROW_BELOW = 560  # words stand over the lanes instead
-ROW = 62
+ROW = 60
 VALUE, VALUE_OF_TWO = 28, 22
 WIDEST = 16_777_215  # Qt's own
 
@@ -56,10 +55,10 @@ class CourseCard(Card):
     computing_requested = Signal()
 
     def __init__(self) -> None:
-        self._grid, self.head, self._foot = QGridLayout(), QHBoxLayout(), QHBoxLayout()
+        super().__init__(spacing=0)
+        self._grid, self.head, foot = QGridLayout(), QHBoxLayout(), QHBoxLayout()
         self.rows: dict[LaneKind, LaneRow] = {}
         self._is_narrow: bool | None = None
-        super().__init__(padding=16, spacing=0)
         self.visits: tuple[CourseVisit, ...] = ()
         self.lanes: tuple[CourseLane, ...] = ()
         self.number: int | None = None
@@ -73,14 +72,19 @@ class CourseCard(Card):
         self.info.setCheckable(True)
         self._grid_room = QWidget()
         self.head.addWidget(self.info)
-        self._foot.addWidget(self.note, 1)
-        self._foot.addWidget(self.compute)
-        self._grid.setContentsMargins(0, 0, 0, 0)
+        foot.addWidget(self.note, 1)
+        foot.addWidget(self.compute)
         self._grid_room.setLayout(self._grid)
         self.column.addLayout(self.head)
         self.column.addWidget(self._grid_room)
         self.column.addWidget(self.method)
-        self.column.addLayout(self._foot)
+        self.column.addLayout(foot)
+        for layout, margins in ((self.column, (16, 4, 8, 4)), (self._grid, (0, 2, 8, 0)), (foot, (0, 0, 8, 0))):
+            scaled(layout.setContentsMargins, *margins)
+        scaled(self._grid.setHorizontalSpacing, 8)
+        scaled(self._grid.setVerticalSpacing, 2)
+        scaled(self.head.setSpacing, 8)
+        scaled(foot.setSpacing, 12)
         self._join(self.axis)
         self._show_kinds(lane_kinds())
         self.compute.clicked.connect(self.computing_requested)
@@ -160,15 +164,12 @@ class CourseCard(Card):
     def _lay(self) -> None:
         """Put the rows into the grid, and the axis under them."""
         is_narrow = bool(self._is_narrow)
-        for at in range(self._grid.rowCount()):
-            self._grid.setRowMinimumHeight(at, 0)
         for number, row in enumerate(self.rows.values()):
             at = 2 * number
             row.set_narrow(is_narrow)
             self._grid.addWidget(row.label, at, 0)
             self._grid.addWidget(row.changes, at, 1 if is_narrow else 2)
             self._grid.addWidget(row.plot, at + 1 if is_narrow else at, 0 if is_narrow else 1, 1, 2 if is_narrow else 1)
-            self._grid.setRowMinimumHeight(at, 0 if is_narrow else px(ROW))
         self._grid.removeWidget(self.axis)
         self._grid.addWidget(self.axis, 2 * len(self.rows), 0 if is_narrow else 1, 1, 2 if is_narrow else 1)
         self._grid.setColumnStretch(0, 1 if is_narrow else 0)
@@ -188,17 +189,9 @@ class CourseCard(Card):
             painter.drawLine(QPointF(side, top), QPointF(self.width() - side, top))
 
     def _apply_theme(self) -> None:
-        super()._apply_theme()
-        px = current_theme().px
-        self.column.setContentsMargins(px(16), px(4), px(8), px(4))
-        self._grid.setContentsMargins(0, px(2), px(8), 0)
-        self._grid.setHorizontalSpacing(px(8))
-        self._grid.setVerticalSpacing(px(2))
-        for number in range(len(self.rows)):
-            self._grid.setRowMinimumHeight(2 * number, 0 if self._is_narrow else px(ROW - 2))
-        self.head.setSpacing(px(8))
-        self._foot.setContentsMargins(0, 0, px(8), 0)
-        self._foot.setSpacing(px(12))
+        for at in range(self._grid.rowCount()):
+            is_row = at % 2 == 0 and at < 2 * len(self.rows) and not self._is_narrow
+            self._grid.setRowMinimumHeight(at, px(ROW) if is_row else 0)
 
 
 class LaneRow:
@@ -269,7 +262,7 @@ class LaneRow:
         return room
 
 
-class _Words(Themed):
+class _Words(QWidget):
     """Rows of words under one another, in the middle of the height that there is."""
 
     def __init__(self, width: int) -> None:
@@ -281,7 +274,7 @@ class _Words(Themed):
         self._column.setSpacing(0)
         self._column.addStretch(1)
         self._column.addStretch(1)
-        self._apply_theme()
+        on_theme(self._fit)
 
     def clear(self) -> None:
         for part in self._parts:
@@ -298,9 +291,9 @@ class _Words(Themed):
     def set_wide(self, is_wide: bool) -> None:
         """Take all the width there is, in place of a column's."""
         self._is_wide = is_wide
-        self._apply_theme()
+        self._fit()
 
-    def _apply_theme(self) -> None:
+    def _fit(self) -> None:
         width = px(self._width)
         self.setMinimumWidth(0 if self._is_wide else width)
         self.setMaximumWidth(WIDEST if self._is_wide else width)

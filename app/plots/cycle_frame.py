@@ -29,7 +29,7 @@ from app.summary.walk_figures import (
     why_in_figures,
     why_in_words,
 )
-from app.theme.current import current_theme
+from app.theme.current import scaled
 from app.theme.icons import Icon
 from app.widgets.card import Card
 from app.widgets.chip import leg_name
@@ -55,6 +55,7 @@ class CycleFrame(Card):
     """A chart with its title, the key to its curves, whose the reference is, and what must be known to read it."""
 
     def __init__(self, chart: CycleChart, kind: JointKind) -> None:
+        super().__init__(spacing=2)
         self.kind = kind
         self.chart = chart
         self.key = ChartKey()
@@ -67,18 +68,21 @@ class CycleFrame(Card):
         self._thin = ""
         self.not_reported: dict[Side, str] = {}  # why, as a sentence
         self.heights_deg: dict[Side, float] = {}
-        self._head, self._notes_row = QHBoxLayout(), QHBoxLayout()
-        super().__init__(padding=12, spacing=2)
         self.setSizePolicy(QSizePolicy.Policy.Expanding, QSizePolicy.Policy.Expanding)
-        self._head.addWidget(Text(title_in_words(kind), size=16, weight=SEMIBOLD))
-        self._head.addWidget(self.key, 1)
-        self._head.addWidget(self.info)
-        self._notes_row.addWidget(self._mark, 0, Qt.AlignmentFlag.AlignTop)
-        self._notes_row.addWidget(self._note, 1)
-        self.column.addLayout(self._head)
-        self.column.addLayout(self._notes_row)
+        head, notes = QHBoxLayout(), QHBoxLayout()
+        head.addWidget(Text(title_in_words(kind), size=16, weight=SEMIBOLD))
+        head.addWidget(self.key, 1)
+        head.addWidget(self.info)
+        notes.addWidget(self._mark, 0, Qt.AlignmentFlag.AlignTop)
+        notes.addWidget(self._note, 1)
+        for row in (head, notes):
+            scaled(row.setContentsMargins, 4, 0, 8, 0)
+            scaled(row.setSpacing, 8)
+            self.column.addLayout(row)
         self.column.addWidget(self.beside)
         self.column.addWidget(chart, 3)
+        # the chart reaches the right edge, where there is room for what is turned
+        scaled(self.column.setContentsMargins, 12, 6, 4, 2)
 
     @property
     def note(self) -> str:
@@ -257,15 +261,6 @@ class CycleFrame(Card):
         if self.chart.is_widened:
             notes.append(range_in_words(self.chart.range_deg))
         return notes
-
-    def _apply_theme(self) -> None:
-        """The chart reaches the right edge, where there is room for what is turned."""
-        super()._apply_theme()
-        px = current_theme().px
-        self.column.setContentsMargins(px(12), px(6), px(4), px(2))
-        for row in (self._head, self._notes_row):
-            row.setContentsMargins(px(4), 0, px(8), 0)
-            row.setSpacing(px(8))
 
 
 def _has_common_height(found: Comparison, joint: Joint) -> bool:

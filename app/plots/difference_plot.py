@@ -15,7 +15,6 @@ from app.theme.leg_chip import CHIP, paint_chip
 from app.widgets.painted import Painted
 from app.widgets.painted_text import CENTRE, PaintedText
 from app.widgets.text import SEMIBOLD
-from app.widgets.themed import Themed
 from app.wording.numbers import MINUS
 from core.body import Side
 
@@ -59,7 +58,7 @@ class DifferenceGroup:
     rows: tuple[DifferenceRow, ...]
 
 
-class DifferencePlot(Painted, Themed):
+class DifferencePlot(Painted):
     """As high as its rows."""
 
     accessible_role = QAccessible.Role.Chart

@@ -12,7 +12,6 @@ from app.theme.current import current_theme, px
 from app.widgets.painted import Painted
 from app.widgets.painted_text import CENTRE, LEFT, RIGHT, PaintedText
 from app.widgets.text import MEDIUM
-from app.widgets.themed import Themed
 from app.wording.numbers import MINUS
 from app.wording.translation import figure_text
 
@@ -35,7 +34,7 @@ class GroupLine:
     count: str
 
 
-class GroupPlot(Painted, Themed):
+class GroupPlot(Painted):
     """As high as its groups. `unit` is under the axis."""
 
     accessible_role = QAccessible.Role.Chart

@@ -13,7 +13,7 @@ from PySide6.QtGui import QAccessible, QColor, QMouseEvent, QPainter, QWheelEven
 from PySide6.QtWidgets import QGridLayout, QHBoxLayout, QSizePolicy
 
 from app.charts.axes import AXIS_WIDTH, RIGHT_MARGIN
-from app.theme.current import current_theme, scaled
+from app.theme.current import current_theme, on_theme, scaled
 from app.theme.leg_chip import CHIP, paint_chip
 from app.theme.theme import Theme
 from app.widgets.card import Card
@@ -85,13 +85,13 @@ class PhaseFrame(Card):
     """Both lanes with their legend, and what is shown at the reading line."""
 
     def __init__(self) -> None:
+        super().__init__(spacing=6)
         self.lanes = PhaseLanes()
         self._simulated = Text(tr("SIMULATED"), size=12, weight=SEMIBOLD)
         self._chips = {side: Chip(side) for side in Side}
         self._readings = {side: Text(size=14, weight=MEDIUM, tone=f"{side}_text") for side in Side}
         self._title, self._legend, self._reading = QHBoxLayout(), QHBoxLayout(), QHBoxLayout()
         self._head = QGridLayout()
-        super().__init__(spacing=6)
         self.setSizePolicy(QSizePolicy.Policy.Expanding, QSizePolicy.Policy.Fixed)
         for phase, word in LEGEND:
             self._legend.addWidget(Swatch(phase))
@@ -108,7 +108,12 @@ class PhaseFrame(Card):
             self._reading.addWidget(self._readings[side])
         self.column.addLayout(self._head)
         self.column.addWidget(self.lanes)
+        for part in (self._title, self._legend, self._reading):
+            scaled(part.setSpacing, 8)
+        scaled(self._head.setHorizontalSpacing, 12)
+        scaled(self._head.setVerticalSpacing, 4)
         self.set_narrow(is_narrow=False)
+        on_theme(self._reserve_room)
 
     def does_fit(self, width: int) -> bool:
         """Whether title, legend and reading have room beside each other in `width` px."""
@@ -179,16 +184,6 @@ class PhaseFrame(Card):
                 for word in (*PHASE_WORDS.values(), *EVENT_WORDS.values())
             )
             label.setMinimumWidth(widest if side in self.lanes.lanes else 0)
-
-    def _apply_theme(self) -> None:
-        super()._apply_theme()
-        px = current_theme().px
-        for part in (self._title, self._legend):
-            part.setSpacing(px(8))
-        self._reading.setSpacing(px(8))
-        self._head.setHorizontalSpacing(px(12))
-        self._head.setVerticalSpacing(px(4))
-        self._reserve_room()
 
 
 class PhaseLanes(Painted):

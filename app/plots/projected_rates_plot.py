@@ -14,7 +14,6 @@ from app.theme.current import current_theme
 from app.widgets.painted import Painted
 from app.widgets.painted_text import CENTRE, PaintedText
 from app.widgets.text import MEDIUM
-from app.widgets.themed import Themed
 from app.wording.translation import tr
 from core.body import Side
 from core.published.figures import ProjectedRates
@@ -28,7 +27,7 @@ FOOT = Qt.AlignmentFlag.AlignLeft | Qt.AlignmentFlag.AlignBottom
 STEPS = (5, 10, 20, 50, 100, 200, 500, 1000, 2000)
 
 
-class ProjectedRatesPlot(Painted, Themed):
+class ProjectedRatesPlot(Painted):
     """Two panels of one size and one scale."""
 
     accessible_role = QAccessible.Role.Chart

@@ -27,7 +27,7 @@ from app.summary.comparison import Comparison, Contrast, SideRow, compare_sides,
 from app.summary.conditions import Part, left_out_of_parts
 from app.summary.reference_bands import NOBODY, bands_of, reference_curves, sides_with_band
 from app.summary.visits import ComparedVisits, condition_in_words
-from app.theme.current import current_theme
+from app.theme.current import on_theme, scaled
 from app.theme.icons import Icon
 from app.widgets.chips import Chips
 from app.widgets.choice import Choice
@@ -35,7 +35,6 @@ from app.widgets.heard_order import hear_as_laid_out
 from app.widgets.icons import IconMark
 from app.widgets.segmented import Segmented
 from app.widgets.text import Text
-from app.widgets.themed import Themed
 from app.wording.numbers import MINUS
 from app.wording.translation import later, tr
 from core.body import JointKind, Side
@@ -62,7 +61,7 @@ NOTHING = {
 }
 
 
-class ComparePage(Themed):
+class ComparePage(QWidget):
     """`kinds` and `bases` are placed by the page around it, where room is short `view` is as well.
 
     Signals
@@ -108,7 +107,6 @@ class ComparePage(Themed):
         self.card = ComparedCard()
         self._build()
         self._connect()
-        self._apply_theme()
 
     # what is shown
 
@@ -197,34 +195,30 @@ class ComparePage(Themed):
     # how it is laid out
 
     def _build(self) -> None:
-        self._grid_room, self._grid = QWidget(), QGridLayout()
-        self._grid_room.setLayout(self._grid)
-        self._grid.setContentsMargins(0, 0, 0, 0)
+        room, self._charts, self._words = QWidget(), QWidget(), QWidget()
+        grid, self._left, self._head = QGridLayout(room), QVBoxLayout(self._charts), QHBoxLayout(self._words)
+        reported, columns, self._page = QVBoxLayout(), QHBoxLayout(), QVBoxLayout(self)
+        for layout in (grid, self._left, self._head, self._page):
+            layout.setContentsMargins(0, 0, 0, 0)
+        for layout in (grid, self._left, self._head, columns, self._page):
+            scaled(layout.setSpacing, 12)
+        scaled(reported.setSpacing, 4)
         for (side, kind), frame in self.frames.items():
-            self._grid.addWidget(frame, list(JointKind).index(kind), 0 if side is Side.LEFT else 1)
-        self._charts = QWidget()
-        self._left = QVBoxLayout(self._charts)
-        self._left.setContentsMargins(0, 0, 0, 0)
-        self._curves = scrolling(self._grid_room)
+            grid.addWidget(frame, list(JointKind).index(kind), 0 if side is Side.LEFT else 1)
+        self._curves = scrolling(room)
         self._left.addWidget(self._curves, 1)
         self._left.addWidget(self.side_charts, 1)
         self._left.addWidget(self.chips)
-        self._words = QWidget()
-        self._head = QHBoxLayout(self._words)
-        self._head.setContentsMargins(0, 0, 0, 0)
-        self._reported = QVBoxLayout()
-        self._reported.addWidget(self.conclusion)
-        self._reported.addWidget(self.error)
-        self._reported.addStretch(1)
+        reported.addWidget(self.conclusion)
+        reported.addWidget(self.error)
+        reported.addStretch(1)
         self._head.addWidget(self._mark, 0, Qt.AlignmentFlag.AlignTop)
-        self._head.addLayout(self._reported, 1)
-        self._columns = QHBoxLayout()
-        self._columns.addWidget(self._charts, 1)
-        self._columns.addWidget(self.card)
-        self._page = QVBoxLayout(self)
-        self._page.setContentsMargins(0, 0, 0, 0)
+        self._head.addLayout(reported, 1)
+        columns.addWidget(self._charts, 1)
+        columns.addWidget(self.card)
         self._page.addWidget(self.nothing)
-        self._page.addLayout(self._columns, 1)
+        self._page.addLayout(columns, 1)
+        on_theme(self._fit_card)
 
     def _connect(self) -> None:
         self.kinds.currentIndexChanged.connect(self._on_kind_changed)
@@ -468,10 +462,5 @@ class ComparePage(Themed):
         self.conclusion.setText(" ".join([*stated, by_hand] if by_hand else stated))
         self._mark.setVisible(is_marked)
 
-    def _apply_theme(self) -> None:
-        px = current_theme().px
-        for layout in (self._page, self._columns, self._left, self._head):
-            layout.setSpacing(px(12))
-        self._grid.setSpacing(px(12))
-        self._reported.setSpacing(px(4))
+    def _fit_card(self) -> None:
         self.card.fit(is_alone=self._charts.isHidden())

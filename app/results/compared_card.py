@@ -9,7 +9,7 @@ from app.plots.difference_plot import DifferencePlot
 from app.results.compared_plot import comparison_groups, side_groups
 from app.results.compared_table import comparison_table, has_brief_table, side_table
 from app.summary.comparison import Comparison, Contrast, SideRow
-from app.theme.current import current_theme, px
+from app.theme.current import current_theme, scaled
 from app.widgets.card import Card
 from app.widgets.table import CellTable
 from app.widgets.text import SEMIBOLD, Text
@@ -28,6 +28,7 @@ class ComparedCard(Card):
     """Between visits the table is brief where there is no room for all measures, until all are asked for."""
 
     def __init__(self) -> None:
+        super().__init__(padding=PADDING)
         self.title = Text(size=16, weight=SEMIBOLD)
         self.all_measures = Toggle(tr("All measures"), "", is_on=False)
         self.all_measures.set_face(height=TOGGLE)
@@ -38,6 +39,7 @@ class ComparedCard(Card):
         content = QWidget()
         self._content = QVBoxLayout(content)
         self._content.setContentsMargins(0, 0, 0, 0)
+        scaled(self._content.setSpacing, 8)
         head = QHBoxLayout()
         head.addWidget(self.title, 1)
         head.addWidget(self.all_measures)
@@ -46,7 +48,6 @@ class ComparedCard(Card):
         self._content.addWidget(self.table)
         self._content.addStretch(1)
         self.area = scrolling(content)
-        super().__init__(padding=PADDING)
         self.setSizePolicy(QSizePolicy.Policy.Expanding, QSizePolicy.Policy.Expanding)
         self.column.addWidget(self.area, 1)
         self.all_measures.toggled.connect(self._show_table)
@@ -104,10 +105,6 @@ class ComparedCard(Card):
     def _can_be_brief(self) -> bool:
         found = self._found
         return found is not None and found.kind is Contrast.VISITS and not self._is_spacious and has_brief_table(found)
-
-    def _apply_theme(self) -> None:
-        super()._apply_theme()
-        self._content.setSpacing(px(8))
 
 
 def scrolling(content: QWidget) -> QScrollArea:

@@ -6,14 +6,13 @@ from dataclasses import dataclass
 from PySide6.QtCore import Qt, Signal
 from PySide6.QtWidgets import QBoxLayout, QHBoxLayout, QVBoxLayout, QWidget
 
-from app.theme.current import current_theme
+from app.theme.current import scaled
 from app.theme.icons import Icon
 from app.widgets.button import Button, ButtonKind
 from app.widgets.card import Card
 from app.widgets.chip import Chip
 from app.widgets.field import Field
 from app.widgets.text import SEMIBOLD, Text
-from app.widgets.themed import Themed
 from app.widgets.toggle import Toggle
 from app.wording.body import name_of
 from app.wording.translation import capitalised, tr
@@ -40,7 +39,7 @@ class JointLine:
     note: str
 
 
-class CorrectPage(Themed):
+class CorrectPage(QWidget):
     """Each correction is emitted at once; the page is then shown what came of it.
 
     Signals
@@ -76,7 +75,6 @@ class CorrectPage(Themed):
         self._build()
         self.back.clicked.connect(self.closed)
         self.swap.clicked.connect(self.sides_swapped)
-        self._apply_theme()
 
     @property
     def tab_order(self) -> list[QWidget]:
@@ -141,9 +139,12 @@ class CorrectPage(Themed):
         self._columns = QBoxLayout(QBoxLayout.Direction.LeftToRight)
         self._columns.addWidget(self.walks, 3)
         self._columns.addLayout(right, 2)
-        self._page = QVBoxLayout(self)
-        self._page.addLayout(head)
-        self._page.addLayout(self._columns, 1)
+        page = QVBoxLayout(self)
+        page.addLayout(head)
+        page.addLayout(self._columns, 1)
+        scaled(page.setContentsMargins, 16, 16, 16, 12)
+        for layout in (page, self._columns):
+            scaled(layout.setSpacing, 12)
 
     def _on_condition_committed(self) -> None:
         field = self.sender()
@@ -162,12 +163,6 @@ class CorrectPage(Themed):
         for joint, row in self.joint_rows.items():
             if row.turned is toggle:
                 self.sign_turned.emit(str(joint), is_turned)
-
-    def _apply_theme(self) -> None:
-        px = current_theme().px
-        self._page.setContentsMargins(px(16), px(16), px(16), px(12))
-        self._page.setSpacing(px(12))
-        self._columns.setSpacing(px(12))
 
 
 class _WalkRow(QWidget):

@@ -23,7 +23,7 @@ from app.plots.cost_map import CostMap
 from app.plots.projected_rates_plot import ProjectedRatesPlot
 from app.plots.two_ways_chart import TwoWaysChart
 from app.summary.diagnostics import MARGIN_BEYOND, FoundFigure, figures_of
-from app.theme.current import current_theme, px
+from app.theme.current import on_theme, px, scaled
 from app.theme.icons import SEVERITY_ICONS, Icon
 from app.widgets.button import Button, ButtonKind
 from app.widgets.card import Card
@@ -35,7 +35,6 @@ from app.widgets.reading_area import ReadingArea
 from app.widgets.segmented import Segmented
 from app.widgets.sentence_page import SentencePage
 from app.widgets.text import MEDIUM, SEMIBOLD, Text
-from app.widgets.themed import Themed
 from app.wording.body import name_of, segment_name
 from app.wording.findings import sentence
 from app.wording.translation import capitalised, figure_text, joined, tr
@@ -51,7 +50,7 @@ CLOSE_S = 10.0
 MIN_APART = 0.2  # of how alike the curves are; less apart, this second distinguishes no pairing
 
 
-class FoundPage(Themed):
+class FoundPage(QWidget):
     """One joint at a time; it is computed elsewhere.
 
     Signals
@@ -88,7 +87,6 @@ class FoundPage(Themed):
         self.back.clicked.connect(self.closed)
         self.joints.chosen.connect(self.joint_chosen)
         self.save.clicked.connect(self.save_requested)
-        self._apply_theme()
 
     @property
     def tab_order(self) -> list[QWidget]:
@@ -158,11 +156,11 @@ class FoundPage(Themed):
         for card in (self.axis, self.pairing):
             self._pictures.addWidget(card, 1)
         column = QWidget()
-        self._cards = QVBoxLayout(column)
-        self._cards.addLayout(self._pictures)
+        cards = QVBoxLayout(column)
+        cards.addLayout(self._pictures)
         for widget in (self.angle, self.figures, self.noticed):
-            self._cards.addWidget(widget)
-        self._cards.addStretch(1)
+            cards.addWidget(widget)
+        cards.addStretch(1)
         self.cards.setWidget(column)
         self.cards.setWidgetResizable(True)
         self.cards.setFrameShape(QFrame.Shape.NoFrame)
@@ -171,14 +169,18 @@ class FoundPage(Themed):
         self.cards.setAccessibleName(tr("Calibration of this joint"))
         for page in (self.waiting, self.cards):
             self._stack.addWidget(page)
-        self._page = QVBoxLayout(self)
-        self._page.addLayout(self._head)
-        self._page.addWidget(self.note)
-        self._page.addWidget(self._stack, 1)
+        page = QVBoxLayout(self)
+        page.addLayout(self._head)
+        page.addWidget(self.note)
+        page.addWidget(self._stack, 1)
+        scaled(page.setContentsMargins, 16, 16, 16, 12)
+        scaled(cards.setContentsMargins, 0, 0, 4, 0)
+        for layout in (page, self._head, self._pictures, cards):
+            scaled(layout.setSpacing, 12)
+        on_theme(self._place_head)
 
     def _place_head(self) -> None:
         """Put the joints between both buttons, or under them where that is too wide."""
-        px = current_theme().px
         for widget in (self.back, self.joints, self.save):
             self._head.removeWidget(widget)
         needed = sum(widget.sizeHint().width() for widget in (self.back, self.joints, self.save))
@@ -199,15 +201,6 @@ class FoundPage(Themed):
             icon = SEVERITY_ICONS[finding.severity]
             column.addWidget(FindingRow(icon, finding.severity, sentence(finding)))
         self.noticed.setVisible(bool(findings))
-
-    def _apply_theme(self) -> None:
-        px = current_theme().px
-        self._page.setContentsMargins(px(16), px(16), px(16), px(12))
-        self._page.setSpacing(px(12))
-        for layout in (self._head, self._pictures, self._cards):
-            layout.setSpacing(px(12))
-        self._cards.setContentsMargins(0, 0, px(4), 0)
-        self._place_head()
 
 
 _IN_ORDER = (Joint.LEFT_KNEE, Joint.RIGHT_KNEE, Joint.LEFT_ANKLE, Joint.RIGHT_ANKLE)
@@ -419,8 +412,10 @@ class _FiguresCard(Card):
     """All figures of the joint as a list of names and values."""
 
     def __init__(self) -> None:
-        self._grid = QGridLayout()
         super().__init__()
+        self._grid = QGridLayout()
+        scaled(self._grid.setHorizontalSpacing, 12)
+        scaled(self._grid.setVerticalSpacing, 4)
         self._figures: Sequence[FoundFigure] = ()
         self._columns = 2
         self.column.addWidget(Text(tr("In numbers"), size=16, weight=SEMIBOLD))
@@ -455,11 +450,6 @@ class _FiguresCard(Card):
             is_name = column % 3 == 0 and column < 3 * self._columns
             self._grid.setColumnStretch(column, 1 if is_name else 0)
             self._grid.setColumnMinimumWidth(column, px(24) if column == 2 < 3 * self._columns - 1 else 0)
-
-    def _apply_theme(self) -> None:
-        super()._apply_theme()
-        self._grid.setHorizontalSpacing(px(12))
-        self._grid.setVerticalSpacing(px(4))
 
 
 def _empty(card: Card) -> None:

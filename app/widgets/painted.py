@@ -3,13 +3,13 @@
 from collections.abc import Sequence
 
 from PySide6.QtGui import QPainter, QPaintEvent
-from PySide6.QtWidgets import QWidget
 
 from app.theme.current import current_theme
 from app.widgets.painted_text import PaintedText
+from app.widgets.themed import Themed
 
 
-class Painted(QWidget):
+class Painted(Themed):
     """`draw` gives the shapes, `painted_texts` the words over them."""
 
     def paintEvent(self, _event: QPaintEvent) -> None:

@@ -6,7 +6,7 @@ from uuid import UUID
 from PySide6.QtCore import QEvent, Signal
 from PySide6.QtWidgets import QBoxLayout, QFrame, QHBoxLayout, QSizePolicy, QWidget
 
-from app.theme.current import current_theme, px
+from app.theme.current import on_theme, px, scaled
 from app.widgets.card import Card
 from app.widgets.chips import Chips
 from app.widgets.choice import Choice
@@ -14,7 +14,6 @@ from app.widgets.reading_area import ReadingArea
 from app.widgets.segmented import Segmented
 from app.widgets.sheets import Sheet, Sheets, SmallSheets
 from app.widgets.text import SEMIBOLD, Text
-from app.widgets.themed import Themed
 from app.wizard.report.comment_editor import CommentEditor
 from app.wording.translation import LANGUAGES, spoken_language, tr
 
@@ -26,7 +25,7 @@ LETTER = "letter"  # among the files to export
 FIRST_CHOICE = ("csv", "rrd")
 
 
-class ReportPage(Themed):
+class ReportPage(QWidget):
     """Shown pages as pictures.
 
     Signals
@@ -68,39 +67,37 @@ class ReportPage(Themed):
         self.earlier = Choice(tr("Compare with"))
         self.earlier.let_shrink(WORDS_WIDTH - 2 * PADDING, WORDS_WIDTH - 2 * PADDING)  # conditions are typed
         self.earlier.setSizePolicy(QSizePolicy.Policy.Preferred, QSizePolicy.Policy.Fixed)  # as wide as its card
-        self._earlier_title = Text(tr("Compare with"), size=16, weight=SEMIBOLD)
-        self._also = Text(tr("Files to export"), size=16, weight=SEMIBOLD)
-        self._sheet = Text(tr("Paper"), size=16, weight=SEMIBOLD)
+        self._earlier_title = _title(tr("Compare with"))
         self.added = Chips(tr("Extra pages"), [("course", tr("Progress so far"))])
         self.added.choose(("course",))
-        self._added_title = Text(tr("Extra pages"), size=16, weight=SEMIBOLD)
-        self._language_title = Text(tr("Patient letter"), size=16, weight=SEMIBOLD)
         languages = [(key, name, "") for key, name in LANGUAGES.items()]
         self.language = Segmented(tr("Language of the patient letter"), languages)
         if spoken_language() in LANGUAGES:
             self.language.choose(spoken_language())
         self._card = Card(padding=PADDING, spacing=12)
-        above: list[QWidget] = [self.editor, self._earlier_title, self.earlier]
-        for part in above:
+        for part in (self.editor, self._earlier_title, self.earlier):
             self._card.column.addWidget(part)
         for title, control in (
-            (self._added_title, self.added),
-            (self._language_title, self.language),
-            (self._sheet, self.paper),
+            (tr("Extra pages"), self.added),
+            (tr("Patient letter"), self.language),
+            (tr("Paper"), self.paper),
         ):
             row = QHBoxLayout()
-            row.addWidget(title, 1)
+            row.addWidget(_title(title), 1)
             row.addWidget(control)
             self._card.column.addLayout(row)
-        self._card.column.addWidget(self._also)
+        self._card.column.addWidget(_title(tr("Files to export")))
         self._card.column.addWidget(self.formats)
         self._card.column.addStretch(1)
         self._row = QBoxLayout(QBoxLayout.Direction.LeftToRight, self)
-        self._pages = QHBoxLayout()
-        self._pages.addWidget(self.small)
-        self._pages.addWidget(self.reading, 1)
-        self._row.addLayout(self._pages, 1)
+        pages = QHBoxLayout()
+        pages.addWidget(self.small)
+        pages.addWidget(self.reading, 1)
+        self._row.addLayout(pages, 1)
         self._row.addWidget(self._card)
+        scaled(self._row.setContentsMargins, 24, 16, 24, 16)
+        scaled(self._row.setSpacing, 16)
+        scaled(pages.setSpacing, 8)
         self.editor.left.connect(self.focus)
         self.formats.turned.connect(self.options_changed)
         self.added.turned.connect(self.options_changed)
@@ -110,7 +107,7 @@ class ReportPage(Themed):
         self.earlier.activated.connect(self.options_changed)
         self.sheets.sharper_required.connect(self.sharper_required)
         self.show_visits([])
-        self._apply_theme()
+        on_theme(self._fit_card)
 
     @property
     def tab_order(self) -> list[QWidget]:
@@ -182,9 +179,6 @@ class ReportPage(Themed):
         if begun and begun[-1] != self.small.number:
             self.small.mark(begun[-1])
 
-    def _apply_theme(self) -> None:
-        px = current_theme().px
-        self._row.setContentsMargins(px(24), px(16), px(24), px(16))
-        self._row.setSpacing(px(16))
-        self._pages.setSpacing(px(8))
-        self._fit_card()
+
+def _title(words: str) -> Text:
+    return Text(words, size=16, weight=SEMIBOLD)

@@ -28,10 +28,10 @@ class BenchDifferences(Card):
     """Grey is the error; what is beyond it has a circle."""
 
     def __init__(self) -> None:
+        super().__init__(padding=PADDING)
         self.title = Text(size=16, weight=SEMIBOLD)
         self.table = CellTable(tr("Differences"), row=ROW, head=HEAD)
         self.no_proof = Text(tr(NO_PROOF), size=12, tone="ink2", wraps=True)
-        super().__init__(padding=PADDING)
         self.column.addWidget(self.title)
         self.column.addWidget(self.table)
         self.column.addStretch(1)

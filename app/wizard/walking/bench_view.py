@@ -3,7 +3,7 @@
 from collections.abc import Sequence
 from dataclasses import dataclass
 
-from PySide6.QtCore import Qt, Signal
+from PySide6.QtCore import Qt
 from PySide6.QtGui import QAccessible
 from PySide6.QtWidgets import QBoxLayout, QHBoxLayout, QVBoxLayout, QWidget
 
@@ -12,13 +12,12 @@ from app.results.compared_words import not_reported_in_words
 from app.summary.beside import changes_on_curves
 from app.summary.comparison import Comparison
 from app.summary.conditions import Part
-from app.theme.current import current_theme
+from app.theme.current import current_theme, on_theme, scaled
 from app.theme.icons import Icon
 from app.widgets.focus_ring import NO_RING
 from app.widgets.icons import IconMark
 from app.widgets.segmented import Segmented
 from app.widgets.text import SEMIBOLD, Text
-from app.widgets.themed import Themed
 from app.wizard.walking.alignment_card import AlignmentCard, AlignmentRow
 from app.wizard.walking.bench import ChangeEntry
 from app.wizard.walking.bench_differences import BenchDifferences
@@ -47,19 +46,10 @@ class BenchState:
     is_simulated: bool
 
 
-class BenchView(Themed):
-    """Three cards; where they have not all room beside one another, one at a time.
-
-    Signals
-    -------
-    chosen, reported
-        As of `AlignmentCard`.
-    """
+class BenchView(QWidget):
+    """Three cards; where they have not all room beside one another, one at a time."""
 
     accessible_role = QAccessible.Role.Grouping
-
-    chosen = Signal(int, bool)
-    reported = Signal()
 
     def __init__(self, entry: ChangeEntry) -> None:
         super().__init__()
@@ -76,11 +66,8 @@ class BenchView(Themed):
         self._curves = QWidget()
         self._frames: dict[tuple[Side, JointKind], ComparedFrame] = {}
         self._build()
-        self.alignments.chosen.connect(self.chosen)
-        self.alignments.reported.connect(self.reported)
         self.tabs.chosen.connect(self._arrange)
-        self._apply_theme()
-        self._arrange()
+        on_theme(self._arrange)
 
     @property
     def tab_order(self) -> list[QWidget]:
@@ -102,13 +89,10 @@ class BenchView(Themed):
         self._show_curves(state)
         self._arrange()
 
-    def show_entry(self, title: str) -> None:
-        self.alignments.show_entry(title)
-
     def set_compact(self, is_compact: bool) -> None:
         self._is_compact = is_compact
         self.alignments.set_compact(is_compact)
-        self._apply_theme()
+        self.first.set_size(16 if is_compact else 20)
         self._arrange()
 
     def fit(self, room: int) -> None:
@@ -155,18 +139,19 @@ class BenchView(Themed):
         words.setSpacing(2)
         words.addWidget(self.first)
         words.addWidget(self.then)
-        self._head = QHBoxLayout()
-        self._head.addWidget(self._mark, 0, Qt.AlignmentFlag.AlignTop)
-        self._head.addLayout(words, 1)
-        self._row = QHBoxLayout()
-        self._row.addWidget(self.alignments)
-        self._row.addWidget(self._curves, 1)
-        self._row.addWidget(self.differences)
-        self._column = QVBoxLayout(self)
-        self._column.setContentsMargins(0, 0, 0, 0)
-        self._column.addLayout(self._head)
-        self._column.addWidget(self.tabs)
-        self._column.addLayout(self._row, 1)
+        head, row, column = QHBoxLayout(), QHBoxLayout(), QVBoxLayout(self)
+        head.addWidget(self._mark, 0, Qt.AlignmentFlag.AlignTop)
+        head.addLayout(words, 1)
+        row.addWidget(self.alignments)
+        row.addWidget(self._curves, 1)
+        row.addWidget(self.differences)
+        column.setContentsMargins(0, 0, 0, 0)
+        column.addLayout(head)
+        column.addWidget(self.tabs)
+        column.addLayout(row, 1)
+        for layout in (head, column, self._curves_column):
+            scaled(layout.setSpacing, 12)
+        scaled(row.setSpacing, BETWEEN)
 
     def _arrange(self) -> None:
         px, choice = current_theme().px, self.tabs.choice
@@ -186,12 +171,3 @@ class BenchView(Themed):
             is_fixed = width and not is_tabbed
             card.setMinimumWidth(width if is_fixed else 0)
             card.setMaximumWidth(width if is_fixed else ANY_WIDTH)
-
-    def _apply_theme(self) -> None:
-        px = current_theme().px
-        self.first.set_size(16 if self._is_compact else 20)
-        self._column.setSpacing(px(12))
-        self._row.setSpacing(px(BETWEEN))
-        self._head.setSpacing(px(12))
-        self._curves_column.setSpacing(px(12))
-        self._arrange()

@@ -7,7 +7,7 @@ from PySide6.QtCore import QSize, Qt
 from PySide6.QtGui import QAccessible
 from PySide6.QtWidgets import QBoxLayout, QHBoxLayout, QSizePolicy, QVBoxLayout
 
-from app.theme.current import current_theme, px
+from app.theme.current import on_theme, px, scaled
 from app.widgets.button import Button, ButtonKind
 from app.widgets.card import Card
 from app.widgets.chip import Chip
@@ -29,32 +29,33 @@ class WalkFigures(Card):
     """Strides and cadence, to be read from across the room."""
 
     def __init__(self) -> None:
+        super().__init__(spacing=0)
         self._strides = Text(NO_FIGURE, size=FIGURE, weight=SEMIBOLD)
         self._cadence = Text(NO_FIGURE, size=FIGURE, weight=SEMIBOLD)
         self._counts = {side: Text("0", size=18, weight=MEDIUM) for side in Side}
         self._chips = {side: Chip(side) for side in Side}
         self._line = Hairline()
         self._unit = Text(tr("steps/min"), size=14, tone="ink2")
-        self._stride_row, self._cadence_row, self._sides = QHBoxLayout(), QHBoxLayout(), QBoxLayout(DOWN)
+        strides, cadence, self._sides = QHBoxLayout(), QHBoxLayout(), QBoxLayout(DOWN)
         self._both = QBoxLayout(DOWN)
-        self._pairs: list[QHBoxLayout] = []
         self._parts: list[QBoxLayout] = []
         self.in_words = ""
-        super().__init__(spacing=0)
         self.setSizePolicy(QSizePolicy.Policy.Preferred, QSizePolicy.Policy.Fixed)
         for side in Side:
             pair = QHBoxLayout()
             pair.addWidget(self._chips[side])
             pair.addWidget(self._counts[side])
-            self._pairs.append(pair)
+            scaled(pair.setSpacing, 8)
             self._sides.addLayout(pair)
-        self._stride_row.addWidget(self._strides)
-        self._stride_row.addStretch(1)
-        self._stride_row.addLayout(self._sides)
-        self._cadence_row.addWidget(self._cadence)
-        self._cadence_row.addWidget(self._unit, 0, Qt.AlignmentFlag.AlignBottom)
-        self._cadence_row.addStretch(1)
-        for title, row in ((tr("Strides"), self._stride_row), (tr("Cadence"), self._cadence_row)):
+        strides.addWidget(self._strides)
+        strides.addStretch(1)
+        strides.addLayout(self._sides)
+        cadence.addWidget(self._cadence)
+        cadence.addWidget(self._unit, 0, Qt.AlignmentFlag.AlignBottom)
+        cadence.addStretch(1)
+        for row in (strides, cadence, self._sides):
+            scaled(row.setSpacing, 8)
+        for title, row in ((tr("Strides"), strides), (tr("Cadence"), cadence)):
             part = QBoxLayout(DOWN)
             part.addWidget(Text(title, size=14, tone="ink2"))
             part.addLayout(row)
@@ -63,7 +64,8 @@ class WalkFigures(Card):
         self._both.addWidget(self._line)
         self._both.addLayout(self._parts[1], 1)
         self.column.addLayout(self._both)
-        self._apply_theme()
+        self.set_compact(is_compact=False, is_narrow=False)
+        on_theme(self._reserve_room)
 
     def show_figures(self, strides: Mapping[Side, int], cadence_steps_min: float) -> None:
         shown = str(max(strides.values())) if strides else NO_FIGURE
@@ -94,51 +96,41 @@ class WalkFigures(Card):
         """Stand in one line; where it is narrow, with the words above the figures."""
         self._both.setDirection(ACROSS if is_compact else DOWN)
         self._sides.setDirection(ACROSS if is_compact else DOWN)
+        scaled(self._both.setSpacing, 32 if is_compact else 4)
         for part in self._parts:
             part.setDirection(ACROSS if is_compact and not is_narrow else DOWN)
+            scaled(part.setSpacing, 12 if part.direction() is ACROSS else 0)
         self._line.setVisible(not is_compact)
-        self._padding = 8.0 if is_compact else 16.0
-        self._apply_theme()
+        side = 8 if is_compact else 16
+        scaled(self.column.setContentsMargins, side, side * 0.75, side, side * 0.75)
 
     def _reserve_room(self) -> None:
         """As wide as the figures get, so that nothing jumps."""
-        for label in (self._strides, self._cadence):
+        for label in (self._strides, self._cadence, *self._counts.values()):
             label.setMinimumWidth(label.fontMetrics().horizontalAdvance("000"))
-        for label in self._counts.values():
-            label.setMinimumWidth(label.fontMetrics().horizontalAdvance("000"))
-
-    def _apply_theme(self) -> None:
-        super()._apply_theme()
-        px = current_theme().px
-        for row in (self._stride_row, self._cadence_row, *self._pairs):
-            row.setSpacing(px(8))
-        self._sides.setSpacing(px(8))
-        self._both.setSpacing(px(32) if self._both.direction() is ACROSS else px(4))
-        for part in self._parts:
-            part.setSpacing(px(12) if part.direction() is ACROSS else 0)
-        self._reserve_room()
 
 
 class StoppedCard(Card):
     """What was just recorded, and the one question about it."""
 
     def __init__(self) -> None:
+        super().__init__()
         self._title = Text(size=16, weight=SEMIBOLD, wraps=True)
         self._facts = Text(size=14, tone="ink2", wraps=True)
         self.keep = Button("", ButtonKind.PRIMARY, key="I")
         self.discard = Button(tr("Exclude"), ButtonKind.SECONDARY, key="X")
-        self._row, self._verbs = QBoxLayout(ACROSS), QHBoxLayout()
-        super().__init__()
+        self._row, verbs, words = QBoxLayout(ACROSS), QHBoxLayout(), QVBoxLayout()
         self.setSizePolicy(QSizePolicy.Policy.Preferred, QSizePolicy.Policy.Fixed)
-        words = QVBoxLayout()
         words.setSpacing(0)
         words.addWidget(self._title)
         words.addWidget(self._facts)
         self._row.addLayout(words, 1)
-        self._verbs.addStretch(1)
-        self._verbs.addWidget(self.discard)
-        self._verbs.addWidget(self.keep)
-        self._row.addLayout(self._verbs)
+        verbs.addStretch(1)
+        verbs.addWidget(self.discard)
+        verbs.addWidget(self.keep)
+        self._row.addLayout(verbs)
+        for row in (self._row, verbs):
+            scaled(row.setSpacing, 12)
         self.column.addLayout(self._row)
 
     def show_walk(self, walk: WalkRow | None, facts: str) -> None:
@@ -160,11 +152,6 @@ class StoppedCard(Card):
         """Put the buttons below the words where the width is too small for both."""
         self._row.setDirection(DOWN if is_narrow else ACROSS)
 
-    def _apply_theme(self) -> None:
-        super()._apply_theme()
-        for row in (self._row, self._verbs):
-            row.setSpacing(px(12))
-
 
 class EmptyCard(Card):
     """Before the first walk: what to do, and why to stand a moment."""
@@ -172,6 +159,7 @@ class EmptyCard(Card):
     accessible_role = QAccessible.Role.Note
 
     def __init__(self) -> None:
+        super().__init__()
         self._what = Text(tr("Choose a condition, then press Space."), size=26, weight=SEMIBOLD, wraps=True)
         self._then = Text(
             tr("Stand still for two seconds first: ankle angles are then correct from the start."),
@@ -179,7 +167,6 @@ class EmptyCard(Card):
             tone="ink2",
             wraps=True,
         )
-        super().__init__()
         self.setAccessibleName(f"{self._what.text()} {self._then.text()}")
         for text in (self._what, self._then):
             text.setAlignment(Qt.AlignmentFlag.AlignCenter)
@@ -193,10 +180,10 @@ class NextCard(Card):
     """What the next walk is called and which test it is, beside the button that starts it."""
 
     def __init__(self) -> None:
+        super().__init__()
         self._title = Text(size=14, weight=MEDIUM, tone="ink2")
         self.chooser = LabelChooser()
         self.test = TimedChooser()
-        super().__init__()
         self.setSizePolicy(QSizePolicy.Policy.Preferred, QSizePolicy.Policy.Fixed)
         head = QHBoxLayout()
         head.addWidget(self._title, 1)

@@ -2,15 +2,16 @@
 
 import math
 
-from PySide6.QtCore import QRectF, QSize
-from PySide6.QtGui import QAccessible, QColor, QPainter, QPaintEvent
+from PySide6.QtCore import QRectF
+from PySide6.QtGui import QAccessible, QColor, QPainter
 from PySide6.QtWidgets import QHBoxLayout, QSizePolicy, QSpacerItem, QWidget
 
 from app.charts.axes import ANKLE_DEG, KNEE_DEG, degrees_in_words
 from app.plots.phase_lanes import Swatch
-from app.theme.current import current_theme, px
+from app.theme.current import current_theme, px, scaled
 from app.widgets.card import Card
 from app.widgets.chip import SideKey
+from app.widgets.painted import Painted
 from app.widgets.text import MEDIUM, SEMIBOLD, Text
 from app.wizard.walking.live_lanes import LiveLanes
 from app.wizard.walking.live_strip import LiveStrip
@@ -30,6 +31,7 @@ class WalkingCharts(Card):
     accessible_role = QAccessible.Role.Chart
 
     def __init__(self) -> None:
+        super().__init__(spacing=4)
         self.hip = LiveStrip(HIP_DEG, HIP_TICK_DEG)
         self.knee = LiveStrip(KNEE_DEG, KNEE_TICK_DEG)
         self.ankle = LiveStrip(ANKLE_DEG, ANKLE_TICK_DEG)
@@ -41,14 +43,10 @@ class WalkingCharts(Card):
         self._has_hips = False
         self._keys = {side: SideKey(side) for side in Side}
         self._is_compact = False
-        self._legend_pairs: list[QHBoxLayout] = []
         self._legend_gaps: list[QSpacerItem] = []  # they give way where words are long
         self._lines = Hairline(), Hairline()
         self._hip_line = Hairline()
-        self._heads: list[QHBoxLayout] = []
-        self._legend, self._key_row = QHBoxLayout(), QHBoxLayout()
         self._phases_title = Text(tr("Gait phases"), size=14, tone="ink2")
-        super().__init__(spacing=4)
         self.setSizePolicy(QSizePolicy.Policy.Expanding, QSizePolicy.Policy.Expanding)
         self._build()
         self._apply_theme()
@@ -71,8 +69,9 @@ class WalkingCharts(Card):
             widget.setVisible(not is_compact)
         self._hip_line.setVisible(self._has_hips and not is_compact)
         self.lanes.set_compact(is_compact)
-        self._padding, self._spacing = (8.0, 2.0) if is_compact else (16.0, 4.0)
-        self._apply_theme()
+        side = 8 if is_compact else 16
+        scaled(self.column.setContentsMargins, side, side * 0.75, side, side * 0.75)
+        scaled(self.column.setSpacing, 2 if is_compact else 4)
 
     def set_seconds(self, seconds: float) -> None:
         for chart in (self.hip, self.knee, self.ankle, self.lanes):
@@ -119,9 +118,12 @@ class WalkingCharts(Card):
         self._hip_head.setLayout(hip)
         knee = self._head(Text(tr("Knee"), size=16, weight=SEMIBOLD), tr("flexion + (°)"))
         knee.addStretch(1)
-        knee.addLayout(self._key_row)
+        keys, legend = QHBoxLayout(), QHBoxLayout()
+        scaled(keys.setSpacing, 20)
+        scaled(legend.setSpacing, 6)
+        knee.addLayout(keys)
         for key in self._keys.values():
-            self._key_row.addWidget(key)
+            keys.addWidget(key)
         ankle = self._head(Text(tr("Ankle"), size=16, weight=SEMIBOLD), tr("dorsiflexion + (°)"))
         ankle.addStretch(1)
         ankle.addWidget(self._provisional)
@@ -135,14 +137,14 @@ class WalkingCharts(Card):
         )
         for phase, word in words:
             pair = QHBoxLayout()
+            scaled(pair.setSpacing, 6)
             pair.addWidget(Swatch(phase))
             pair.addWidget(Text(word, size=12, tone="ink2"))
-            if self._legend_pairs:
+            if legend.count():
                 self._legend_gaps.append(QSpacerItem(0, 0, QSizePolicy.Policy.Maximum))
-                self._legend.addItem(self._legend_gaps[-1])
-            self._legend.addLayout(pair)
-            self._legend_pairs.append(pair)
-        phases.addLayout(self._legend)
+                legend.addItem(self._legend_gaps[-1])
+            legend.addLayout(pair)
+        phases.addLayout(legend)
         self.column.addWidget(self._hip_head)
         self.column.addWidget(self.hip, HIP_SHARE)
         self.column.addWidget(self._hip_line)
@@ -165,36 +167,24 @@ class WalkingCharts(Card):
         mark = Text(tr("SIMULATED"), size=12, weight=SEMIBOLD)
         head.addWidget(mark)
         self._simulated.append(mark)
-        self._heads.append(head)
+        scaled(head.setSpacing, 8)
         return head
 
     def _apply_theme(self) -> None:
-        super()._apply_theme()
-        px = current_theme().px
-        for head in self._heads:
-            head.setSpacing(px(8))
-        self._key_row.setSpacing(px(20))
-        self._legend.setSpacing(px(6))
         for gap in self._legend_gaps:
             gap.changeSize(px(14), 0, QSizePolicy.Policy.Maximum)
-        for pair in self._legend_pairs:
-            pair.setSpacing(px(6))
 
 
-class Hairline(QWidget):
+class Hairline(Painted):
     """A line across, between things that belong together."""
 
     def __init__(self) -> None:
         super().__init__()
         self.setSizePolicy(QSizePolicy.Policy.Expanding, QSizePolicy.Policy.Fixed)
+        scaled(self.setFixedHeight, 9)
 
-    def sizeHint(self) -> QSize:
-        return QSize(1, px(9))
-
-    def paintEvent(self, _event: QPaintEvent) -> None:
-        painter = QPainter(self)
-        height = px(1)
-        line = QRectF(0, (self.height() - height) // 2, self.width(), height)
+    def draw(self, painter: QPainter) -> None:
+        line = QRectF(0, (self.height() - px(1)) // 2, self.width(), px(1))
         painter.fillRect(line, QColor(current_theme().colours.line))
 
 

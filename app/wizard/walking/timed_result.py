@@ -12,7 +12,7 @@ from PySide6.QtWidgets import QFrame, QHBoxLayout, QScrollArea, QVBoxLayout, QWi
 from app.plots.course import CourseCard
 from app.summary.course_lanes import CourseLane, CourseVisit
 from app.summary.course_words import changes_since_in_words
-from app.theme.current import px
+from app.theme.current import scaled
 from app.theme.icons import Icon
 from app.widgets.card import Card
 from app.widgets.focus_ring import NO_RING
@@ -20,7 +20,6 @@ from app.widgets.icons import IconMark
 from app.widgets.table import CellTable, TableColumn, TableRow
 from app.widgets.table_cells import RIGHT, TextCell
 from app.widgets.text import SEMIBOLD, Text
-from app.widgets.themed import Themed
 from app.wording.timed_tests import (
     course_sentence,
     error_words,
@@ -69,7 +68,7 @@ class TimedResult:
         return self.attempts[-1]
 
 
-class TimedResultView(Themed):
+class TimedResultView(QWidget):
     """In the place of the curves, between walks."""
 
     accessible_role = QAccessible.Role.Grouping
@@ -84,7 +83,6 @@ class TimedResultView(Themed):
         self.course = CourseCard()
         self.errors = Text(size=12, tone="ink2", wraps=True)
         self._build()
-        self._apply_theme()
 
     def show_state(self, state: TimedResult) -> None:
         found, latest = state.latest.found, state.latest
@@ -129,9 +127,10 @@ class TimedResultView(Themed):
         head.addWidget(self._mark, 0, Qt.AlignmentFlag.AlignTop)
         head.addLayout(words, 1)
         inside = QWidget()
-        self._column = QVBoxLayout(inside)
-        self._column.setContentsMargins(0, 0, 0, 0)
-        self._column.addLayout(head)
+        column = QVBoxLayout(inside)
+        column.setContentsMargins(0, 0, 0, 0)
+        scaled(column.setSpacing, 12)
+        column.addLayout(head)
         attempts, self._parts_card = Card(), Card()
         for card, title, table in (
             (attempts, tr("Attempts"), self.attempts),
@@ -139,10 +138,10 @@ class TimedResultView(Themed):
         ):
             card.column.addWidget(Text(title, size=16, weight=SEMIBOLD))
             card.column.addWidget(table)
-            self._column.addWidget(card)
-        self._column.insertWidget(2, self.course)
-        self._column.addWidget(self.errors)
-        self._column.addStretch(1)
+            column.addWidget(card)
+        column.insertWidget(2, self.course)
+        column.addWidget(self.errors)
+        column.addStretch(1)
         scroll = QScrollArea()
         scroll.setWidget(inside)
         scroll.setWidgetResizable(True)
@@ -151,9 +150,6 @@ class TimedResultView(Themed):
         outer = QVBoxLayout(self)
         outer.setContentsMargins(0, 0, 0, 0)
         outer.addWidget(scroll)
-
-    def _apply_theme(self) -> None:
-        self._column.setSpacing(px(12))
 
 
 def number(value: float, digits: int) -> str:
