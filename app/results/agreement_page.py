@@ -3,7 +3,7 @@
 from collections.abc import Sequence
 
 from PySide6.QtCore import Signal
-from PySide6.QtWidgets import QFrame, QHBoxLayout, QStackedWidget, QVBoxLayout, QWidget
+from PySide6.QtWidgets import QHBoxLayout, QStackedWidget, QVBoxLayout, QWidget
 
 from app.theme.current import scaled
 from app.theme.icons import Icon
@@ -46,11 +46,7 @@ class AgreementPage(QWidget):
         self.note = Text(tone="ink2", wraps=True)
         self.waiting = SentencePage()
         self.sheets = Sheets()
-        self.reading = ReadingArea()
-        self.reading.setFrameShape(QFrame.Shape.NoFrame)
-        self.reading.setWidgetResizable(True)
-        self.reading.setWidget(self.sheets)
-        self.reading.setAccessibleName(tr("Agreement report"))
+        self.reading = ReadingArea(self.sheets, tr("Agreement report"))
         self._stack = QStackedWidget()
         for page in (self.waiting, self.reading):
             self._stack.addWidget(page)

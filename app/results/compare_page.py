@@ -11,7 +11,7 @@ from PySide6.QtWidgets import QApplication, QGridLayout, QHBoxLayout, QVBoxLayou
 from app.charts.cycles import Band, SideCycle
 from app.plots.compared_chart import ComparedChart, ComparedFrame
 from app.plots.cycle_charts import CycleCharts
-from app.results.compared_card import ComparedCard, scrolling
+from app.results.compared_card import ComparedCard
 from app.results.compared_words import (
     conclusion,
     days_of,
@@ -33,6 +33,7 @@ from app.widgets.chips import Chips
 from app.widgets.choice import Choice
 from app.widgets.heard_order import hear_as_laid_out
 from app.widgets.icons import IconMark
+from app.widgets.reading_area import scrolled
 from app.widgets.segmented import Segmented
 from app.widgets.text import Text
 from app.wording.numbers import MINUS
@@ -205,7 +206,7 @@ class ComparePage(QWidget):
         scaled(reported.setSpacing, 4)
         for (side, kind), frame in self.frames.items():
             grid.addWidget(frame, list(JointKind).index(kind), 0 if side is Side.LEFT else 1)
-        self._curves = scrolling(room)
+        self._curves = scrolled(room, is_upright=False)
         self._left.addWidget(self._curves, 1)
         self._left.addWidget(self.side_charts, 1)
         self._left.addWidget(self.chips)
@@ -268,21 +269,17 @@ class ComparePage(QWidget):
 
     def _offer_kinds(self) -> None:
         before = self.kinds.currentData()
-        self.kinds.blockSignals(True)
-        self.kinds.clear()
-        self.kinds.addItem(tr("Walks of this visit"), Contrast.CONDITIONS)
+        kinds: list[tuple[str, object]] = [(tr("Walks of this visit"), Contrast.CONDITIONS)]
         if self._has_visits and not self._visits:
-            self.kinds.addItem(tr("Visits"), Contrast.VISITS)
+            kinds.append((tr("Visits"), Contrast.VISITS))
         for number, visits in enumerate(self._visits or ()):  # the first keeps the data of them all
             stated = tr("Visits, {condition}").format(condition=condition_in_words(visits.condition))
-            self.kinds.addItem(stated, f"{Contrast.VISITS} {number}" if number else Contrast.VISITS)
+            kinds.append((stated, f"{Contrast.VISITS} {number}" if number else Contrast.VISITS))
         if len(self._every) > 1:
-            self.kinds.addItem(tr("Any visits and conditions"), Contrast.CHOSEN)
-        self.kinds.addItem(self._affected_words, Contrast.SIDES)
+            kinds.append((tr("Any visits and conditions"), Contrast.CHOSEN))
+        kinds.append((self._affected_words, Contrast.SIDES))
         first = Contrast.CONDITIONS if len(self._conditions) > 1 else Contrast.SIDES
-        self.kinds.setCurrentIndex(max(self.kinds.findData(before if before is not None else first), 0))
-        self.kinds.blockSignals(False)
-        self.kinds.updateGeometry()
+        self.kinds.offer(kinds, before if before is not None else first)
         self._on_kind_changed()
 
     def _on_kind_changed(self) -> None:
@@ -321,16 +318,9 @@ class ComparePage(QWidget):
     def _offer_bases(self, parts: Sequence[Part]) -> None:
         pattern = tr("Walk: {letter}") if self.kind is Contrast.SIDES else tr("Starting point: {letter}")
         shown = [part for part in parts if self.kind is Contrast.SIDES or part.letter in self.chips.chosen]
-        before = self.bases.currentData()
-        self.bases.blockSignals(True)
-        self.bases.clear()
-        for part in shown:
-            self.bases.addItem(pattern.format(letter=part.letter), part.letter)
         last = len(shown) - 1 if self.kind is Contrast.SIDES else 0
-        found = self.bases.findData(before)
-        self.bases.setCurrentIndex(found if found >= 0 else last)
-        self.bases.blockSignals(False)
-        self.bases.updateGeometry()
+        lines = [(pattern.format(letter=part.letter), part.letter) for part in shown]
+        self.bases.offer(lines, self.bases.currentData(), last)
         self.bases.setEnabled(len(shown) > 1)
 
     def _on_turned(self) -> None:

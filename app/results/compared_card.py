@@ -2,8 +2,7 @@
 
 from collections.abc import Sequence
 
-from PySide6.QtCore import Qt
-from PySide6.QtWidgets import QFrame, QHBoxLayout, QScrollArea, QSizePolicy, QVBoxLayout, QWidget
+from PySide6.QtWidgets import QHBoxLayout, QSizePolicy, QVBoxLayout, QWidget
 
 from app.plots.difference_plot import DifferencePlot
 from app.results.compared_plot import comparison_groups, side_groups
@@ -11,6 +10,7 @@ from app.results.compared_table import comparison_table, has_brief_table, side_t
 from app.summary.comparison import Comparison, Contrast, SideRow
 from app.theme.current import current_theme, scaled
 from app.widgets.card import Card
+from app.widgets.reading_area import scrolled
 from app.widgets.table import CellTable
 from app.widgets.text import SEMIBOLD, Text
 from app.widgets.toggle import Toggle
@@ -47,7 +47,7 @@ class ComparedCard(Card):
         self._content.addWidget(self.plot)
         self._content.addWidget(self.table)
         self._content.addStretch(1)
-        self.area = scrolling(content)
+        self.area = scrolled(content, is_upright=False)
         self.setSizePolicy(QSizePolicy.Policy.Expanding, QSizePolicy.Policy.Expanding)
         self.column.addWidget(self.area, 1)
         self.all_measures.toggled.connect(self._show_table)
@@ -105,13 +105,3 @@ class ComparedCard(Card):
     def _can_be_brief(self) -> bool:
         found = self._found
         return found is not None and found.kind is Contrast.VISITS and not self._is_spacious and has_brief_table(found)
-
-
-def scrolling(content: QWidget) -> QScrollArea:
-    """`content` over all of its room, scrolling where that is too small."""
-    area = QScrollArea()
-    area.setWidgetResizable(True)
-    area.setFrameShape(QFrame.Shape.NoFrame)
-    area.setFocusPolicy(Qt.FocusPolicy.NoFocus)
-    area.setWidget(content)
-    return area

@@ -10,7 +10,6 @@ import numpy as np
 from PySide6.QtCore import Qt, Signal
 from PySide6.QtWidgets import (
     QBoxLayout,
-    QFrame,
     QGridLayout,
     QHBoxLayout,
     QStackedWidget,
@@ -81,7 +80,6 @@ class FoundPage(QWidget):
         self.angle = _AngleCard()
         self.figures = _FiguresCard()
         self.noticed = Card()
-        self.cards = ReadingArea()
         self._stack = QStackedWidget()
         self._build()
         self.back.clicked.connect(self.closed)
@@ -161,12 +159,8 @@ class FoundPage(QWidget):
         for widget in (self.angle, self.figures, self.noticed):
             cards.addWidget(widget)
         cards.addStretch(1)
-        self.cards.setWidget(column)
-        self.cards.setWidgetResizable(True)
-        self.cards.setFrameShape(QFrame.Shape.NoFrame)
+        self.cards = ReadingArea(column, tr("Calibration of this joint"))
         self.cards.setHorizontalScrollBarPolicy(Qt.ScrollBarPolicy.ScrollBarAlwaysOff)
-        self.cards.setFocusPolicy(Qt.FocusPolicy.StrongFocus)  # so that the keys can scroll it
-        self.cards.setAccessibleName(tr("Calibration of this joint"))
         for page in (self.waiting, self.cards):
             self._stack.addWidget(page)
         page = QVBoxLayout(self)

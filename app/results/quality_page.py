@@ -8,7 +8,6 @@ from PySide6.QtCore import QPointF, QRectF, Qt, Signal
 from PySide6.QtGui import QColor, QPainter, QPaintEvent
 from PySide6.QtWidgets import QGridLayout, QHBoxLayout, QSizePolicy, QVBoxLayout, QWidget
 
-from app.results.compared_card import scrolling
 from app.summary.data_quality import DataQuality, QualityLine
 from app.theme.current import current_theme, on_theme, scaled
 from app.theme.ground import Ground, set_ground
@@ -20,6 +19,7 @@ from app.widgets.card import Card
 from app.widgets.facts_table import fact_columns, fact_rows, hip_columns, hip_rows
 from app.widgets.findings_list import FindingsList
 from app.widgets.icons import IconMark
+from app.widgets.reading_area import scrolled
 from app.widgets.table import CellTable
 from app.widgets.text import SEMIBOLD, Text
 from app.widgets.toggle import Toggle
@@ -135,8 +135,7 @@ class QualityPage(QWidget):
         self._list = QVBoxLayout(cards)
         self._list.setContentsMargins(0, 0, 0, 0)
         self._list.addStretch(1)
-        self._scroll = scrolling(cards)
-        self._scroll.setHorizontalScrollBarPolicy(Qt.ScrollBarPolicy.ScrollBarAlwaysOff)
+        self._scroll = scrolled(cards)
         self._order_card = Card()
         order = QHBoxLayout()
         order.setSpacing(12)
@@ -150,7 +149,7 @@ class QualityPage(QWidget):
         for table in (self.facts, self.hip_facts):
             found.addWidget(table)
         found.addStretch(1)
-        self._figures_card.column.addWidget(scrolling(tables), 2)
+        self._figures_card.column.addWidget(scrolled(tables, is_upright=False), 2)
         self._figures_card.column.addWidget(Text(tr("All findings"), size=16, weight=SEMIBOLD))
         self._figures_card.column.addWidget(self.findings, 1)
         self._doors = QGridLayout()

@@ -126,15 +126,9 @@ class ResultPage(QWidget):
         self.compare.show_conditions(analysis, parts, is_prosthetic, age_and_height(session))
         self.thin.show_visit(visit)
         names = [recording.name for recording in analysis.recordings]
-        self.recordings.blockSignals(True)
-        self.recordings.clear()
-        for name in names:
-            self.recordings.addItem(str(called.get(name, name)), name)
         proposed = default_walks(visit)
         first = names.index(proposed[-1]) if proposed else 0
-        self.recordings.setCurrentIndex(names.index(shown) if shown in names else first)
-        self.recordings.blockSignals(False)
-        self.recordings.updateGeometry()
+        self.recordings.offer([(str(called.get(name, name)), name) for name in names], shown, first)
         self.recordings.setVisible(bool(names))
         if self._is_to_be_placed():
             self._place()
@@ -443,7 +437,7 @@ class ResultPage(QWidget):
             return
         facts = Facts(visit, recording, course=self._course)
         headline = self._headline = headline_of(facts)
-        self.thin.offer(facts, headline)
+        self.thin.offer_beside(facts, headline)
         if self.thin.walks:
             facts = Facts(visit, recording, self.thin.walks, self._course)
             headline = self._headline = headline_of(facts)

@@ -7,7 +7,7 @@ from collections.abc import Mapping, Sequence
 
 from PySide6.QtCore import Qt, Signal
 from PySide6.QtGui import QColor, QPalette
-from PySide6.QtWidgets import QDialog, QFrame, QGridLayout, QHBoxLayout, QVBoxLayout, QWidget
+from PySide6.QtWidgets import QDialog, QGridLayout, QHBoxLayout, QVBoxLayout, QWidget
 
 from app.theme.current import current_theme, px
 from app.widgets.button import Button, ButtonKind
@@ -70,11 +70,7 @@ class LeavingDialog(QDialog):
         ]
 
     def _build(self) -> None:
-        scroll = ReadingArea()
-        scroll.setWidgetResizable(True)
-        scroll.setFrameShape(QFrame.Shape.NoFrame)
-        scroll.setAccessibleName(tr("Everything exported besides measured values"))
-        scroll.setWidget(self._table)
+        scroll = ReadingArea(self._table, tr("Everything exported besides measured values"))
         buttons = QHBoxLayout()
         buttons.addStretch(1)
         buttons.addWidget(self.cancel)

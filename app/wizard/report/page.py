@@ -4,7 +4,7 @@ from collections.abc import Sequence
 from uuid import UUID
 
 from PySide6.QtCore import QEvent, Signal
-from PySide6.QtWidgets import QBoxLayout, QFrame, QHBoxLayout, QSizePolicy, QWidget
+from PySide6.QtWidgets import QBoxLayout, QHBoxLayout, QSizePolicy, QWidget
 
 from app.theme.current import on_theme, px, scaled
 from app.widgets.card import Card
@@ -43,11 +43,7 @@ class ReportPage(QWidget):
         super().__init__()
         self._is_narrow = False
         self.sheets, self.small = Sheets(), SmallSheets()
-        self.reading = ReadingArea()
-        self.reading.setFrameShape(QFrame.Shape.NoFrame)
-        self.reading.setWidgetResizable(True)
-        self.reading.setWidget(self.sheets)
-        self.reading.setAccessibleName(tr("Report pages"))
+        self.reading = ReadingArea(self.sheets, tr("Report pages"))
         self.editor = CommentEditor()
         self.comment = self.editor.field
         self.formats = Chips(
@@ -141,13 +137,8 @@ class ReportPage(QWidget):
 
     def show_visits(self, visits: Sequence[tuple[UUID, str]]) -> None:
         """Offer earlier visits, each with its words, to be compared with; what was chosen stays."""
-        before = self.chosen_visit
-        self.earlier.clear()
-        self.earlier.addItem(tr("No earlier visit"))
-        for number, words in visits:
-            self.earlier.addItem(words, number)
-        self.earlier.setCurrentIndex(max(self.earlier.findData(before), 0) if before is not None else 0)
-        self.earlier.updateGeometry()
+        lines: list[tuple[str, object]] = [(tr("No earlier visit"), None)]
+        self.earlier.offer(lines + [(words, number) for number, words in visits], self.chosen_visit)
         for part in (self._earlier_title, self.earlier):
             part.setVisible(bool(visits))
 

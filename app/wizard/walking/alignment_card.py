@@ -6,7 +6,7 @@ from enum import StrEnum
 
 from PySide6.QtCore import QRectF, Qt, Signal
 from PySide6.QtGui import QAccessible, QFontMetrics, QMouseEvent, QResizeEvent
-from PySide6.QtWidgets import QFrame, QGridLayout, QHBoxLayout, QScrollArea, QSizePolicy, QVBoxLayout, QWidget
+from PySide6.QtWidgets import QGridLayout, QHBoxLayout, QSizePolicy, QVBoxLayout, QWidget
 
 from app.theme.current import current_theme, px, scaled
 from app.theme.ground import Ground, set_ground
@@ -17,6 +17,7 @@ from app.widgets.choice import Choice
 from app.widgets.field import Field
 from app.widgets.painted import Painted
 from app.widgets.painted_text import LEFT, PaintedText, height_for
+from app.widgets.reading_area import scrolled
 from app.widgets.text import MEDIUM, SEMIBOLD, Text
 from app.wizard.walking.badge import BADGE, Badge
 from app.wizard.walking.bench import ChangeEntry
@@ -68,7 +69,7 @@ class AlignmentCard(Card):
         self._rows: list[_AlignmentRow] = []
         self._list = QWidget()
         self._rows_column = QVBoxLayout(self._list)
-        self._scroll = QScrollArea()
+        self._scroll = scrolled(self._list)
         self.next_title = Text(size=14, weight=SEMIBOLD, wraps=True)
         self.parts = Choice(tr("Part"))
         self.steppers = {name: Stepper() for name in FIGURES}
@@ -166,11 +167,6 @@ class AlignmentCard(Card):
         self._rows_column.setContentsMargins(0, 0, 0, 0)
         self._rows_column.setSpacing(4)
         self._rows_column.addStretch(1)
-        self._scroll.setWidget(self._list)
-        self._scroll.setWidgetResizable(True)
-        self._scroll.setFrameShape(QFrame.Shape.NoFrame)
-        self._scroll.setFocusPolicy(Qt.FocusPolicy.NoFocus)
-        self._scroll.setHorizontalScrollBarPolicy(Qt.ScrollBarPolicy.ScrollBarAlwaysOff)
         self.column.addWidget(self._head_row)
         self.column.addWidget(self._scroll, 1)
         self.column.addWidget(self.next_title)

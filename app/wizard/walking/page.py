@@ -11,9 +11,7 @@ from PySide6.QtGui import QResizeEvent
 from PySide6.QtWidgets import (
     QApplication,
     QBoxLayout,
-    QFrame,
     QHBoxLayout,
-    QScrollArea,
     QVBoxLayout,
     QWidget,
 )
@@ -23,6 +21,7 @@ from app.theme.current import current_theme, on_theme, scaled
 from app.theme.icons import Icon
 from app.widgets.focus_ring import NO_RING
 from app.widgets.notice import Notice
+from app.widgets.reading_area import scrolled
 from app.widgets.segmented import Segmented
 from app.widgets.sensors_progress import ProgressShown, SensorsProgress
 from app.wizard.walking.bench import ChangeEntry
@@ -92,7 +91,7 @@ class WalkingPage(QWidget):
         self.timed = TimedView()
         self.timed_result = TimedResultView()
         self._inside = QWidget()
-        self._scroll = QScrollArea()
+        self._scroll = scrolled(self._inside, is_upright=False)
         self._build()
         self._connect()
         self._space()
@@ -271,10 +270,6 @@ class WalkingPage(QWidget):
         self._column.addWidget(self.timed, 1)
         self._column.addLayout(self._middle, 1)
         self._column.addWidget(self.next)
-        self._scroll.setWidget(self._inside)
-        self._scroll.setWidgetResizable(True)
-        self._scroll.setFrameShape(QFrame.Shape.NoFrame)
-        self._scroll.setFocusPolicy(Qt.FocusPolicy.NoFocus)
         outer = QHBoxLayout(self)
         outer.setContentsMargins(0, 0, 0, 0)
         outer.addWidget(self._scroll)

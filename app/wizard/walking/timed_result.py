@@ -7,7 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 from PySide6.QtCore import Qt
 from PySide6.QtGui import QAccessible
-from PySide6.QtWidgets import QFrame, QHBoxLayout, QScrollArea, QVBoxLayout, QWidget
+from PySide6.QtWidgets import QHBoxLayout, QVBoxLayout, QWidget
 
 from app.plots.course import CourseCard
 from app.summary.course_lanes import CourseLane, CourseVisit
@@ -17,6 +17,7 @@ from app.theme.icons import Icon
 from app.widgets.card import Card
 from app.widgets.focus_ring import NO_RING
 from app.widgets.icons import IconMark
+from app.widgets.reading_area import scrolled
 from app.widgets.table import CellTable, TableColumn, TableRow
 from app.widgets.table_cells import RIGHT, TextCell
 from app.widgets.text import SEMIBOLD, Text
@@ -142,14 +143,9 @@ class TimedResultView(QWidget):
         column.insertWidget(2, self.course)
         column.addWidget(self.errors)
         column.addStretch(1)
-        scroll = QScrollArea()
-        scroll.setWidget(inside)
-        scroll.setWidgetResizable(True)
-        scroll.setFrameShape(QFrame.Shape.NoFrame)
-        scroll.setFocusPolicy(Qt.FocusPolicy.NoFocus)
         outer = QVBoxLayout(self)
         outer.setContentsMargins(0, 0, 0, 0)
-        outer.addWidget(scroll)
+        outer.addWidget(scrolled(inside, is_upright=False))
 
 
 def number(value: float, digits: int) -> str:

@@ -9,9 +9,7 @@ from enum import StrEnum
 from PySide6.QtCore import QEvent, QObject, QRectF, QSize, Qt, Signal
 from PySide6.QtGui import QAccessible, QKeyEvent, QMouseEvent, QPainter, QPaintEvent, QResizeEvent
 from PySide6.QtWidgets import (
-    QFrame,
     QHBoxLayout,
-    QScrollArea,
     QSizePolicy,
     QVBoxLayout,
     QWidget,
@@ -27,6 +25,7 @@ from app.widgets.field import Field
 from app.widgets.icons import IconMark
 from app.widgets.painted_button import PaintedButton
 from app.widgets.painted_text import PaintedText, height_for
+from app.widgets.reading_area import scrolled
 from app.widgets.text import MEDIUM, Text
 from app.wizard.walking.badge import Badge
 from app.wording.translation import tr, tr_n
@@ -90,7 +89,7 @@ class WalkList(Card):
         self._title = Text(tr("Walks"), size=14, weight=MEDIUM, tone="ink2")
         self._none = Text(tr("No walks yet."), size=14, tone="ink2", wraps=True)
         self._inside = QWidget()
-        self._scroll = QScrollArea()
+        self._scroll = scrolled(self._inside)
         self.restrapped = ActionRow(
             Icon.REPEAT,
             tr("Sensors were reattached"),
@@ -101,11 +100,6 @@ class WalkList(Card):
         self._list.addStretch(1)
         self._list.setContentsMargins(0, 0, 0, 0)
         scaled(self._list.setSpacing, BETWEEN)
-        self._scroll.setWidget(self._inside)
-        self._scroll.setWidgetResizable(True)
-        self._scroll.setFrameShape(QFrame.Shape.NoFrame)
-        self._scroll.setFocusPolicy(Qt.FocusPolicy.NoFocus)
-        self._scroll.setHorizontalScrollBarPolicy(Qt.ScrollBarPolicy.ScrollBarAlwaysOff)
         self.column.addWidget(self._title)
         self.column.addWidget(self._none)
         self.column.addWidget(self._scroll, 1)
