@@ -24,23 +24,24 @@ from PySide6.QtWidgets import (
 
 from app.help.help_reader import HelpReader
 from app.help.help_topics import Topic, TopicGroup, group_title, markdown_of, plain_words_of, topic_title
-from app.theme.current import current_theme
+from app.theme.current import current_theme, scaled
 from app.theme.icons import Icon
 from app.widgets.button import Button, ButtonKind
 from app.widgets.card import Card
 from app.widgets.choice import Choice
 from app.widgets.field import Field
+from app.widgets.lay_out import lay_out
 from app.widgets.text import MEDIUM, REGULAR, SEMIBOLD, Text
-from app.widgets.themed import Themed
 from app.wording.translation import tr, tr_n
 
 LIST_WIDTH = 264
+WIDEST = 8_000_000  # Qt's own for "no limit", at 200 %
 ROW = 44
 PADDING = 12
 SHORTEST_SEARCH = 2
 
 
-class HelpPage(Themed):
+class HelpPage(QWidget):
     """Topics at the left, or above where room is short; what is searched for is marked in the text."""
 
     closed = Signal()
@@ -62,7 +63,6 @@ class HelpPage(Themed):
         self.choice.currentIndexChanged.connect(self._on_choice_changed)
         self.search.edited.connect(self._on_search_edited)
         self.back.clicked.connect(self.closed)
-        self._apply_theme()
         self.show_topic(Topic.HOME)
         self.set_compact(is_compact=False)
 
@@ -97,7 +97,9 @@ class HelpPage(Themed):
         top = Qt.AlignmentFlag.AlignTop
         self._side.setAlignment(self.choice, top)
         self._side.setAlignment(self.back, top if is_compact else Qt.AlignmentFlag.AlignLeft)
-        self._apply_theme()
+        scaled(self._row.setContentsMargins, *[16 if is_compact else 24] * 4)
+        scaled(self._beside.setMinimumWidth, 0 if is_compact else LIST_WIDTH)
+        scaled(self._beside.setMaximumWidth, WIDEST if is_compact else LIST_WIDTH)
 
     def focus(self) -> None:
         """Give the focus to the text, so that the keys scroll it."""
@@ -121,22 +123,11 @@ class HelpPage(Themed):
         self._scroll.setWidget(self.topics)
         self._beside = QWidget()
         self._side = QBoxLayout(QBoxLayout.Direction.TopToBottom, self._beside)
-        self._side.setContentsMargins(0, 0, 0, 0)
-        searching = QVBoxLayout()
-        searching.addWidget(self.search)
-        searching.addWidget(self.found)
-        self._side.addLayout(searching)
-        for widget, stretch in (
-            (self._scroll, 1),
-            (self.choice, 0),
-            (self.back, 0),
-        ):
-            self._side.addWidget(widget, stretch)
+        searching = lay_out(QVBoxLayout(), self.search, self.found)
+        lay_out(self._side, searching, (self._scroll, 1), self.choice, self.back, margins=0, spacing=12)
         page = Card(padding=16)
         page.column.addWidget(self.text)
-        self._row = QBoxLayout(QBoxLayout.Direction.LeftToRight, self)
-        self._row.addWidget(self._beside)
-        self._row.addWidget(page, 1)
+        self._row = lay_out(QBoxLayout(QBoxLayout.Direction.LeftToRight, self), self._beside, (page, 1), spacing=16)
 
     def _mark(self) -> None:
         """Mark what is searched for, and show at every topic how often it has it."""
@@ -181,18 +172,6 @@ class HelpPage(Themed):
     def _on_choice_changed(self, index: int) -> None:
         self.show_topic(list(Topic)[index])
 
-    def _apply_theme(self) -> None:
-        px = current_theme().px
-        margin = px(16 if self._is_compact else 24)
-        self._row.setContentsMargins(margin, margin, margin, margin)
-        self._row.setSpacing(px(16))
-        self._side.setSpacing(px(12))
-        if self._is_compact:
-            self._beside.setMinimumWidth(0)
-            self._beside.setMaximumWidth(16777215)  # Qt's own for "no limit"
-        else:
-            self._beside.setFixedWidth(px(LIST_WIDTH))
-
 
 class _TopicList(QWidget):
     """Groups of topics under their titles. One stop for Tab; the arrows go from topic to topic."""
@@ -205,7 +184,6 @@ class _TopicList(QWidget):
         self._group = QButtonGroup(self)
         self._by_topic = {topic: _TopicRow(topic_title(topic)) for topic in Topic}
         column = QVBoxLayout(self)
-        column.setContentsMargins(0, 0, 0, 0)
         column.setSpacing(2)
         begun = {Topic(group): group for group in TopicGroup}
         for topic, row in self._by_topic.items():
@@ -213,7 +191,7 @@ class _TopicList(QWidget):
                 column.addWidget(_GroupTitle(group_title(begun[topic])))
             self._group.addButton(row)
             column.addWidget(row)
-        column.addStretch(1)
+        lay_out(column, 1, margins=0)
         self._group.buttonClicked.connect(self._on_clicked)
         self._group.buttonToggled.connect(self._on_toggled)
 

@@ -19,14 +19,13 @@ from PySide6.QtGui import (
 )
 from PySide6.QtWidgets import QSizePolicy, QWidget
 
-from app.theme.current import current_theme, px
+from app.theme.current import current_theme, on_theme, px
 from app.theme.ground import Ground, set_ground
 from app.theme.icons import Icon, paint_icon
 from app.widgets.button import HEIGHT, Button, ButtonKind
 from app.widgets.grid import LEAST, NARROW_BELOW, side_margin
 from app.widgets.painted_text import PaintedText
 from app.widgets.text import SEMIBOLD, Text
-from app.widgets.themed import Themed
 from app.wording.numbers import clock
 from app.wording.translation import tr
 
@@ -84,7 +83,7 @@ class BarState:
     on_page: tuple[BarAction, ...] = ()
 
 
-class ActionBar(Themed):
+class ActionBar(QWidget):
     """Grows by a line where a narrow window or a long language leaves no room; nothing in it is ever cut.
 
     Signals
@@ -117,6 +116,7 @@ class ActionBar(Themed):
         self.primary.clicked.connect(self._on_clicked)
         self.sound.clicked.connect(self.sound_pressed)
         self._show()
+        on_theme(self._arrange)
 
     @property
     def state(self) -> BarState:
@@ -205,7 +205,9 @@ class ActionBar(Themed):
         self._note.setText(recording.note if recording is not None else state.note)
         for text in (self._title, self._note):
             text.setVisible(bool(text.text()))
-        self._colour()
+        self._title.set_tone("inv_ink" if is_inverse else "ink")
+        self._note.set_tone("inv_ink2" if is_inverse else "ink2")
+        set_ground(self, INVERSE if is_inverse else BAR_GROUND)
         self._arrange()
         if had_focus and not any(button.hasFocus() for button in self.tab_order):
             self.focus()
@@ -220,12 +222,6 @@ class ActionBar(Themed):
             words, verbs = [self._title, self._note], [self.sound, *self._others, self.primary]
             for part in (self._clock, self.back, *self._quiet, *words, *verbs):
                 part.raise_()  # in reading order: Qt lists the parts as they are stacked
-
-    def _colour(self) -> None:
-        is_inverse = self._state.recording is not None
-        self._title.set_tone("inv_ink" if is_inverse else "ink")
-        self._note.set_tone("inv_ink2" if is_inverse else "ink2")
-        set_ground(self, INVERSE if is_inverse else BAR_GROUND)
 
     def _arrange(self) -> None:
         """Put all in one row, or the words above the verbs, or the verbs in as many rows as they need."""
@@ -301,10 +297,6 @@ class ActionBar(Themed):
         button = self.sender()
         assert isinstance(button, VerbButton)
         self.pressed.emit(button.verb)
-
-    def _apply_theme(self) -> None:
-        self._colour()
-        self._arrange()
 
 
 _NOTHING = BarAction("", lambda: None)

@@ -15,3 +15,4 @@ class Card(Themed):
         self.column = QVBoxLayout(self)
         scaled(self.column.setContentsMargins, padding, padding * 0.75, padding, padding * 0.75)
         scaled(self.column.setSpacing, spacing)
+        self._apply_theme()

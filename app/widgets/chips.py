@@ -4,18 +4,17 @@ from collections.abc import Iterable, Sequence
 
 from PySide6.QtCore import QRect, QSize, Qt, Signal
 from PySide6.QtGui import QAccessible, QKeyEvent, QResizeEvent
-from PySide6.QtWidgets import QAbstractButton, QSizePolicy
+from PySide6.QtWidgets import QAbstractButton, QSizePolicy, QWidget
 
-from app.theme.current import current_theme, px
+from app.theme.current import current_theme, on_theme, px
 from app.widgets.button import Button, ButtonKind
-from app.widgets.themed import Themed
 
 HEIGHT = 44
 GAP = 8
 STEPS = {Qt.Key.Key_Right: 1, Qt.Key.Key_Down: 1, Qt.Key.Key_Left: -1, Qt.Key.Key_Up: -1}
 
 
-class Chips(Themed):
+class Chips(QWidget):
     """`options` are key and word of each; they wrap into as many lines as they need.
 
     Parameters
@@ -37,9 +36,7 @@ class Chips(Themed):
         for key, word in options:
             self._add(key, word)
         self._let_tab_reach(self.buttons[0])
-
-    def _apply_theme(self) -> None:
-        self._arrange()
+        on_theme(self._arrange)
 
     @property
     def chosen(self) -> tuple[str, ...]:

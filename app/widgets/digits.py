@@ -6,12 +6,11 @@ from PySide6.QtWidgets import QSizePolicy, QWidget
 
 from app.theme.current import current_theme, px
 from app.widgets.text import SEMIBOLD
-from app.widgets.themed import Themed
 
 UNIT_SHARE = 0.3  # of the figure's size
 
 
-class Digits(Themed):
+class Digits(QWidget):
     """`widest` is the longest text that is to come, for which the size is made to fit; `size` in px is the most."""
 
     def __init__(self, size: float, widest: str, unit: str = "", parent: QWidget | None = None):
@@ -65,9 +64,6 @@ class Digits(Themed):
             painter.setFont(font)
             painter.setPen(QColor(theme.colours.ink2))
             painter.drawText(QRectF(end + theme.px(12), baseline - small.ascent(), 400, small.height()), 0, self._unit)
-
-    def _apply_theme(self) -> None:
-        self.updateGeometry()
 
     def _size(self) -> float:
         """As large as the widest text leaves room for, in logical px."""

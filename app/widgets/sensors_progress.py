@@ -11,10 +11,10 @@ from PySide6.QtWidgets import QHBoxLayout, QProgressBar, QSizePolicy, QVBoxLayou
 from app.theme.current import current_theme, on_theme, px, scaled
 from app.theme.icons import Icon, paint_icon
 from app.widgets.button import Button, ButtonKind
+from app.widgets.lay_out import lay_out
 from app.widgets.notice import Notice
 from app.widgets.painted_text import LEFT, PaintedText
 from app.widgets.text import MEDIUM, SEMIBOLD, Text
-from app.widgets.themed import Themed
 from app.wording.translation import tr
 
 LINE, MARK, GAP = 28, 18, 10
@@ -74,23 +74,14 @@ class SensorsProgress(QWidget):
         self.stop = Button(tr("Cancel"), ButtonKind.SECONDARY, Icon.STOP)
         self._inside = QWidget()
         column = QVBoxLayout(self._inside)
-        column.setContentsMargins(0, 0, 0, 0)
         for part in (self._title, self._sentence):
             part.setAlignment(Qt.AlignmentFlag.AlignHCenter)
         for widget in (self._title, self._sentence, self._bar, self._lines, self.notice):
             column.addWidget(widget)
-        column.addWidget(self.stop, 0, Qt.AlignmentFlag.AlignHCenter)
-        outer = QVBoxLayout(self)
-        outer.setContentsMargins(0, 0, 0, 0)
-        middle = QHBoxLayout()
-        middle.addStretch(1)
-        middle.addWidget(self._inside)
-        middle.addStretch(1)
-        outer.addStretch(1)
-        outer.addLayout(middle)
-        outer.addStretch(2)
+        lay_out(column, (self.stop, 0, Qt.AlignmentFlag.AlignHCenter), margins=0, spacing=14)
+        middle = lay_out(QHBoxLayout(), 1, self._inside, 1)
+        lay_out(QVBoxLayout(self), 1, middle, 2, margins=0)
         self.stop.clicked.connect(self.stop_pressed)
-        scaled(column.setSpacing, 14)
         scaled(self._bar.setFixedHeight, 8)
         on_theme(self._fit)
 
@@ -134,7 +125,7 @@ class SensorsProgress(QWidget):
         self._inside.setFixedWidth(min(px(WIDEST), self.width()))
 
 
-class _SensorLines(Themed):
+class _SensorLines(QWidget):
     """The sensors one below the other; screen readers are given all of them."""
 
     def __init__(self) -> None:
@@ -181,10 +172,6 @@ class _SensorLines(Themed):
             paint_icon(painter, _ICONS[line.state], mark, c.ink2 if line.state is LineState.TO_DO else c.ink)
         for text in self.painted_texts():
             text.paint(painter, c)
-
-    def _apply_theme(self) -> None:
-        self.updateGeometry()
-        self.update()
 
 
 _ICONS = {

@@ -7,7 +7,6 @@ from PySide6.QtGui import QAccessible, QColor, QImage, QImageReader, QKeyEvent, 
 from PySide6.QtWidgets import QSizePolicy, QVBoxLayout, QWidget
 
 from app.theme.current import current_theme, px
-from app.widgets.themed import Themed
 from app.wording.translation import tr, tr_n
 
 PAGE_WIDTH = 560  # a page of A4 that can be read
@@ -107,7 +106,7 @@ class Sheets(QWidget):
         self.setMinimumHeight(round(self.top_of(self.count)))
 
 
-class SmallSheets(Themed):
+class SmallSheets(QWidget):
     """A column of small pages. A click, or the arrow keys, go to one; the page that is read has a bar beside it.
 
     Signals
@@ -202,9 +201,6 @@ class SmallSheets(Themed):
         self.setAccessibleName(tr("Pages"))
         stated = tr("Page {page} of {pages}").format(page=self.number + 1, pages=len(self._pages))
         self.setAccessibleDescription(stated if self._pages else "")
-
-    def _apply_theme(self) -> None:
-        self.updateGeometry()
 
 
 def _paint_page(painter: QPainter, place: QRectF, picture: QImage) -> None:
