@@ -12,6 +12,7 @@ from app.theme.icons import Icon
 from app.widgets.button import Button, ButtonKind
 from app.widgets.card import Card
 from app.widgets.field import NumberField
+from app.widgets.lay_out import lay_out
 from app.widgets.notice import Notice
 from app.widgets.segmented import Segmented
 from app.wording.translation import tr
@@ -69,22 +70,14 @@ class ControlsCard(Card):
         self.full = Button(tr("Full screen"), ButtonKind.QUIET, Icon.WHOLE, key="F11")
         self.close_screen = Button(tr("Close"), ButtonKind.QUIET, Icon.CLOSE, key="F8")
         self._reason, self._wrong = Notice(size=14), Notice(size=14)
-        self._choose, below = QBoxLayout(ACROSS), QHBoxLayout()
         self.setSizePolicy(QSizePolicy.Policy.Preferred, QSizePolicy.Policy.Maximum)
         self.setAccessibleName(tr("Patient screen"))
-        self._choose.addWidget(self.measure, 1)
-        self._choose.addWidget(self.side)
+        self._choose = lay_out(QBoxLayout(ACROSS), (self.measure, 1), self.side, spacing=12)
         for field in (self.target, self.rate):
-            below.addWidget(field)
             scaled(field.setFixedWidth, FIELD_WIDTH)
-        for button in (self.tick, self.full, self.close_screen):
-            below.addWidget(button, 0, Qt.AlignmentFlag.AlignBottom)
-        below.insertStretch(3, 1)
-        for row in (self._choose, below):
-            scaled(row.setSpacing, 12)
-            self.column.addLayout(row)
-        self.column.addWidget(self._wrong)
-        self.column.addWidget(self._reason)
+        tick, *others = ((one, 0, Qt.AlignmentFlag.AlignBottom) for one in (self.tick, self.full, self.close_screen))
+        below = lay_out(QHBoxLayout(), self.target, self.rate, tick, 1, *others, spacing=12)
+        lay_out(self.column, self._choose, below, self._wrong, self._reason)
         self.measure.chosen.connect(self._on_chosen)
         self.side.chosen.connect(self._on_chosen)
         self.target.committed.connect(self._on_target_committed)

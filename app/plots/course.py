@@ -27,6 +27,7 @@ from app.widgets.card import Card
 from app.widgets.change_arrow import ChangeArrow
 from app.widgets.chip import Chip
 from app.widgets.heard_order import hear_as_laid_out
+from app.widgets.lay_out import lay_out
 from app.widgets.text import MEDIUM, REGULAR, SEMIBOLD, Text
 from app.wording.translation import tr
 from core.verdicts.model import Verdict
@@ -55,8 +56,8 @@ class CourseCard(Card):
     computing_requested = Signal()
 
     def __init__(self) -> None:
-        super().__init__(spacing=0)
-        self._grid, self.head, foot = QGridLayout(), QHBoxLayout(), QHBoxLayout()
+        super().__init__(spacing=0.5)  # a pixel, at any size
+        self._grid = QGridLayout()
         self.rows: dict[LaneKind, LaneRow] = {}
         self._is_narrow: bool | None = None
         self.visits: tuple[CourseVisit, ...] = ()
@@ -71,20 +72,13 @@ class CourseCard(Card):
         self.info.setAccessibleName(tr("Method"))
         self.info.setCheckable(True)
         self._grid_room = QWidget()
-        self.head.addWidget(self.info)
-        foot.addWidget(self.note, 1)
-        foot.addWidget(self.compute)
         self._grid_room.setLayout(self._grid)
-        self.column.addLayout(self.head)
-        self.column.addWidget(self._grid_room)
-        self.column.addWidget(self.method)
-        self.column.addLayout(foot)
-        for layout, margins in ((self.column, (16, 4, 8, 4)), (self._grid, (0, 2, 8, 0)), (foot, (0, 0, 8, 0))):
-            scaled(layout.setContentsMargins, *margins)
+        self.head = lay_out(QHBoxLayout(), self.info, spacing=8)
+        foot = lay_out(QHBoxLayout(), (self.note, 1), self.compute, margins=(0, 0, 8, 0), spacing=12)
+        lay_out(self.column, self.head, self._grid_room, self.method, foot, margins=(16, 4, 8, 4))
+        scaled(self._grid.setContentsMargins, 0, 2, 8, 0)
         scaled(self._grid.setHorizontalSpacing, 8)
         scaled(self._grid.setVerticalSpacing, 2)
-        scaled(self.head.setSpacing, 8)
-        scaled(foot.setSpacing, 12)
         self._join(self.axis)
         self._show_kinds(lane_kinds())
         self.compute.clicked.connect(self.computing_requested)
@@ -175,7 +169,7 @@ class CourseCard(Card):
         self._grid.setColumnStretch(0, 1 if is_narrow else 0)
         self._grid.setColumnStretch(1, 0 if is_narrow else 1)
         hear_as_laid_out(self._grid_room)
-        self._apply_theme()
+        on_theme(self._keep_heights)
 
     def paintEvent(self, event: QPaintEvent) -> None:
         """A hairline over every row."""
@@ -188,7 +182,7 @@ class CourseCard(Card):
             top = self._grid_room.y() + min(row.plot.y(), row.label.y()) - 1.5
             painter.drawLine(QPointF(side, top), QPointF(self.width() - side, top))
 
-    def _apply_theme(self) -> None:
+    def _keep_heights(self) -> None:
         for at in range(self._grid.rowCount()):
             is_row = at % 2 == 0 and at < 2 * len(self.rows) and not self._is_narrow
             self._grid.setRowMinimumHeight(at, px(ROW) if is_row else 0)
@@ -252,11 +246,7 @@ class LaneRow:
     def _beside(self, *parts: QWidget, wide: QWidget | None = None) -> QWidget:
         """Parts in a row; `wide` takes what the others leave."""
         room = QWidget()
-        row = QHBoxLayout(room)
-        row.setContentsMargins(0, 0, 0, 0)
-        row.setSpacing(px(6))
-        for part in parts:
-            row.addWidget(part, int(part is wide))
+        row = lay_out(QHBoxLayout(room), *((part, int(part is wide)) for part in parts), margins=0, spacing=6)
         if wide is None:
             row.addStretch(1)
         return room
@@ -269,11 +259,7 @@ class _Words(QWidget):
         super().__init__()
         self._width, self._is_wide = width, False
         self._parts: list[QWidget] = []
-        self._column = QVBoxLayout(self)
-        self._column.setContentsMargins(0, 0, 0, 0)
-        self._column.setSpacing(0)
-        self._column.addStretch(1)
-        self._column.addStretch(1)
+        self._column = lay_out(QVBoxLayout(self), 1, 1, margins=0, spacing=0)
         on_theme(self._fit)
 
     def clear(self) -> None:

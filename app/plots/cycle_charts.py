@@ -10,7 +10,7 @@ from app.charts.marks import CurveLabel, Deviation, Gap
 from app.plots.cycle_chart import CycleChart
 from app.plots.cycle_frame import CycleFrame
 from app.summary.comparison import Comparison
-from app.theme.current import scaled
+from app.widgets.lay_out import lay_out
 from app.wording.translation import tr
 from core.body import Joint, JointKind, Side
 from core.samples import FloatArray
@@ -31,11 +31,9 @@ class CycleCharts(QWidget):
         self.hip, self.knee, self.ankle = (CycleFrame(CycleChart(kind), kind) for kind in JointKind)
         self._frames = (self.hip, self.knee, self.ankle)
         self.hip.hide()
-        self._box = QBoxLayout(QBoxLayout.Direction.TopToBottom, self)
-        self._box.setContentsMargins(0, 0, 0, 0)
-        scaled(self._box.setSpacing, 12)
+        frames = ((frame, 1) for frame in self._frames)
+        self._box = lay_out(QBoxLayout(QBoxLayout.Direction.TopToBottom, self), *frames, margins=0, spacing=12)
         for frame in self._frames:
-            self._box.addWidget(frame, 1)
             frame.chart.picked.connect(self._on_picked)
         self.set_band(reference)
 

@@ -35,6 +35,7 @@ from app.widgets.card import Card
 from app.widgets.chip import leg_name
 from app.widgets.icons import IconMark
 from app.widgets.info_button import InfoButton
+from app.widgets.lay_out import lay_out
 from app.widgets.text import MEDIUM, SEMIBOLD, Text
 from app.wording.translation import capitalised, joined, later, tr
 from app.wording.verdicts import verdict_alone, verdict_word
@@ -69,18 +70,11 @@ class CycleFrame(Card):
         self.not_reported: dict[Side, str] = {}  # why, as a sentence
         self.heights_deg: dict[Side, float] = {}
         self.setSizePolicy(QSizePolicy.Policy.Expanding, QSizePolicy.Policy.Expanding)
-        head, notes = QHBoxLayout(), QHBoxLayout()
-        head.addWidget(Text(title_in_words(kind), size=16, weight=SEMIBOLD))
-        head.addWidget(self.key, 1)
-        head.addWidget(self.info)
-        notes.addWidget(self._mark, 0, Qt.AlignmentFlag.AlignTop)
-        notes.addWidget(self._note, 1)
-        for row in (head, notes):
-            scaled(row.setContentsMargins, 4, 0, 8, 0)
-            scaled(row.setSpacing, 8)
-            self.column.addLayout(row)
-        self.column.addWidget(self.beside)
-        self.column.addWidget(chart, 3)
+        title = Text(title_in_words(kind), size=16, weight=SEMIBOLD)
+        head = lay_out(QHBoxLayout(), title, (self.key, 1), self.info, margins=(4, 0, 8, 0), spacing=8)
+        mark = self._mark, 0, Qt.AlignmentFlag.AlignTop
+        notes = lay_out(QHBoxLayout(), mark, (self._note, 1), margins=(4, 0, 8, 0), spacing=8)
+        lay_out(self.column, head, notes, self.beside, (chart, 3))
         # the chart reaches the right edge, where there is room for what is turned
         scaled(self.column.setContentsMargins, 12, 6, 4, 2)
 

@@ -23,6 +23,7 @@ from app.theme.icons import Icon
 from app.widgets.card import Card
 from app.widgets.chip import SideKey
 from app.widgets.icons import IconMark
+from app.widgets.lay_out import lay_out
 from app.widgets.text import MEDIUM, SEMIBOLD, Text
 from app.wording.body import name_of
 from app.wording.numbers import MINUS
@@ -260,23 +261,17 @@ class ChartFrame(Card):
         head = QGridLayout()
         head.setHorizontalSpacing(8)
         head.setVerticalSpacing(4)
-        names, readings = QHBoxLayout(), QHBoxLayout()
+        names = lay_out(QHBoxLayout(), self._title, self._sign, self._wide_mark, self._wide, self._simulated, 1)
+        readings = lay_out(QHBoxLayout(), 1, self._moment)
         names.setSpacing(8)
         readings.setSpacing(8)
-        for widget in (self._title, self._sign, self._wide_mark, self._wide, self._simulated):
-            names.addWidget(widget)
-        names.addStretch(1)
-        readings.addStretch(1)
-        readings.addWidget(self._moment)
         for side in Side:
             readings.addSpacing(12)
-            readings.addWidget(self._keys[side])
-            readings.addWidget(self._values[side])
+            lay_out(readings, self._keys[side], self._values[side])
         self._head = (names, readings)
         self._grid = head
         self._place()
-        self.column.addLayout(head)
-        self.column.addWidget(chart, 1)
+        lay_out(self.column, head, (chart, 1))
         self.set_moment_shown(kind is JointKind.KNEE)
         self._set_widened()
         on_theme(self._reserve_room)

@@ -19,6 +19,7 @@ from app.theme.theme import Theme
 from app.widgets.card import Card
 from app.widgets.chip import Chip
 from app.widgets.heard_order import hear_as_laid_out
+from app.widgets.lay_out import lay_out
 from app.widgets.painted import Painted
 from app.widgets.text import MEDIUM, SEMIBOLD, Text
 from app.wording.translation import joined, later, tr, tr_n
@@ -90,26 +91,19 @@ class PhaseFrame(Card):
         self._simulated = Text(tr("SIMULATED"), size=12, weight=SEMIBOLD)
         self._chips = {side: Chip(side) for side in Side}
         self._readings = {side: Text(size=14, weight=MEDIUM, tone=f"{side}_text") for side in Side}
-        self._title, self._legend, self._reading = QHBoxLayout(), QHBoxLayout(), QHBoxLayout()
+        legend = (part for phase, word in LEGEND for part in (Swatch(phase), Text(tr(word), size=12, tone="ink2")))
+        title = Text(tr("Gait phases"), size=14, weight=SEMIBOLD)
+        self._title = lay_out(QHBoxLayout(), title, self._simulated, spacing=8)
+        self._legend = lay_out(QHBoxLayout(), *legend, 1, spacing=8)
+        self._reading = lay_out(QHBoxLayout(), 1, spacing=8)
         self._head = QGridLayout()
         self.setSizePolicy(QSizePolicy.Policy.Expanding, QSizePolicy.Policy.Fixed)
-        for phase, word in LEGEND:
-            self._legend.addWidget(Swatch(phase))
-            self._legend.addWidget(Text(tr(word), size=12, tone="ink2"))
-        self._legend.addStretch(1)
-        self._title.addWidget(Text(tr("Gait phases"), size=14, weight=SEMIBOLD))
-        self._title.addWidget(self._simulated)
-        self._reading.addStretch(1)
         for side in Side:
             policy = self._chips[side].sizePolicy()
             policy.setRetainSizeWhenHidden(True)  # nothing may jump when the line comes
             self._chips[side].setSizePolicy(policy)
-            self._reading.addWidget(self._chips[side])
-            self._reading.addWidget(self._readings[side])
-        self.column.addLayout(self._head)
-        self.column.addWidget(self.lanes)
-        for part in (self._title, self._legend, self._reading):
-            scaled(part.setSpacing, 8)
+            lay_out(self._reading, self._chips[side], self._readings[side])
+        lay_out(self.column, self._head, self.lanes)
         scaled(self._head.setHorizontalSpacing, 12)
         scaled(self._head.setVerticalSpacing, 4)
         self.set_narrow(is_narrow=False)

@@ -14,6 +14,7 @@ from app.summary.mean_legs import MeanLegs, ThinBend, bent_by
 from app.theme.current import current_theme, px
 from app.theme.leg_chip import paint_chip
 from app.widgets.card import Card
+from app.widgets.lay_out import lay_out
 from app.widgets.limb import limb_outline
 from app.widgets.painted import Painted
 from app.widgets.painted_text import LEFT, PaintedText
@@ -49,15 +50,10 @@ class StrideLegs(Card):
         self.percent = 0.0
         self.setFocusPolicy(Qt.FocusPolicy.StrongFocus)
         self._where = Text(size=12, tone="ink2")
-        head = QHBoxLayout()
-        head.addWidget(Text(tr("Legs"), size=16, weight=SEMIBOLD))
-        head.addStretch(1)
-        head.addWidget(self._where)
+        head = lay_out(QHBoxLayout(), Text(tr("Legs"), size=16, weight=SEMIBOLD), 1, self._where)
         self.picture = _Picture()
         self.note = Text(tr(NO_LEGS), size=12, tone="ink2", wraps=True)
-        self.column.addLayout(head)
-        self.column.addWidget(self.note)
-        self.column.addWidget(self.picture, 1)
+        lay_out(self.column, head, self.note, (self.picture, 1))
         self.setSizePolicy(QSizePolicy.Policy.Fixed, QSizePolicy.Policy.Expanding)
         self._timer = QTimer(self)
         self._timer.setInterval(FRAME_MS)

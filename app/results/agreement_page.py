@@ -5,9 +5,9 @@ from collections.abc import Sequence
 from PySide6.QtCore import Signal
 from PySide6.QtWidgets import QHBoxLayout, QStackedWidget, QVBoxLayout, QWidget
 
-from app.theme.current import scaled
 from app.theme.icons import Icon
 from app.widgets.button import Button, ButtonKind
+from app.widgets.lay_out import lay_out
 from app.widgets.reading_area import ReadingArea
 from app.widgets.sentence_page import SentencePage
 from app.widgets.sheets import Sheet, Sheets
@@ -50,16 +50,8 @@ class AgreementPage(QWidget):
         self._stack = QStackedWidget()
         for page in (self.waiting, self.reading):
             self._stack.addWidget(page)
-        head, column = QHBoxLayout(), QVBoxLayout(self)
-        head.addWidget(self.back)
-        head.addWidget(self.note, 1)
-        head.addWidget(self.choose)
-        head.addWidget(self.save)
-        column.addLayout(head)
-        column.addWidget(self._stack, 1)
-        scaled(column.setContentsMargins, 24, 16, 24, 12)
-        for layout in (head, column):
-            scaled(layout.setSpacing, 12)
+        head = lay_out(QHBoxLayout(), self.back, (self.note, 1), self.choose, self.save, spacing=12)
+        lay_out(QVBoxLayout(self), head, (self._stack, 1), margins=(24, 16, 24, 12), spacing=12)
         self.back.clicked.connect(self.closed)
         self.choose.clicked.connect(self.reference_requested)
         self.waiting.pressed.connect(self.reference_requested)

@@ -33,6 +33,7 @@ from app.widgets.chips import Chips
 from app.widgets.choice import Choice
 from app.widgets.heard_order import hear_as_laid_out
 from app.widgets.icons import IconMark
+from app.widgets.lay_out import lay_out
 from app.widgets.reading_area import scrolled
 from app.widgets.segmented import Segmented
 from app.widgets.text import Text
@@ -197,28 +198,19 @@ class ComparePage(QWidget):
 
     def _build(self) -> None:
         room, self._charts, self._words = QWidget(), QWidget(), QWidget()
-        grid, self._left, self._head = QGridLayout(room), QVBoxLayout(self._charts), QHBoxLayout(self._words)
-        reported, columns, self._page = QVBoxLayout(), QHBoxLayout(), QVBoxLayout(self)
-        for layout in (grid, self._left, self._head, self._page):
-            layout.setContentsMargins(0, 0, 0, 0)
-        for layout in (grid, self._left, self._head, columns, self._page):
-            scaled(layout.setSpacing, 12)
-        scaled(reported.setSpacing, 4)
+        grid = QGridLayout(room)
+        grid.setContentsMargins(0, 0, 0, 0)
+        scaled(grid.setSpacing, 12)
         for (side, kind), frame in self.frames.items():
             grid.addWidget(frame, list(JointKind).index(kind), 0 if side is Side.LEFT else 1)
         self._curves = scrolled(room, is_upright=False)
-        self._left.addWidget(self._curves, 1)
-        self._left.addWidget(self.side_charts, 1)
-        self._left.addWidget(self.chips)
-        reported.addWidget(self.conclusion)
-        reported.addWidget(self.error)
-        reported.addStretch(1)
-        self._head.addWidget(self._mark, 0, Qt.AlignmentFlag.AlignTop)
-        self._head.addLayout(reported, 1)
-        columns.addWidget(self._charts, 1)
-        columns.addWidget(self.card)
-        self._page.addWidget(self.nothing)
-        self._page.addLayout(columns, 1)
+        charts = ((self._curves, 1), (self.side_charts, 1), self.chips)
+        self._left = lay_out(QVBoxLayout(self._charts), *charts, margins=0, spacing=12)
+        reported = lay_out(QVBoxLayout(), self.conclusion, self.error, 1, spacing=4)
+        mark = self._mark, 0, Qt.AlignmentFlag.AlignTop
+        self._head = lay_out(QHBoxLayout(self._words), mark, (reported, 1), margins=0, spacing=12)
+        columns = lay_out(QHBoxLayout(), (self._charts, 1), self.card, spacing=12)
+        self._page = lay_out(QVBoxLayout(self), self.nothing, (columns, 1), margins=0, spacing=12)
         on_theme(self._fit_card)
 
     def _connect(self) -> None:

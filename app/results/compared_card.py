@@ -8,8 +8,9 @@ from app.plots.difference_plot import DifferencePlot
 from app.results.compared_plot import comparison_groups, side_groups
 from app.results.compared_table import comparison_table, has_brief_table, side_table
 from app.summary.comparison import Comparison, Contrast, SideRow
-from app.theme.current import current_theme, scaled
+from app.theme.current import current_theme
 from app.widgets.card import Card
+from app.widgets.lay_out import lay_out
 from app.widgets.reading_area import scrolled
 from app.widgets.table import CellTable
 from app.widgets.text import SEMIBOLD, Text
@@ -37,16 +38,8 @@ class ComparedCard(Card):
         self._found: Comparison | None = None
         self._is_compact = self._is_spacious = False
         content = QWidget()
-        self._content = QVBoxLayout(content)
-        self._content.setContentsMargins(0, 0, 0, 0)
-        scaled(self._content.setSpacing, 8)
-        head = QHBoxLayout()
-        head.addWidget(self.title, 1)
-        head.addWidget(self.all_measures)
-        self._content.addLayout(head)
-        self._content.addWidget(self.plot)
-        self._content.addWidget(self.table)
-        self._content.addStretch(1)
+        head = lay_out(QHBoxLayout(), (self.title, 1), self.all_measures)
+        self._content = lay_out(QVBoxLayout(content), head, self.plot, self.table, 1, margins=0, spacing=8)
         self.area = scrolled(content, is_upright=False)
         self.setSizePolicy(QSizePolicy.Policy.Expanding, QSizePolicy.Policy.Expanding)
         self.column.addWidget(self.area, 1)

@@ -5,7 +5,8 @@ from collections.abc import Sequence
 from PySide6.QtGui import QAccessible, QAccessibleAnnouncementEvent, QFontMetrics, QResizeEvent
 from PySide6.QtWidgets import QSizePolicy, QVBoxLayout, QWidget
 
-from app.theme.current import current_theme, on_theme, px, scaled
+from app.theme.current import current_theme, on_theme, px
+from app.widgets.lay_out import lay_out
 from app.widgets.text import SEMIBOLD, Text
 
 SIZES = (22, 21, 20)
@@ -24,11 +25,7 @@ class HeadlineText(QWidget):
         self.first = Text(size=SIZES[0], weight=SEMIBOLD, wraps=True)
         self.second = Text(size=SECOND, tone="ink2", wraps=True)
         self.setSizePolicy(QSizePolicy.Policy.Expanding, QSizePolicy.Policy.Preferred)
-        column = QVBoxLayout(self)
-        column.setContentsMargins(0, 0, 0, 0)
-        for text in (self.first, self.second):
-            column.addWidget(text)
-        scaled(column.setSpacing, 4)
+        lay_out(QVBoxLayout(self), self.first, self.second, margins=0, spacing=4)
         on_theme(self._fit)
 
     @property

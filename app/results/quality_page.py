@@ -19,6 +19,7 @@ from app.widgets.card import Card
 from app.widgets.facts_table import fact_columns, fact_rows, hip_columns, hip_rows
 from app.widgets.findings_list import FindingsList
 from app.widgets.icons import IconMark
+from app.widgets.lay_out import lay_out
 from app.widgets.reading_area import scrolled
 from app.widgets.table import CellTable
 from app.widgets.text import SEMIBOLD, Text
@@ -132,50 +133,27 @@ class QualityPage(QWidget):
 
     def _build(self) -> None:
         cards = QWidget()
-        self._list = QVBoxLayout(cards)
-        self._list.setContentsMargins(0, 0, 0, 0)
-        self._list.addStretch(1)
+        self._list = lay_out(QVBoxLayout(cards), 1, margins=0, spacing=12)
         self._scroll = scrolled(cards)
-        self._order_card = Card()
-        order = QHBoxLayout()
+        self._order_card, self._figures_card, self._figure_card = Card(), Card(padding=12), Card()
+        order = lay_out(QHBoxLayout(), (IconMark(Icon.READ), 0, Qt.AlignmentFlag.AlignTop), (self.in_order, 1))
         order.setSpacing(12)
-        order.addWidget(IconMark(Icon.READ), 0, Qt.AlignmentFlag.AlignTop)
-        order.addWidget(self.in_order, 1)
         self._order_card.column.addLayout(order)
-        self._figures_card = Card(padding=12)
-        tables = QWidget()
-        found = QVBoxLayout(tables)
-        found.setContentsMargins(0, 0, 0, 0)
-        for table in (self.facts, self.hip_facts):
-            found.addWidget(table)
-        found.addStretch(1)
-        self._figures_card.column.addWidget(scrolled(tables, is_upright=False), 2)
-        self._figures_card.column.addWidget(Text(tr("All findings"), size=16, weight=SEMIBOLD))
-        self._figures_card.column.addWidget(self.findings, 1)
+        tables, title = QWidget(), Text(tr("All findings"), size=16, weight=SEMIBOLD)
+        lay_out(QVBoxLayout(tables), self.facts, self.hip_facts, 1, margins=0)
+        area = scrolled(tables, is_upright=False)
+        lay_out(self._figures_card.column, (area, 2), title, (self.findings, 1))
         self._doors = QGridLayout()
+        scaled(self._doors.setSpacing, 12)
         self._place_doors(3)
-        left, words, page = QVBoxLayout(), QVBoxLayout(), QVBoxLayout(self)
-        left.addWidget(self._scroll, 1)
-        left.addWidget(self._figures_card, 1)
-        left.addWidget(self._order_card)
-        left.addLayout(self._doors)
-        self._figure_card = Card()
-        self._figure_card.column.addWidget(Text(tr("Joints and sensors"), size=16, weight=SEMIBOLD))
-        self._figure_card.column.addWidget(self.figure, 1)
-        self._figure_card.column.addWidget(self.strides)
-        self._columns = QHBoxLayout()
-        self._columns.addLayout(left, 1)
-        self._columns.addWidget(self._figure_card)
-        words.addWidget(self.first)
-        words.addWidget(self.then)
-        page.setContentsMargins(0, 0, 0, 0)
-        page.addLayout(words)
-        page.addLayout(self._columns, 1)
-        for layout in (page, left, self._doors, self._list):
-            scaled(layout.setSpacing, 12)
-        scaled(words.setSpacing, 4)
-        scaled(self._columns.setSpacing, 16)
+        parts = ((self._scroll, 1), (self._figures_card, 1), self._order_card, self._doors)
+        left = lay_out(QVBoxLayout(), *parts, spacing=12)
+        title = Text(tr("Joints and sensors"), size=16, weight=SEMIBOLD)
+        lay_out(self._figure_card.column, title, (self.figure, 1), self.strides)
         scaled(self._figure_card.setFixedWidth, FIGURE_WIDTH)
+        self._columns = lay_out(QHBoxLayout(), (left, 1), self._figure_card, spacing=16)
+        words = lay_out(QVBoxLayout(), self.first, self.then, spacing=4)
+        lay_out(QVBoxLayout(self), words, (self._columns, 1), margins=0, spacing=12)
         on_theme(self._keep_beside)
 
     def _place_doors(self, in_row: int) -> None:
@@ -220,26 +198,23 @@ class LineCard(QWidget):
         title = f"{line.where}: {verdict_word(line.verdict)}" if line.where else verdict_alone(line.verdict)
         self.setAccessibleName(" ".join(filter(None, [f"{title}.", line.why, line.to_do])))
         self.repeat: Button | None = None
+        top = Qt.AlignmentFlag.AlignTop
         words = QVBoxLayout()
         words.setSpacing(2)
-        words.addWidget(Text(title, size=16, weight=SEMIBOLD, tone=tone, wraps=True))
-        words.addWidget(Text(line.why, tone=quiet, wraps=True))
+        what = Text(title, size=16, weight=SEMIBOLD, tone=tone, wraps=True)
+        lay_out(words, what, Text(line.why, tone=quiet, wraps=True))
         if line.to_do:
-            to_do = QHBoxLayout()
+            word = Text(tr("To do"), weight=SEMIBOLD, tone=tone)
+            to_do = lay_out(QHBoxLayout(), (word, 0, top), (Text(line.to_do, tone=tone, wraps=True), 1))
             to_do.setSpacing(12)
-            to_do.addWidget(Text(tr("To do"), weight=SEMIBOLD, tone=tone), 0, Qt.AlignmentFlag.AlignTop)
-            to_do.addWidget(Text(line.to_do, tone=tone, wraps=True), 1)
             words.addLayout(to_do)
-        row = QHBoxLayout(self)
-        row.addWidget(IconMark(VERDICT_ICONS[line.verdict], tone=tone), 0, Qt.AlignmentFlag.AlignTop)
-        row.addLayout(words, 1)
+        mark = IconMark(VERDICT_ICONS[line.verdict], tone=tone)
+        row = lay_out(QHBoxLayout(self), (mark, 0, top), (words, 1), margins=(16, 12, 16, 12), spacing=12)
         if can_repeat and line.side is not None:
-            word = tr("Repeat left leg") if line.side is Side.LEFT else tr("Repeat right leg")
-            self.repeat = Button(word, ButtonKind.SECONDARY, Icon.REPEAT, height=44)
+            stated = tr("Repeat left leg") if line.side is Side.LEFT else tr("Repeat right leg")
+            self.repeat = Button(stated, ButtonKind.SECONDARY, Icon.REPEAT, height=44)
             row.addWidget(self.repeat, 0, Qt.AlignmentFlag.AlignBottom)
         self.setSizePolicy(QSizePolicy.Policy.Preferred, QSizePolicy.Policy.Preferred)
-        scaled(row.setContentsMargins, 16, 12, 16, 12)
-        scaled(row.setSpacing, 12)
         set_ground(self, Ground("caution", "caution_edge") if is_grave else Ground("surface", "control"))
 
 

@@ -32,6 +32,7 @@ from app.theme.icons import Icon
 from app.widgets.button import Button, ButtonKind
 from app.widgets.detail_button import DetailButton
 from app.widgets.heard_order import hear_as_laid_out
+from app.widgets.lay_out import lay_out
 from app.widgets.toggle import Toggle
 from app.wording.recordings import with_shown_names
 from app.wording.translation import tr
@@ -42,6 +43,7 @@ from core.session import RecordingKind
 
 LEG_KINDS = (JointKind.KNEE, JointKind.ANKLE)  # whose charts are always there
 
+ACROSS, DOWN = QBoxLayout.Direction.LeftToRight, QBoxLayout.Direction.TopToBottom
 BOTTOM = 40  # px high: the row that closes the summary
 OTHERS, COMPACT_OTHERS = 298, 270  # px high: all else of a summary than charts and table
 SECOND_TOOLS = 56  # px high: where the tools take two rows
@@ -227,40 +229,25 @@ class ResultPage(QWidget):
 
     def _build(self) -> None:
         self._figures = QWidget()
-        self._tables = QBoxLayout(QBoxLayout.Direction.LeftToRight, self._figures)
-        self._tables.setContentsMargins(0, 0, 0, 0)
-        self._tables.addWidget(self.cycles.peaks, 1)
-        right = QVBoxLayout()
-        right.addWidget(self.cycles.time_distance, 1)
-        right.addWidget(self.cycles.hips, 1)
-        self._tables.addLayout(right, 1)
-        self._columns = QHBoxLayout()
-        for widget, share in (
-            (self.whole, 1),
-            (self.cycles, 1),
-            (self.legs, 0),
-            (self.strides, 0),
-            (self.compare, 1),
-            (self._figures, 1),
-            (self.quality, 1),
-        ):
-            self._columns.addWidget(widget, share)
-        bottom = QHBoxLayout()
-        bottom.addWidget(self.door, 1)
-        bottom.addWidget(self.repeat)
-        bottom.addWidget(self.all_figures)
+        right = lay_out(QVBoxLayout(), (self.cycles.time_distance, 1), (self.cycles.hips, 1))
+        tables = ((self.cycles.peaks, 1), (right, 1))
+        self._tables = lay_out(QBoxLayout(ACROSS, self._figures), *tables, margins=0, spacing=12)
+        wide = (self.whole, self.cycles, self.compare, self._figures, self.quality)
+        parts = (self.whole, self.cycles, self.legs, self.strides, self.compare, self._figures, self.quality)
+        self._columns = lay_out(QHBoxLayout(), *((part, int(part in wide)) for part in parts), spacing=12)
+        bottom = lay_out(QHBoxLayout(), (self.door, 1), self.repeat, self.all_figures, spacing=12)
         self.all_figures.set_face(height=BOTTOM)
-        for layout in (self._columns, bottom, self._tables):
-            scaled(layout.setSpacing, 12)
-        self._page = QVBoxLayout(self)
-        scaled(self._page.setSpacing, 10)
-        self._page.addLayout(self._tools)
-        self._page.addWidget(self._tools.beneath, 0, Qt.AlignmentFlag.AlignLeft)
-        self._page.addWidget(self.headline)
-        self._page.addWidget(self.tiles)
-        self._page.addLayout(self._columns, 1)
-        self._page.addWidget(self.differs)
-        self._page.addLayout(bottom)
+        self._page = lay_out(
+            QVBoxLayout(self),
+            self._tools,
+            (self._tools.beneath, 0, Qt.AlignmentFlag.AlignLeft),
+            self.headline,
+            self.tiles,
+            (self._columns, 1),
+            self.differs,
+            bottom,
+            spacing=10,
+        )
         self._place()
 
     def _connect(self) -> None:
@@ -309,8 +296,7 @@ class ResultPage(QWidget):
         right = [card for card in (cycles.time_distance, cycles.hips) if not card.isHidden()]
         needed = _least_width(cycles.peaks) + max(map(_least_width, right), default=0) + self._tables.spacing()
         does_fit = room.has_two_tables and needed <= self._inner_width
-        across, down = QBoxLayout.Direction.LeftToRight, QBoxLayout.Direction.TopToBottom
-        self._tables.setDirection(across if does_fit else down)
+        self._tables.setDirection(ACROSS if does_fit else DOWN)
 
     @property
     def _inner_width(self) -> int:

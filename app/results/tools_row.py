@@ -12,6 +12,7 @@ from app.theme.current import px, scaled
 from app.theme.icons import Icon
 from app.widgets.button import Button, ButtonKind
 from app.widgets.choice import Choice
+from app.widgets.lay_out import lay_out
 from app.widgets.segmented import Segmented
 from app.widgets.text import Text
 from app.widgets.toggle import Toggle
@@ -57,15 +58,10 @@ class ToolsRow(QGridLayout):
         for choice in (self.recordings, self.thin):
             scaled(choice.setFixedHeight, TOOLS)
         self.against, self.choices, self.beneath = QWidget(), QWidget(), QWidget()
-        against, choices, beneath = (QHBoxLayout(one) for one in (self.against, self.choices, self.beneath))
-        self._against, self._choices, self._beneath = against, choices, beneath
-        for row in (against, choices, beneath):
-            row.setContentsMargins(0, 0, 0, 0)
-            scaled(row.setSpacing, GAP)
-        against.addWidget(compare.kinds)
-        against.addWidget(compare.bases)
-        for widget in (self.part, self.recordings, self.thin_name, self.thin, self.show_legs, self.against):
-            choices.addWidget(widget)
+        chosen = (self.part, self.recordings, self.thin_name, self.thin, self.show_legs, self.against)
+        self._against = lay_out(QHBoxLayout(self.against), compare.kinds, compare.bases, margins=0, spacing=GAP)
+        self._choices = lay_out(QHBoxLayout(self.choices), *chosen, margins=0, spacing=GAP)
+        self._beneath = lay_out(QHBoxLayout(self.beneath), margins=0)
         self.setColumnStretch(4, 1)
 
     def is_to_be_placed(self, room: PageRoom, width: int) -> bool:

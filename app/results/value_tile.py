@@ -12,6 +12,7 @@ from app.theme.current import current_theme, scaled
 from app.theme.ground import Ground, set_ground
 from app.theme.leg_chip import paint_chip
 from app.theme.theme import CARD_RADIUS
+from app.widgets.lay_out import lay_out
 from app.widgets.painted import Painted
 from app.widgets.painted_text import LEFT, RIGHT, PaintedText
 from app.widgets.text import MEDIUM, REGULAR, SEMIBOLD
@@ -35,11 +36,7 @@ class TileRow(QWidget):
     def __init__(self) -> None:
         super().__init__()
         self.tiles = [ValueTile() for _ in range(4)]
-        row = QHBoxLayout(self)
-        row.setContentsMargins(0, 0, 0, 0)
-        scaled(row.setSpacing, 12)
-        for tile in self.tiles:
-            row.addWidget(tile, 1)
+        lay_out(QHBoxLayout(self), *((tile, 1) for tile in self.tiles), margins=0, spacing=12)
         self.setSizePolicy(QSizePolicy.Policy.Expanding, QSizePolicy.Policy.Fixed)
 
     def show_tiles(self, tiles: Sequence[Tile]) -> None:

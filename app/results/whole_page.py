@@ -10,6 +10,7 @@ from app.theme.current import scaled
 from app.theme.icons import Icon
 from app.widgets.button import Button, ButtonKind
 from app.widgets.heard_order import hear_as_laid_out
+from app.widgets.lay_out import lay_out
 from app.widgets.segmented import Segmented
 from app.widgets.text import Text
 from app.wording.translation import later, tr
@@ -54,18 +55,10 @@ class WholePage(QWidget):
         self.to_whole = Button(tr("Whole recording"), ButtonKind.QUIET, Icon.WHOLE, tr("Home"), height=44)
         self.hint = Text(size=12, tone="ink2", wraps=True)
         self._notes = QWidget()
-        notes = QVBoxLayout(self._notes)
-        notes.setContentsMargins(0, 0, 0, 0)
-        notes.setSpacing(2)
-        notes.addWidget(self.shown)
-        notes.addWidget(self.hint)
+        lay_out(QVBoxLayout(self._notes), self.shown, self.hint, margins=0).setSpacing(2)
         self._foot = QGridLayout()
         self._foot.setColumnStretch(0, 1)
-        column = QVBoxLayout(self)
-        column.setContentsMargins(0, 0, 0, 0)
-        column.addWidget(self.charts, 1)
-        column.addLayout(self._foot)
-        scaled(column.setSpacing, 12)
+        lay_out(QVBoxLayout(self), (self.charts, 1), self._foot, margins=0, spacing=12)
         scaled(self._foot.setHorizontalSpacing, 16)
         scaled(self._foot.setVerticalSpacing, 8)
         policy = self.to_whole.sizePolicy()

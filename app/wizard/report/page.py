@@ -6,10 +6,11 @@ from uuid import UUID
 from PySide6.QtCore import QEvent, Signal
 from PySide6.QtWidgets import QBoxLayout, QHBoxLayout, QSizePolicy, QWidget
 
-from app.theme.current import on_theme, px, scaled
+from app.theme.current import on_theme, px
 from app.widgets.card import Card
 from app.widgets.chips import Chips
 from app.widgets.choice import Choice
+from app.widgets.lay_out import lay_out
 from app.widgets.reading_area import ReadingArea
 from app.widgets.segmented import Segmented
 from app.widgets.sheets import Sheet, Sheets, SmallSheets
@@ -17,6 +18,7 @@ from app.widgets.text import SEMIBOLD, Text
 from app.wizard.report.comment_editor import CommentEditor
 from app.wording.translation import LANGUAGES, spoken_language, tr
 
+ACROSS, DOWN = QBoxLayout.Direction.LeftToRight, QBoxLayout.Direction.TopToBottom
 WORDS_WIDTH = 320
 PADDING = 20
 NARROW_BELOW = 900
@@ -71,29 +73,18 @@ class ReportPage(QWidget):
         if spoken_language() in LANGUAGES:
             self.language.choose(spoken_language())
         self._card = Card(padding=PADDING, spacing=12)
-        for part in (self.editor, self._earlier_title, self.earlier):
-            self._card.column.addWidget(part)
-        for title, control in (
-            (tr("Extra pages"), self.added),
-            (tr("Patient letter"), self.language),
-            (tr("Paper"), self.paper),
-        ):
-            row = QHBoxLayout()
-            row.addWidget(_title(title), 1)
-            row.addWidget(control)
-            self._card.column.addLayout(row)
-        self._card.column.addWidget(_title(tr("Files to export")))
-        self._card.column.addWidget(self.formats)
-        self._card.column.addStretch(1)
-        self._row = QBoxLayout(QBoxLayout.Direction.LeftToRight, self)
-        pages = QHBoxLayout()
-        pages.addWidget(self.small)
-        pages.addWidget(self.reading, 1)
-        self._row.addLayout(pages, 1)
-        self._row.addWidget(self._card)
-        scaled(self._row.setContentsMargins, 24, 16, 24, 16)
-        scaled(self._row.setSpacing, 16)
-        scaled(pages.setSpacing, 8)
+        rows = [
+            lay_out(QHBoxLayout(), (_title(title), 1), control)
+            for title, control in (
+                (tr("Extra pages"), self.added),
+                (tr("Patient letter"), self.language),
+                (tr("Paper"), self.paper),
+            )
+        ]
+        above, files = (self.editor, self._earlier_title, self.earlier), _title(tr("Files to export"))
+        lay_out(self._card.column, *above, *rows, files, self.formats, 1)
+        pages = lay_out(QHBoxLayout(), self.small, (self.reading, 1), spacing=8)
+        self._row = lay_out(QBoxLayout(ACROSS, self), (pages, 1), self._card, margins=(24, 16, 24, 16), spacing=16)
         self.editor.left.connect(self.focus)
         self.formats.turned.connect(self.options_changed)
         self.added.turned.connect(self.options_changed)
@@ -118,8 +109,7 @@ class ReportPage(QWidget):
     def set_room(self, width: float, _height: float) -> None:
         """Put the words under the pages where both do not stand side by side."""
         self._is_narrow = is_narrow = width < NARROW_BELOW
-        way = QBoxLayout.Direction.TopToBottom if is_narrow else QBoxLayout.Direction.LeftToRight
-        self._row.setDirection(way)
+        self._row.setDirection(DOWN if is_narrow else ACROSS)
         self.small.setVisible(not is_narrow)
         self.reading.setMinimumHeight(px(360) if is_narrow else 0)
         self._fit_card()

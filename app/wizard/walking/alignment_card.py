@@ -15,6 +15,7 @@ from app.widgets.card import Card
 from app.widgets.chip import Chip
 from app.widgets.choice import Choice
 from app.widgets.field import Field
+from app.widgets.lay_out import lay_out
 from app.widgets.painted import Painted
 from app.widgets.painted_text import LEFT, PaintedText, height_for
 from app.widgets.reading_area import scrolled
@@ -78,9 +79,6 @@ class AlignmentCard(Card):
         self._grid = QGridLayout()
         self.chip = Chip(Side.LEFT)  # until rows are shown
         self._head_row = QWidget()
-        self._head = QHBoxLayout(self._head_row)
-        self._head.setContentsMargins(0, 0, 0, 0)
-        self._side_word = Text(tr("prosthetic"), size=12, tone="ink2")
         for part in ProsthesisPart:
             self.parts.addItem(part_name(part), part)
         self._build()
@@ -160,19 +158,12 @@ class AlignmentCard(Card):
         self.written.setText(tr("Recorded as: {change}").format(change=line) if line else tr("Nothing changed yet."))
 
     def _build(self) -> None:
-        self._head.addWidget(Text(tr("Alignments"), size=16, weight=SEMIBOLD))
-        self._head.addStretch(1)
-        self._head.addWidget(self.chip)
-        self._head.addWidget(self._side_word)
-        self._rows_column.setContentsMargins(0, 0, 0, 0)
-        self._rows_column.setSpacing(4)
-        self._rows_column.addStretch(1)
-        self.column.addWidget(self._head_row)
-        self.column.addWidget(self._scroll, 1)
-        self.column.addWidget(self.next_title)
+        title, word = Text(tr("Alignments"), size=16, weight=SEMIBOLD), Text(tr("prosthetic"), size=12, tone="ink2")
+        lay_out(QHBoxLayout(self._head_row), title, 1, self.chip, word, margins=0)
+        lay_out(self._rows_column, 1, margins=0).setSpacing(4)
         self._grid.setSpacing(8)
         self.set_compact(False)
-        self.column.addLayout(self._grid)
+        lay_out(self.column, self._head_row, (self._scroll, 1), self.next_title, self._grid)
 
     def _connect(self) -> None:
         self.parts.activated.connect(self._on_part_chosen)

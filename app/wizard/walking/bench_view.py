@@ -12,10 +12,11 @@ from app.results.compared_words import not_reported_in_words
 from app.summary.beside import changes_on_curves
 from app.summary.comparison import Comparison
 from app.summary.conditions import Part
-from app.theme.current import current_theme, on_theme, scaled
+from app.theme.current import current_theme, on_theme
 from app.theme.icons import Icon
 from app.widgets.focus_ring import NO_RING
 from app.widgets.icons import IconMark
+from app.widgets.lay_out import lay_out
 from app.widgets.segmented import Segmented
 from app.widgets.text import SEMIBOLD, Text
 from app.wizard.walking.alignment_card import AlignmentCard, AlignmentRow
@@ -133,25 +134,13 @@ class BenchView(QWidget):
         self.setFocusPolicy(Qt.FocusPolicy.TabFocus)
         self.setProperty(NO_RING, True)
         self.setAccessibleName(tr("Alignment"))
-        self._curves_column = QBoxLayout(DOWN, self._curves)
-        self._curves_column.setContentsMargins(0, 0, 0, 0)
-        words = QVBoxLayout()
+        self._curves_column = lay_out(QBoxLayout(DOWN, self._curves), margins=0, spacing=12)
+        words = lay_out(QVBoxLayout(), self.first, self.then)
         words.setSpacing(2)
-        words.addWidget(self.first)
-        words.addWidget(self.then)
-        head, row, column = QHBoxLayout(), QHBoxLayout(), QVBoxLayout(self)
-        head.addWidget(self._mark, 0, Qt.AlignmentFlag.AlignTop)
-        head.addLayout(words, 1)
-        row.addWidget(self.alignments)
-        row.addWidget(self._curves, 1)
-        row.addWidget(self.differences)
-        column.setContentsMargins(0, 0, 0, 0)
-        column.addLayout(head)
-        column.addWidget(self.tabs)
-        column.addLayout(row, 1)
-        for layout in (head, column, self._curves_column):
-            scaled(layout.setSpacing, 12)
-        scaled(row.setSpacing, BETWEEN)
+        mark = self._mark, 0, Qt.AlignmentFlag.AlignTop
+        head = lay_out(QHBoxLayout(), mark, (words, 1), spacing=12)
+        row = lay_out(QHBoxLayout(), self.alignments, (self._curves, 1), self.differences, spacing=BETWEEN)
+        lay_out(QVBoxLayout(self), head, self.tabs, (row, 1), margins=0, spacing=12)
 
     def _arrange(self) -> None:
         px, choice = current_theme().px, self.tabs.choice

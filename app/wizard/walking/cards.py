@@ -11,6 +11,7 @@ from app.theme.current import on_theme, px, scaled
 from app.widgets.button import Button, ButtonKind
 from app.widgets.card import Card
 from app.widgets.chip import Chip
+from app.widgets.lay_out import lay_out
 from app.widgets.text import MEDIUM, SEMIBOLD, Text
 from app.wizard.walking.charts import Hairline
 from app.wizard.walking.label_chooser import LabelChooser
@@ -29,40 +30,24 @@ class WalkFigures(Card):
     """Strides and cadence, to be read from across the room."""
 
     def __init__(self) -> None:
-        super().__init__(spacing=0)
+        super().__init__(spacing=0.5)  # a pixel, at any size
         self._strides = Text(NO_FIGURE, size=FIGURE, weight=SEMIBOLD)
         self._cadence = Text(NO_FIGURE, size=FIGURE, weight=SEMIBOLD)
         self._counts = {side: Text("0", size=18, weight=MEDIUM) for side in Side}
         self._chips = {side: Chip(side) for side in Side}
         self._line = Hairline()
         self._unit = Text(tr("steps/min"), size=14, tone="ink2")
-        strides, cadence, self._sides = QHBoxLayout(), QHBoxLayout(), QBoxLayout(DOWN)
-        self._both = QBoxLayout(DOWN)
-        self._parts: list[QBoxLayout] = []
         self.in_words = ""
         self.setSizePolicy(QSizePolicy.Policy.Preferred, QSizePolicy.Policy.Fixed)
-        for side in Side:
-            pair = QHBoxLayout()
-            pair.addWidget(self._chips[side])
-            pair.addWidget(self._counts[side])
-            scaled(pair.setSpacing, 8)
-            self._sides.addLayout(pair)
-        strides.addWidget(self._strides)
-        strides.addStretch(1)
-        strides.addLayout(self._sides)
-        cadence.addWidget(self._cadence)
-        cadence.addWidget(self._unit, 0, Qt.AlignmentFlag.AlignBottom)
-        cadence.addStretch(1)
-        for row in (strides, cadence, self._sides):
-            scaled(row.setSpacing, 8)
-        for title, row in ((tr("Strides"), strides), (tr("Cadence"), cadence)):
-            part = QBoxLayout(DOWN)
-            part.addWidget(Text(title, size=14, tone="ink2"))
-            part.addLayout(row)
-            self._parts.append(part)
-        self._both.addLayout(self._parts[0], 1)
-        self._both.addWidget(self._line)
-        self._both.addLayout(self._parts[1], 1)
+        pairs = [lay_out(QHBoxLayout(), self._chips[side], self._counts[side], spacing=8) for side in Side]
+        self._sides = lay_out(QBoxLayout(DOWN), *pairs, spacing=8)
+        unit = self._unit, 0, Qt.AlignmentFlag.AlignBottom
+        rows = {
+            tr("Strides"): lay_out(QHBoxLayout(), self._strides, 1, self._sides, spacing=8),
+            tr("Cadence"): lay_out(QHBoxLayout(), self._cadence, unit, 1, spacing=8),
+        }
+        self._parts = [lay_out(QBoxLayout(DOWN), Text(word, size=14, tone="ink2"), row) for word, row in rows.items()]
+        self._both = lay_out(QBoxLayout(DOWN), (self._parts[0], 1), self._line, (self._parts[1], 1))
         self.column.addLayout(self._both)
         self.set_compact(is_compact=False, is_narrow=False)
         on_theme(self._reserve_room)
@@ -119,18 +104,10 @@ class StoppedCard(Card):
         self._facts = Text(size=14, tone="ink2", wraps=True)
         self.keep = Button("", ButtonKind.PRIMARY, key="I")
         self.discard = Button(tr("Exclude"), ButtonKind.SECONDARY, key="X")
-        self._row, verbs, words = QBoxLayout(ACROSS), QHBoxLayout(), QVBoxLayout()
         self.setSizePolicy(QSizePolicy.Policy.Preferred, QSizePolicy.Policy.Fixed)
-        words.setSpacing(0)
-        words.addWidget(self._title)
-        words.addWidget(self._facts)
-        self._row.addLayout(words, 1)
-        verbs.addStretch(1)
-        verbs.addWidget(self.discard)
-        verbs.addWidget(self.keep)
-        self._row.addLayout(verbs)
-        for row in (self._row, verbs):
-            scaled(row.setSpacing, 12)
+        words = lay_out(QVBoxLayout(), self._title, self._facts, spacing=0)
+        verbs = lay_out(QHBoxLayout(), 1, self.discard, self.keep, spacing=12)
+        self._row = lay_out(QBoxLayout(ACROSS), (words, 1), verbs, spacing=12)
         self.column.addLayout(self._row)
 
     def show_walk(self, walk: WalkRow | None, facts: str) -> None:
@@ -170,10 +147,7 @@ class EmptyCard(Card):
         self.setAccessibleName(f"{self._what.text()} {self._then.text()}")
         for text in (self._what, self._then):
             text.setAlignment(Qt.AlignmentFlag.AlignCenter)
-        self.column.addStretch(1)
-        self.column.addWidget(self._what)
-        self.column.addWidget(self._then)
-        self.column.addStretch(1)
+        lay_out(self.column, 1, self._what, self._then, 1)
 
 
 class NextCard(Card):
@@ -185,11 +159,7 @@ class NextCard(Card):
         self.chooser = LabelChooser()
         self.test = TimedChooser()
         self.setSizePolicy(QSizePolicy.Policy.Preferred, QSizePolicy.Policy.Fixed)
-        head = QHBoxLayout()
-        head.addWidget(self._title, 1)
-        head.addWidget(self.test)
-        self.column.addLayout(head)
-        self.column.addWidget(self.chooser)
+        lay_out(self.column, lay_out(QHBoxLayout(), (self._title, 1), self.test), self.chooser)
 
     def sizeHint(self) -> QSize:
         return self.minimumSizeHint()

@@ -7,10 +7,11 @@ from PySide6.QtGui import QAccessible, QColor, QPainter
 from PySide6.QtWidgets import QHBoxLayout, QSizePolicy, QSpacerItem, QWidget
 
 from app.charts.axes import ANKLE_DEG, KNEE_DEG, degrees_in_words
-from app.plots.phase_lanes import Swatch
-from app.theme.current import current_theme, px, scaled
+from app.plots.phase_lanes import LEGEND, Swatch
+from app.theme.current import current_theme, on_theme, px, scaled
 from app.widgets.card import Card
 from app.widgets.chip import SideKey
+from app.widgets.lay_out import lay_out
 from app.widgets.painted import Painted
 from app.widgets.text import MEDIUM, SEMIBOLD, Text
 from app.wizard.walking.live_lanes import LiveLanes
@@ -18,7 +19,6 @@ from app.wizard.walking.live_strip import LiveStrip
 from app.wizard.walking.readout import WalkingReadout
 from app.wording.translation import tr
 from core.body import Side
-from core.gait.phases import Phase
 
 HIP_DEG = (-20.0, 50.0)
 HIP_TICK_DEG, KNEE_TICK_DEG, ANKLE_TICK_DEG = 20, 30, 20
@@ -49,7 +49,7 @@ class WalkingCharts(Card):
         self._phases_title = Text(tr("Gait phases"), size=14, tone="ink2")
         self.setSizePolicy(QSizePolicy.Policy.Expanding, QSizePolicy.Policy.Expanding)
         self._build()
-        self._apply_theme()
+        on_theme(self._keep_gaps)
 
     def set_simulated(self, is_simulated: bool) -> None:
         for mark in self._simulated:
@@ -112,65 +112,41 @@ class WalkingCharts(Card):
 
     def _build(self) -> None:
         hip = self._head(Text(tr("Hip"), size=16, weight=SEMIBOLD), tr("flexion + (°)"))
-        hip.addStretch(1)
-        hip.addWidget(self._hip_note)
-        hip.setContentsMargins(0, 0, 0, 0)
-        self._hip_head.setLayout(hip)
+        self._hip_head.setLayout(lay_out(hip, 1, self._hip_note, margins=0))
         knee = self._head(Text(tr("Knee"), size=16, weight=SEMIBOLD), tr("flexion + (°)"))
-        knee.addStretch(1)
-        keys, legend = QHBoxLayout(), QHBoxLayout()
-        scaled(keys.setSpacing, 20)
-        scaled(legend.setSpacing, 6)
-        knee.addLayout(keys)
-        for key in self._keys.values():
-            keys.addWidget(key)
+        lay_out(knee, 1, lay_out(QHBoxLayout(), *self._keys.values(), spacing=20))
         ankle = self._head(Text(tr("Ankle"), size=16, weight=SEMIBOLD), tr("dorsiflexion + (°)"))
-        ankle.addStretch(1)
-        ankle.addWidget(self._provisional)
-        phases = self._head(self._phases_title, "")
-        phases.addStretch(1)
-        words = (
-            (Phase.LOADING, tr("Loading")),
-            (Phase.FOOT_FLAT, tr("Foot flat")),
-            (Phase.PRE_SWING, tr("Pre-swing")),
-            (Phase.SWING, tr("Swing")),
-        )
-        for phase, word in words:
-            pair = QHBoxLayout()
-            scaled(pair.setSpacing, 6)
-            pair.addWidget(Swatch(phase))
-            pair.addWidget(Text(word, size=12, tone="ink2"))
+        lay_out(ankle, 1, self._provisional)
+        legend = lay_out(QHBoxLayout(), spacing=6)
+        for phase, word in LEGEND:
             if legend.count():
                 self._legend_gaps.append(QSpacerItem(0, 0, QSizePolicy.Policy.Maximum))
                 legend.addItem(self._legend_gaps[-1])
-            legend.addLayout(pair)
-        phases.addLayout(legend)
-        self.column.addWidget(self._hip_head)
-        self.column.addWidget(self.hip, HIP_SHARE)
-        self.column.addWidget(self._hip_line)
-        self.column.addLayout(knee)
-        self.column.addWidget(self.knee, KNEE_SHARE)
-        self.column.addWidget(self._lines[0])
-        self.column.addLayout(ankle)
-        self.column.addWidget(self.ankle, ANKLE_SHARE)
-        self.column.addWidget(self._lines[1])
-        self.column.addLayout(phases)
-        self.column.addWidget(self.lanes)
+            legend.addLayout(lay_out(QHBoxLayout(), Swatch(phase), Text(tr(word), size=12, tone="ink2"), spacing=6))
+        lay_out(
+            self.column,
+            self._hip_head,
+            (self.hip, HIP_SHARE),
+            self._hip_line,
+            knee,
+            (self.knee, KNEE_SHARE),
+            self._lines[0],
+            ankle,
+            (self.ankle, ANKLE_SHARE),
+            self._lines[1],
+            lay_out(self._head(self._phases_title, ""), 1, legend),
+            self.lanes,
+        )
         self.set_simulated(is_simulated=False)
         self.set_hips(has_hips=False)
 
     def _head(self, title: Text, sign: str) -> QHBoxLayout:
-        head = QHBoxLayout()
-        head.addWidget(title)
-        if sign:
-            head.addWidget(Text(sign, size=12, tone="ink2"))
         mark = Text(tr("SIMULATED"), size=12, weight=SEMIBOLD)
-        head.addWidget(mark)
         self._simulated.append(mark)
-        scaled(head.setSpacing, 8)
-        return head
+        signs = [Text(sign, size=12, tone="ink2")] if sign else []
+        return lay_out(QHBoxLayout(), title, *signs, mark, spacing=8)
 
-    def _apply_theme(self) -> None:
+    def _keep_gaps(self) -> None:
         for gap in self._legend_gaps:
             gap.changeSize(px(14), 0, QSizePolicy.Policy.Maximum)
 

@@ -20,6 +20,7 @@ from app.patient_screen.controls import ControlsCard
 from app.theme.current import current_theme, on_theme, scaled
 from app.theme.icons import Icon
 from app.widgets.focus_ring import NO_RING
+from app.widgets.lay_out import lay_out
 from app.widgets.notice import Notice
 from app.widgets.reading_area import scrolled
 from app.widgets.segmented import Segmented
@@ -254,25 +255,15 @@ class WalkingPage(QWidget):
             region.setFocusPolicy(Qt.FocusPolicy.TabFocus)
             region.setProperty(NO_RING, True)
         self.charts.setAccessibleName(tr("Live angles and gait phases"))
-        self._left, self._right = QVBoxLayout(), QVBoxLayout()
-        for region in (self.empty, self.charts, self.timed_result, self.memory):
-            self._left.addWidget(region, 1)
-        self._right.addWidget(self.figures)
-        self._right.addWidget(self.walks, 1)
-        self._middle = QBoxLayout(ACROSS)
-        self._middle.addLayout(self._left, 1)
-        self._middle.addLayout(self._right)
-        self._column = QVBoxLayout(self._inside)
+        regions = (self.empty, self.charts, self.timed_result, self.memory)
+        self._left = lay_out(QVBoxLayout(), *((region, 1) for region in regions))
+        self._right = lay_out(QVBoxLayout(), self.figures, (self.walks, 1))
+        self._middle = lay_out(QBoxLayout(ACROSS), (self._left, 1), self._right)
         self.patient_controls.setVisible(False)
-        for widget in (self.notice, self.patient_controls, self.tabs, self.stopped):
-            self._column.addWidget(widget)
-        self._column.addWidget(self.bench, 1)
-        self._column.addWidget(self.timed, 1)
-        self._column.addLayout(self._middle, 1)
-        self._column.addWidget(self.next)
-        outer = QHBoxLayout(self)
-        outer.setContentsMargins(0, 0, 0, 0)
-        outer.addWidget(self._scroll)
+        above = (self.notice, self.patient_controls, self.tabs, self.stopped)
+        large = ((part, 1) for part in (self.bench, self.timed, self._middle))
+        self._column = lay_out(QVBoxLayout(self._inside), *above, *large, self.next)
+        lay_out(QHBoxLayout(self), self._scroll, margins=0)
         self.show_message("")
         self.stopped.show_walk(None, "")
 

@@ -12,11 +12,11 @@ from PySide6.QtWidgets import QHBoxLayout, QVBoxLayout, QWidget
 from app.plots.course import CourseCard
 from app.summary.course_lanes import CourseLane, CourseVisit
 from app.summary.course_words import changes_since_in_words
-from app.theme.current import scaled
 from app.theme.icons import Icon
 from app.widgets.card import Card
 from app.widgets.focus_ring import NO_RING
 from app.widgets.icons import IconMark
+from app.widgets.lay_out import lay_out
 from app.widgets.reading_area import scrolled
 from app.widgets.table import CellTable, TableColumn, TableRow
 from app.widgets.table_cells import RIGHT, TextCell
@@ -122,30 +122,15 @@ class TimedResultView(QWidget):
         self.setFocusPolicy(Qt.FocusPolicy.TabFocus)
         self.setProperty(NO_RING, True)
         self.setAccessibleName(tr("Test result"))
-        head, words = QHBoxLayout(), QVBoxLayout()
-        words.addWidget(self.first)
-        words.addWidget(self.then)
-        head.addWidget(self._mark, 0, Qt.AlignmentFlag.AlignTop)
-        head.addLayout(words, 1)
-        inside = QWidget()
-        column = QVBoxLayout(inside)
-        column.setContentsMargins(0, 0, 0, 0)
-        scaled(column.setSpacing, 12)
-        column.addLayout(head)
+        words = lay_out(QVBoxLayout(), self.first, self.then)
+        head = lay_out(QHBoxLayout(), (self._mark, 0, Qt.AlignmentFlag.AlignTop), (words, 1))
         attempts, self._parts_card = Card(), Card()
-        for card, title, table in (
-            (attempts, tr("Attempts"), self.attempts),
-            (self._parts_card, tr("Test sections"), self.parts),
-        ):
-            card.column.addWidget(Text(title, size=16, weight=SEMIBOLD))
-            card.column.addWidget(table)
-            column.addWidget(card)
-        column.insertWidget(2, self.course)
-        column.addWidget(self.errors)
-        column.addStretch(1)
-        outer = QVBoxLayout(self)
-        outer.setContentsMargins(0, 0, 0, 0)
-        outer.addWidget(scrolled(inside, is_upright=False))
+        lay_out(attempts.column, Text(tr("Attempts"), size=16, weight=SEMIBOLD), self.attempts)
+        lay_out(self._parts_card.column, Text(tr("Test sections"), size=16, weight=SEMIBOLD), self.parts)
+        inside = QWidget()
+        parts = (head, attempts, self.course, self._parts_card, self.errors, 1)
+        lay_out(QVBoxLayout(inside), *parts, margins=0, spacing=12)
+        lay_out(QVBoxLayout(self), scrolled(inside, is_upright=False), margins=0)
 
 
 def number(value: float, digits: int) -> str:

@@ -14,6 +14,7 @@ from app.widgets.card import Card
 from app.widgets.digits import Digits
 from app.widgets.focus_ring import NO_RING
 from app.widgets.icons import IconMark
+from app.widgets.lay_out import lay_out
 from app.widgets.painted import Painted
 from app.widgets.painted_text import CENTRE, LEFT, RIGHT, PaintedText
 from app.widgets.text import MEDIUM, SEMIBOLD, Text
@@ -153,29 +154,18 @@ class TimedView(QWidget):
         self.setFocusPolicy(Qt.FocusPolicy.TabFocus)
         self.setProperty(NO_RING, True)
         self.setAccessibleName(tr("Timed test"))
-        head = QHBoxLayout()
-        for widget in (self._title, self._note):
-            head.addWidget(widget, 0, Qt.AlignmentFlag.AlignBottom)
-        head.addStretch(1)
-        head.addWidget(self.status)
+        named = ((one, 0, Qt.AlignmentFlag.AlignBottom) for one in (self._title, self._note))
+        head = lay_out(QHBoxLayout(), *named, 1, self.status)
         time, self._distance_card, course = Card(), Card(), Card()
         distance = self._distance_card
         for card, title, figure in ((time, tr("Time"), self.time), (distance, tr("Distance"), self.distance)):
-            card.column.addWidget(Text(title, size=20, weight=MEDIUM, tone="ink2"))
-            card.column.addWidget(figure, 1)
+            lay_out(card.column, Text(title, size=20, weight=MEDIUM, tone="ink2"), (figure, 1))
         distance.column.addWidget(self.why)
         course.column.addWidget(self.course)
-        figures, row, column = QHBoxLayout(), QHBoxLayout(), QVBoxLayout(self)
+        figures = lay_out(QHBoxLayout(), (time, 604), (distance, 396))
+        row = lay_out(QHBoxLayout(), *((tile, 1) for tile in self._tiles))
+        column = lay_out(QVBoxLayout(self), head, (figures, 1), course, row, margins=0)
         self._spaced = (figures, row, column)
-        figures.addWidget(time, 604)
-        figures.addWidget(distance, 396)
-        for tile in self._tiles:
-            row.addWidget(tile, 1)
-        column.setContentsMargins(0, 0, 0, 0)
-        column.addLayout(head)
-        column.addLayout(figures, 1)
-        column.addWidget(course)
-        column.addLayout(row)
 
 
 class _Status(Painted):
@@ -219,13 +209,8 @@ class _ByItself(Card):
         super().__init__()
         self._first, self._then = Text(weight=SEMIBOLD, wraps=True), Text(size=13, tone="ink2", wraps=True)
         self.setSizePolicy(QSizePolicy.Policy.Preferred, QSizePolicy.Policy.Fixed)
-        row, words = QHBoxLayout(), QVBoxLayout()
-        words.setSpacing(0)
-        words.addWidget(self._first)
-        words.addWidget(self._then)
-        row.addWidget(IconMark(icon, size=20))
-        row.addLayout(words, 1)
-        self.column.addLayout(row)
+        words = lay_out(QVBoxLayout(), self._first, self._then, spacing=0)
+        self.column.addLayout(lay_out(QHBoxLayout(), IconMark(icon, size=20), (words, 1)))
 
     def show_words(self, first: str, then: str) -> None:
         for label, text in ((self._first, first), (self._then, capitalised(then))):

@@ -23,6 +23,7 @@ from app.widgets.button import Button, ButtonKind
 from app.widgets.card import Card
 from app.widgets.field import Field
 from app.widgets.icons import IconMark
+from app.widgets.lay_out import lay_out
 from app.widgets.painted_button import PaintedButton
 from app.widgets.painted_text import PaintedText, height_for
 from app.widgets.reading_area import scrolled
@@ -95,15 +96,9 @@ class WalkList(Card):
             tr("Sensors were reattached"),
             tr("Standing still and free motion must then be repeated."),
         )
-        self._list = QVBoxLayout(self._inside)
+        self._list = lay_out(QVBoxLayout(self._inside), 1, margins=0, spacing=BETWEEN)
         self.setAccessibleName(tr("Walks"))
-        self._list.addStretch(1)
-        self._list.setContentsMargins(0, 0, 0, 0)
-        scaled(self._list.setSpacing, BETWEEN)
-        self.column.addWidget(self._title)
-        self.column.addWidget(self._none)
-        self.column.addWidget(self._scroll, 1)
-        self.column.addWidget(self.restrapped)
+        lay_out(self.column, self._title, self._none, (self._scroll, 1), self.restrapped)
         on_theme(self._fit)
 
     @property
@@ -172,22 +167,11 @@ class _ListedWalk(QWidget):
         self.undo = Button(tr("Undo"), ButtonKind.QUIET, height=44)
         self.edit = Button("", ButtonKind.QUIET, Icon.EDIT, height=44)
         self.field = Field(tr("Condition of this walk"), has_label=False)
-        words, named, row = QVBoxLayout(), QHBoxLayout(), QHBoxLayout(self)
-        words.setSpacing(0)
-        words.addStretch(1)
-        for part in (self.field, self._label, self._note):
-            words.addWidget(part)
-        words.addStretch(1)
-        named.addWidget(self._bar)
-        named.addWidget(self._badge)
-        named.addLayout(words, 1)
-        row.addLayout(named, 1)
-        for part in (self._mark, self.edit, self.undo):
-            row.addWidget(part)
+        words = lay_out(QVBoxLayout(), 1, self.field, self._label, self._note, 1, spacing=0)
+        bar = lay_out(QHBoxLayout(), self._bar, self._badge, spacing=7)
+        named = lay_out(QHBoxLayout(), bar, (words, 1), spacing=10)
+        lay_out(QHBoxLayout(self), (named, 1), self._mark, self.edit, self.undo, margins=(0, 4, 8, 4), spacing=4)
         scaled(self._bar.setFixedWidth, 3)
-        scaled(named.setSpacing, 10)
-        scaled(row.setContentsMargins, 0, 4, 8, 4)
-        scaled(row.setSpacing, 4)
         scaled(self.setMinimumHeight, ROW)
         self.undo.clicked.connect(self._on_undo_clicked)
         self.edit.clicked.connect(self._on_edit_clicked)
