@@ -13,6 +13,7 @@ from app.editing.words import by_words, field_word, value_words
 from app.storage.three_way import MergeConflict
 from app.theme.current import current_theme
 from app.widgets.button import Button, ButtonKind
+from app.widgets.lay_out import lay_out
 from app.widgets.text import MEDIUM, SEMIBOLD, Text
 from app.widgets.version_cell import VersionCell
 from app.wording.translation import tr
@@ -100,28 +101,20 @@ class EditDialog(QDialog):
 
     def _build(self) -> None:
         rows = QVBoxLayout(self._table)
-        rows.setContentsMargins(0, 0, 0, 0)
         for contest, pair, cells in zip(self._question.contests, self._pairs, self.cells, strict=True):
             rows.addWidget(Text(field_word(contest.field), weight=MEDIUM, wraps=True))
             for cell in cells:
                 pair.addWidget(cell, 1)
             rows.addLayout(pair)
-        rows.addStretch(1)
+        lay_out(rows, 1, margins=0)
         self._scroll.setWidgetResizable(True)
         self._scroll.setFrameShape(QFrame.Shape.NoFrame)
         self._scroll.setHorizontalScrollBarPolicy(Qt.ScrollBarPolicy.ScrollBarAlwaysOff)
         self._scroll.setFocusPolicy(Qt.FocusPolicy.NoFocus)
         self._scroll.setAccessibleName(tr("Conflicting changes"))
         self._scroll.setWidget(self._table)
-        buttons = QHBoxLayout()
-        buttons.addWidget(self._note, 1)
-        buttons.addWidget(self.leave)
-        buttons.addWidget(self.save)
-        column = QVBoxLayout(self)
-        column.addWidget(self._title)
-        column.addWidget(self._lead)
-        column.addWidget(self._scroll, 1)
-        column.addLayout(buttons)
+        buttons = lay_out(QHBoxLayout(), (self._note, 1), self.leave, self.save)
+        lay_out(QVBoxLayout(self), self._title, self._lead, (self._scroll, 1), buttons)
 
     def _fit(self) -> None:
         """Be as large as the window allows, and no larger than needed; where it is narrow, stack the two versions."""

@@ -30,6 +30,7 @@ from app.widgets.button import Button, ButtonKind
 from app.widgets.card import Card
 from app.widgets.choice import Choice
 from app.widgets.field import Field
+from app.widgets.lay_out import lay_out
 from app.widgets.text import MEDIUM, REGULAR, SEMIBOLD, Text
 from app.wording.translation import tr, tr_n
 
@@ -122,21 +123,11 @@ class HelpPage(QWidget):
         self._scroll.setWidget(self.topics)
         self._beside = QWidget()
         self._side = QBoxLayout(QBoxLayout.Direction.TopToBottom, self._beside)
-        self._side.setContentsMargins(0, 0, 0, 0)
-        searching = QVBoxLayout()
-        searching.addWidget(self.search)
-        searching.addWidget(self.found)
-        self._side.addLayout(searching)
-        self._side.addWidget(self._scroll, 1)
-        self._side.addWidget(self.choice)
-        self._side.addWidget(self.back)
+        searching = lay_out(QVBoxLayout(), self.search, self.found)
+        lay_out(self._side, searching, (self._scroll, 1), self.choice, self.back, margins=0, spacing=12)
         page = Card(padding=16)
         page.column.addWidget(self.text)
-        self._row = QBoxLayout(QBoxLayout.Direction.LeftToRight, self)
-        self._row.addWidget(self._beside)
-        self._row.addWidget(page, 1)
-        scaled(self._row.setSpacing, 16)
-        scaled(self._side.setSpacing, 12)
+        self._row = lay_out(QBoxLayout(QBoxLayout.Direction.LeftToRight, self), self._beside, (page, 1), spacing=16)
 
     def _mark(self) -> None:
         """Mark what is searched for, and show at every topic how often it has it."""
@@ -193,7 +184,6 @@ class _TopicList(QWidget):
         self._group = QButtonGroup(self)
         self._by_topic = {topic: _TopicRow(topic_title(topic)) for topic in Topic}
         column = QVBoxLayout(self)
-        column.setContentsMargins(0, 0, 0, 0)
         column.setSpacing(2)
         begun = {Topic(group): group for group in TopicGroup}
         for topic, row in self._by_topic.items():
@@ -201,7 +191,7 @@ class _TopicList(QWidget):
                 column.addWidget(_GroupTitle(group_title(begun[topic])))
             self._group.addButton(row)
             column.addWidget(row)
-        column.addStretch(1)
+        lay_out(column, 1, margins=0)
         self._group.buttonClicked.connect(self._on_clicked)
         self._group.buttonToggled.connect(self._on_toggled)
 

@@ -32,6 +32,7 @@ from app.theme.icons import Icon
 from app.widgets.action_bar import ActionBar, BarAction, BarState
 from app.widgets.banner import Banner
 from app.widgets.grid import COMPACT_BELOW
+from app.widgets.lay_out import lay_out
 from app.widgets.rail_row import RailForm, RailRow, StepState
 from app.widgets.start_pages import WorkingPage
 from app.widgets.step_rail import StepRail, home_below
@@ -239,21 +240,9 @@ class Home(QWidget):
         self._pages = QStackedWidget()
         for page in (self.page, self.importing.page, self.working):
             self._add_page(page)
-        self._banner_row = QVBoxLayout()
-        self._banner_row.addWidget(self.notices.rollback)
-        self._banner_row.addWidget(self.notices.away)
-        self._banner_row.addWidget(self.banner)
-        column = QVBoxLayout()
-        column.setSpacing(0)
-        column.addLayout(self._banner_row)
-        column.addWidget(self._pages, 1)
-        column.addWidget(self.filling.strip)
-        column.addWidget(self.bar)
-        row = QHBoxLayout(self)
-        row.setContentsMargins(0, 0, 0, 0)
-        row.setSpacing(0)
-        row.addWidget(self.rail)
-        row.addLayout(column, 1)
+        self._banner_row = lay_out(QVBoxLayout(), self.notices.rollback, self.notices.away, self.banner)
+        column = lay_out(QVBoxLayout(), self._banner_row, (self._pages, 1), self.filling.strip, self.bar, spacing=0)
+        lay_out(QHBoxLayout(self), self.rail, (column, 1), margins=0, spacing=0)
 
     def _add_page(self, page: QWidget) -> None:
         scroll = QScrollArea()

@@ -27,6 +27,7 @@ from app.widgets.banner import Banner
 from app.widgets.button import Button, ButtonKind
 from app.widgets.folder_dialog import ask_for_folder
 from app.widgets.header import Header
+from app.widgets.lay_out import lay_out
 from app.widgets.page_stack import PageStack
 from app.widgets.start_pages import EmptyPage, WorkingPage
 from app.widgets.text import Text
@@ -155,20 +156,14 @@ class SessionScreen(QWidget):
     def _build(self) -> None:
         for page in (self.empty, self.working):
             self.pages.addWidget(page)
-        self._banner_row = QVBoxLayout()
-        self._banner_row.addWidget(self.banner)
-        column = QVBoxLayout(self)
-        column.setContentsMargins(0, 0, 0, 0)
-        column.setSpacing(0)
-        column.addWidget(self.header)
-        column.addLayout(self._banner_row)
+        self._banner_row = lay_out(QVBoxLayout(), self.banner)
+        column = lay_out(QVBoxLayout(self), self.header, self._banner_row, margins=0, spacing=0)
         scroll = QScrollArea()
         scroll.setWidgetResizable(True)
         scroll.setFrameShape(QFrame.Shape.NoFrame)
         scroll.setFocusPolicy(Qt.FocusPolicy.NoFocus)
         scroll.setWidget(self.pages)
-        column.addWidget(scroll, 1)
-        column.addWidget(self.bar)
+        lay_out(column, (scroll, 1), self.bar)
 
     def _connect(self) -> None:
         for page in (self.empty, self.bar):
@@ -302,12 +297,9 @@ class _ActionBar(QWidget):
         self.how_found = Button(tr("Show calibration"), ButtonKind.QUIET, Icon.SEARCH)
         self._purpose = Text(tr(PURPOSE), size=12, tone="ink2", wraps=True)
         self._purpose.setAlignment(Qt.AlignmentFlag.AlignRight | Qt.AlignmentFlag.AlignVCenter)
-        self._row = QHBoxLayout(self)
-        self._row.addWidget(self.back)
-        self._row.addWidget(self.open_folder)
-        self._row.addWidget(self.open_demonstration)
-        self._row.addWidget(self.how_found)
-        self._row.addWidget(self._purpose, 1)
+        self._row = lay_out(
+            QHBoxLayout(self), self.back, self.open_folder, self.open_demonstration, self.how_found, (self._purpose, 1)
+        )
         set_ground(self, BAR_GROUND)
         scaled(self.setFixedHeight, BAR)
         self.set_narrow(is_narrow=False)

@@ -5,13 +5,13 @@ from dataclasses import dataclass
 
 import numpy as np
 import pyqtgraph as pg
-from PySide6.QtCore import QRectF, QSize, Qt, Signal
+from PySide6.QtCore import QEvent, QRectF, QSize, Qt, Signal
 from PySide6.QtGui import QAccessible, QColor, QPainter, QPainterPath, QPen, QPolygonF
 from PySide6.QtWidgets import QStyleOptionGraphicsItem, QWidget
 
 from app.charts.axes import AXIS_WIDTH, RIGHT_MARGIN, range_for
 from app.plots.thinning import envelope, thin
-from app.theme.current import current_theme
+from app.theme.current import current_theme, px
 from app.wording.numbers import MINUS, clock
 from app.wording.translation import figure_text
 from core.body import Side
@@ -86,7 +86,6 @@ class AngleChart(pg.GraphicsView):  # type: ignore[misc]  # pyqtgraph has no typ
         self._apply_theme()
 
     def sizeHint(self) -> QSize:
-        px = current_theme().px
         less = 0 if self._has_times else AXIS_HEIGHT - BARE_AXIS_HEIGHT
         return QSize(px(LEAST_SIZE[0]), px((LEAST_OF_THREE if self._is_of_three else LEAST_SIZE[1]) - less))
 
@@ -162,6 +161,11 @@ class AngleChart(pg.GraphicsView):  # type: ignore[misc]  # pyqtgraph has no typ
     def _on_x_range_changed(self) -> None:
         self._redraw()
         self.view_moved.emit()
+
+    def changeEvent(self, event: QEvent) -> None:
+        super().changeEvent(event)
+        if event.type() is QEvent.Type.StyleChange:
+            self._apply_theme()
 
     def _apply_theme(self) -> None:
         theme = current_theme()

@@ -7,6 +7,7 @@ from PySide6.QtWidgets import QHBoxLayout, QSizePolicy, QVBoxLayout, QWidget
 from app.theme.current import current_theme, scaled
 from app.theme.icons import Icon, paint_icon
 from app.widgets.button import Button, ButtonKind
+from app.widgets.lay_out import lay_out
 from app.widgets.text import SEMIBOLD, Text
 from app.wording.translation import tr
 
@@ -30,20 +31,11 @@ class Banner(QWidget):
         self._next = Text(size=14, tone="caution_ink", wraps=True)
         self.act = Button("", ButtonKind.SECONDARY, height=44)
         self.dismiss = Button(tr("Dismiss"), ButtonKind.QUIET, height=44)
-        words = QVBoxLayout()
-        words.setSpacing(0)
-        words.addStretch(1)
-        words.addWidget(self._what)
-        words.addWidget(self._next)
-        words.addStretch(1)
+        words = lay_out(QVBoxLayout(), 1, self._what, self._next, 1, spacing=0)
         row = QHBoxLayout(self)
-        row.addLayout(words, 1)
-        row.addWidget(self.act)
-        row.addWidget(self.dismiss)
+        lay_out(row, (words, 1), self.act, self.dismiss, margins=(16 + MARK + 12, ABOVE + 8, 8, 8), spacing=16)
         self.act.clicked.connect(self.acted)
         self.dismiss.clicked.connect(self._on_dismiss_clicked)
-        scaled(row.setContentsMargins, 16 + MARK + 12, ABOVE + 8, 8, 8)
-        scaled(row.setSpacing, 16)
         scaled(self.setMinimumHeight, HEIGHT + ABOVE)
         self.hide()
 

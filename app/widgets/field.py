@@ -18,11 +18,12 @@ from PySide6.QtGui import (
 )
 from PySide6.QtWidgets import QHBoxLayout, QLineEdit, QSizePolicy, QVBoxLayout, QWidget
 
-from app.theme.current import current_theme, on_theme, px, scaled
+from app.theme.current import current_theme, on_theme, px
 from app.theme.icons import Icon
 from app.theme.leg_chip import paint_chip
 from app.theme.style import IS_WRONG
 from app.widgets.icons import IconMark
+from app.widgets.lay_out import lay_out
 from app.widgets.text import MEDIUM, REGULAR, SEMIBOLD, Text
 from app.wording.numbers import MINUS
 from app.wording.translation import short_figure, tr, within_sentence
@@ -86,16 +87,9 @@ class Field(QWidget):
             self._box.setEchoMode(QLineEdit.EchoMode.Password)
         self.setFocusProxy(self._box)
         self.setSizePolicy(QSizePolicy.Policy.Expanding, QSizePolicy.Policy.Maximum)
-        above = QHBoxLayout()
-        above.addWidget(self._caption, 1)
-        above.addWidget(self._optional, 0, Qt.AlignmentFlag.AlignBottom)
-        below = QHBoxLayout()
-        below.addWidget(self._wrong_mark, 0, Qt.AlignmentFlag.AlignTop)
-        below.addWidget(self._wrong, 1)
-        column = QVBoxLayout(self)
-        column.addLayout(above)
-        column.addWidget(self._box)
-        column.addLayout(below)
+        above = lay_out(QHBoxLayout(), (self._caption, 1), (self._optional, 0, Qt.AlignmentFlag.AlignBottom), spacing=8)
+        below = lay_out(QHBoxLayout(), (self._wrong_mark, 0, Qt.AlignmentFlag.AlignTop), (self._wrong, 1), spacing=8)
+        lay_out(QVBoxLayout(self), above, self._box, below, margins=0, spacing=6)
         self._caption.setVisible(has_label)  # not before it has a parent: alone it would be a window
         self._optional.setVisible(has_label and is_optional)
         self._make_room("")
@@ -104,10 +98,6 @@ class Field(QWidget):
         self._box.editingFinished.connect(self._on_editing_finished)
         self.set_unit(unit)
         self.set_wrong("")
-        scaled(column.setContentsMargins, 0, 0, 0, 0)
-        scaled(column.setSpacing, 6)
-        scaled(above.setSpacing, 8)
-        scaled(below.setSpacing, 8)
 
     @property
     def line_edit(self) -> QLineEdit:

@@ -9,6 +9,7 @@ from PySide6.QtWidgets import QFrame, QHBoxLayout, QScrollArea, QVBoxLayout, QWi
 from app.theme.current import px, scaled
 from app.theme.icons import SEVERITY_ICONS, Icon
 from app.widgets.icons import IconMark
+from app.widgets.lay_out import lay_out
 from app.widgets.text import SEMIBOLD, Text
 from app.wording.findings import sentence
 from app.wording.translation import later, tr
@@ -67,12 +68,9 @@ class FindingRow(QWidget):
         what, then = _in_two(text)
         self.setAccessibleName(f"{tr(SEVERITY_WORDS[severity])}: {text}")
         row = QHBoxLayout(self)
-        row.setContentsMargins(0, 0, 0, 0)
         row.setSpacing(px(12))
-        row.addWidget(IconMark(icon), 0, Qt.AlignmentFlag.AlignTop)
-        words = QVBoxLayout()
-        words.setSpacing(0)
-        words.addWidget(Text(what, weight=SEMIBOLD, wraps=True))
+        lay_out(row, (IconMark(icon), 0, Qt.AlignmentFlag.AlignTop), margins=0)
+        words = lay_out(QVBoxLayout(), Text(what, weight=SEMIBOLD, wraps=True), spacing=0)
         if then:
             words.addWidget(Text(then, tone="ink2", wraps=True))
         row.addLayout(words, 1)

@@ -6,6 +6,7 @@ from PySide6.QtGui import QPainter, QPaintEvent, QPen
 from PySide6.QtWidgets import QHBoxLayout, QWidget
 
 from app.theme.current import px, scaled
+from app.widgets.lay_out import lay_out
 from app.widgets.text import Text
 
 KEY = 28
@@ -24,8 +25,7 @@ class LineKeys(QWidget):
                 widget.hide()
                 widget.deleteLater()
         for pen_of, name in keys:
-            self._row.addWidget(_Line(pen_of))
-            self._row.addWidget(Text(name, size=12, tone="ink2"))
+            lay_out(self._row, _Line(pen_of), Text(name, size=12, tone="ink2"))
             self._row.addSpacing(px(8))
         self._row.addStretch(1)
 

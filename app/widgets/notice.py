@@ -4,9 +4,10 @@ from PySide6.QtCore import QRectF, Qt
 from PySide6.QtGui import QAccessible, QAccessibleAnnouncementEvent, QPainter, QPaintEvent
 from PySide6.QtWidgets import QHBoxLayout, QSizePolicy, QVBoxLayout, QWidget
 
-from app.theme.current import current_theme, scaled
+from app.theme.current import current_theme
 from app.theme.ground import Ground, set_ground
 from app.theme.icons import Icon, paint_icon
+from app.widgets.lay_out import lay_out
 from app.widgets.text import SEMIBOLD, Text
 
 ICON = 22
@@ -26,13 +27,9 @@ class Notice(QWidget):
         self.setSizePolicy(QSizePolicy.Policy.Preferred, QSizePolicy.Policy.Preferred)  # fixed ones may not wrap
         self._what = Text(size=size, weight=SEMIBOLD, wraps=True)
         self._then = Text(size=14, tone="ink2", wraps=True)
-        words = QVBoxLayout()
-        words.addWidget(self._what)
-        words.addWidget(self._then)
+        words = lay_out(QVBoxLayout(), self._what, self._then, spacing=2)
         row = QHBoxLayout(self)
-        row.addLayout(words, 1)
-        scaled(row.setContentsMargins, PADDING + ICON + 8, self._padding, PADDING, self._padding)
-        scaled(words.setSpacing, 2)
+        lay_out(row, (words, 1), margins=(PADDING + ICON + 8, self._padding, PADDING, self._padding))
 
     @property
     def text(self) -> str:

@@ -5,6 +5,7 @@ from PySide6.QtWidgets import QHBoxLayout, QProgressBar, QSizePolicy, QWidget
 
 from app.theme.current import scaled
 from app.theme.ground import Ground, set_ground
+from app.widgets.lay_out import lay_out
 from app.widgets.text import Text
 from app.wording.translation import tr
 
@@ -23,10 +24,9 @@ class ProgressStrip(QWidget):
         self._line.setTextVisible(False)
         self._line.setAccessibleName(tr("Progress so far"))
         row = QHBoxLayout(self)
-        row.addWidget(self.words, 1)
-        row.addWidget(self._line, 0, Qt.AlignmentFlag.AlignVCenter)
-        scaled(row.setContentsMargins, 24, 6, 24, 6)
-        scaled(row.setSpacing, 16)
+        lay_out(
+            row, (self.words, 1), (self._line, 0, Qt.AlignmentFlag.AlignVCenter), margins=(24, 6, 24, 6), spacing=16
+        )
         scaled(self._line.setFixedSize, BAR[0], BAR[1])
         scaled(self.setMinimumHeight, HEIGHT)
         self.hide()

@@ -11,6 +11,7 @@ from PySide6.QtWidgets import QHBoxLayout, QProgressBar, QSizePolicy, QVBoxLayou
 from app.theme.current import current_theme, on_theme, px, scaled
 from app.theme.icons import Icon, paint_icon
 from app.widgets.button import Button, ButtonKind
+from app.widgets.lay_out import lay_out
 from app.widgets.notice import Notice
 from app.widgets.painted_text import LEFT, PaintedText
 from app.widgets.text import MEDIUM, SEMIBOLD, Text
@@ -73,23 +74,14 @@ class SensorsProgress(QWidget):
         self.stop = Button(tr("Cancel"), ButtonKind.SECONDARY, Icon.STOP)
         self._inside = QWidget()
         column = QVBoxLayout(self._inside)
-        column.setContentsMargins(0, 0, 0, 0)
         for part in (self._title, self._sentence):
             part.setAlignment(Qt.AlignmentFlag.AlignHCenter)
         for widget in (self._title, self._sentence, self._bar, self._lines, self.notice):
             column.addWidget(widget)
-        column.addWidget(self.stop, 0, Qt.AlignmentFlag.AlignHCenter)
-        outer = QVBoxLayout(self)
-        outer.setContentsMargins(0, 0, 0, 0)
-        middle = QHBoxLayout()
-        middle.addStretch(1)
-        middle.addWidget(self._inside)
-        middle.addStretch(1)
-        outer.addStretch(1)
-        outer.addLayout(middle)
-        outer.addStretch(2)
+        lay_out(column, (self.stop, 0, Qt.AlignmentFlag.AlignHCenter), margins=0, spacing=14)
+        middle = lay_out(QHBoxLayout(), 1, self._inside, 1)
+        lay_out(QVBoxLayout(self), 1, middle, 2, margins=0)
         self.stop.clicked.connect(self.stop_pressed)
-        scaled(column.setSpacing, 14)
         scaled(self._bar.setFixedHeight, 8)
         on_theme(self._fit)
 

@@ -3,9 +3,9 @@
 from PySide6.QtCore import Qt, Signal
 from PySide6.QtWidgets import QVBoxLayout, QWidget
 
-from app.theme.current import scaled
 from app.theme.icons import Icon
 from app.widgets.button import Button, ButtonKind
+from app.widgets.lay_out import lay_out
 from app.widgets.text import SEMIBOLD, Text
 
 
@@ -22,12 +22,9 @@ class SentencePage(QWidget):
         self.button.clicked.connect(self.pressed)
         column = QVBoxLayout(self)
         column.addStretch(1)
-        column.addWidget(self._what)
-        column.addWidget(self._then)
-        column.addWidget(self.button, 0, Qt.AlignmentFlag.AlignHCenter)
-        column.addStretch(1)
-        scaled(column.setContentsMargins, 24, 24, 24, 24)
-        scaled(column.setSpacing, 16)
+        lay_out(
+            column, self._what, self._then, (self.button, 0, Qt.AlignmentFlag.AlignHCenter), 1, margins=24, spacing=16
+        )
 
     def focus(self) -> None:
         """Give the focus to the button; without one the bar has it."""

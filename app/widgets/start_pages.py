@@ -6,6 +6,7 @@ from PySide6.QtWidgets import QHBoxLayout, QProgressBar, QVBoxLayout, QWidget
 from app.theme.current import scaled
 from app.theme.icons import Icon
 from app.widgets.button import Button, ButtonKind
+from app.widgets.lay_out import lay_out
 from app.widgets.text import SEMIBOLD, Text
 from app.wording.translation import later, tr
 
@@ -21,20 +22,11 @@ class EmptyPage(QWidget):
         self.open_demonstration = Button(tr("Open the demonstration"), ButtonKind.SECONDARY, Icon.PLAY, tr("Ctrl D"))
         self._sentence = Text(tr(SENTENCE), size=26, weight=SEMIBOLD)
         self._hint = Text(tr("You can also drop a session folder here."), tone="ink2")
-        self._row = QHBoxLayout()
-        self._row.addStretch(1)
-        self._row.addWidget(self.open_folder)
-        self._row.addWidget(self.open_demonstration)
-        self._row.addStretch(1)
+        self._row = lay_out(QHBoxLayout(), 1, self.open_folder, self.open_demonstration, 1, spacing=16)
         self._column = QVBoxLayout(self)
         self._column.addStretch(1)
         self._column.addWidget(self._sentence, 0, Qt.AlignmentFlag.AlignHCenter)
-        self._column.addLayout(self._row)
-        self._column.addWidget(self._hint, 0, Qt.AlignmentFlag.AlignHCenter)
-        self._column.addStretch(1)
-        scaled(self._column.setContentsMargins, 24, 24, 24, 24)
-        scaled(self._column.setSpacing, 24)
-        scaled(self._row.setSpacing, 16)
+        lay_out(self._column, self._row, (self._hint, 0, Qt.AlignmentFlag.AlignHCenter), 1, margins=24, spacing=24)
 
     def set_narrow(self, is_narrow: bool) -> None:
         """Stack the two buttons where they do not fit side by side."""
@@ -62,11 +54,8 @@ class WorkingPage(QWidget):
         self._column.addWidget(self._title)
         self._column.addWidget(self._line, 0, Qt.AlignmentFlag.AlignHCenter)
         self._column.addWidget(self._what, 0, Qt.AlignmentFlag.AlignHCenter)
-        self._column.addWidget(self.stop, 0, Qt.AlignmentFlag.AlignHCenter)
-        self._column.addStretch(1)
+        lay_out(self._column, (self.stop, 0, Qt.AlignmentFlag.AlignHCenter), 1, margins=24, spacing=16)
         self.stop.clicked.connect(self.stop_pressed)
-        scaled(self._column.setContentsMargins, 24, 24, 24, 24)
-        scaled(self._column.setSpacing, 16)
         scaled(self._line.setFixedSize, 400, 8)
 
     def begin(self, title: str) -> None:

@@ -16,6 +16,7 @@ from app.theme.ground import Ground, set_ground
 from app.theme.icons import Icon
 from app.widgets.header import ProductMark
 from app.widgets.heard_order import hear_as_laid_out
+from app.widgets.lay_out import lay_out
 from app.widgets.rail_row import BelowRow, RailButton, RailForm, RailRow
 from app.widgets.text import REGULAR, SEMIBOLD, Text
 from app.wording.translation import tr
@@ -102,18 +103,12 @@ class StepRail(QWidget):
         self._head.setSizePolicy(QSizePolicy.Policy.Preferred, QSizePolicy.Policy.Fixed)
         self._inside = QWidget()
         self._column = QVBoxLayout(self._inside)
-        self._column.setSpacing(0)
         self._steps = QVBoxLayout()
         self._foot = QVBoxLayout()
         for layout in (self._steps, self._foot):
             layout.setSpacing(0)
-        self._note_row = QVBoxLayout()
-        self._note_row.addWidget(self._note)
-        self._column.addWidget(self._head)
-        self._column.addLayout(self._steps)
-        self._column.addStretch(1)
-        self._column.addLayout(self._note_row)
-        self._column.addLayout(self._foot)
+        self._note_row = lay_out(QVBoxLayout(), self._note)
+        lay_out(self._column, self._head, self._steps, 1, self._note_row, self._foot, spacing=0)
         self._scroll = QScrollArea()
         self._scroll.setWidgetResizable(True)
         self._scroll.setFrameShape(QFrame.Shape.NoFrame)
@@ -121,9 +116,7 @@ class StepRail(QWidget):
         for hide in (self._scroll.setHorizontalScrollBarPolicy, self._scroll.setVerticalScrollBarPolicy):
             hide(Qt.ScrollBarPolicy.ScrollBarAlwaysOff)  # no room for one; the wheel and the arrows scroll
         self._scroll.setWidget(self._inside)
-        column = QVBoxLayout(self)
-        column.setContentsMargins(0, 0, 0, 0)
-        column.addWidget(self._scroll)
+        lay_out(QVBoxLayout(self), self._scroll, margins=0)
 
     def _keep(self, rows: list[RailButton], count: int, layout: QVBoxLayout, slot: Callable[[], None]) -> None:
         while len(rows) > count:

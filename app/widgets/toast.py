@@ -9,10 +9,11 @@ from PySide6.QtGui import (
 )
 from PySide6.QtWidgets import QHBoxLayout, QSizePolicy, QWidget
 
-from app.theme.current import current_theme, on_theme, scaled
+from app.theme.current import current_theme, on_theme
 from app.theme.ground import Ground, set_ground
 from app.widgets.action_bar import BarAction, VerbButton
 from app.widgets.button import ButtonKind
+from app.widgets.lay_out import lay_out
 from app.widgets.text import Text
 from app.wording.translation import tr
 
@@ -38,14 +39,10 @@ class Toast(QWidget):
         self._clock = QTimer(self)
         self._clock.setSingleShot(True)
         self._clock.setInterval(STAYS_MS)
-        row = QHBoxLayout(self)
-        row.addWidget(self._text, 1)
-        row.addWidget(self.button)
+        lay_out(QHBoxLayout(self), (self._text, 1), self.button, margins=(16, 4, 4, 4), spacing=12)
         self._clock.timeout.connect(self._on_timeout)
         self.button.clicked.connect(self.undo)
         self.hide()
-        scaled(row.setContentsMargins, 16, 4, 4, 4)
-        scaled(row.setSpacing, 12)
         on_theme(self._fit)
 
     @property

@@ -13,6 +13,7 @@ from app.theme.icons import Icon, paint_icon
 from app.theme.theme import Theme
 from app.widgets.button import Button, ButtonKind
 from app.widgets.card import Card
+from app.widgets.lay_out import lay_out
 from app.widgets.table import CellTable, TableColumn, TableRow
 from app.widgets.table_cells import TableCell, TextCell
 from app.widgets.text import SEMIBOLD, Text
@@ -153,18 +154,10 @@ class AnalyseAgainPage(QWidget):
         self._show()
 
     def _build(self) -> None:
-        self._buttons = QHBoxLayout()
-        for button in (self.earlier, self.all, self.none):
-            self._buttons.addWidget(button)
-        self._buttons.addStretch(1)
+        self._buttons = lay_out(QHBoxLayout(), self.earlier, self.all, self.none, 1)
         self._card = Card(padding=0)
-        self._card.column.addWidget(self.list, 1)
-        self._card.column.addWidget(self.nothing, 1, Qt.AlignmentFlag.AlignCenter)
-        self._column = QVBoxLayout(self)
-        self._column.addWidget(self._title)
-        self._column.addWidget(self._lead)
-        self._column.addLayout(self._buttons)
-        self._column.addWidget(self._card, 1)
+        lay_out(self._card.column, (self.list, 1), (self.nothing, 1, Qt.AlignmentFlag.AlignCenter))
+        self._column = lay_out(QVBoxLayout(self), self._title, self._lead, self._buttons, (self._card, 1))
 
     def _show(self) -> None:
         row = self.list.currentIndex().row()

@@ -15,6 +15,7 @@ from app.theme.icons import Icon
 from app.widgets.button import Button, ButtonKind
 from app.widgets.card import Card
 from app.widgets.choice import Choice
+from app.widgets.lay_out import lay_out
 from app.widgets.notice import Notice
 from app.widgets.segmented import Segmented
 from app.widgets.table import CellTable
@@ -189,10 +190,7 @@ class QuestionsPage(QWidget):
         self._name.setVisible(self._empty not in shown and bool(self._name.text()))
 
     def _build(self) -> None:
-        head = QHBoxLayout()
-        head.addWidget(self._title)
-        head.addWidget(self._name, 1)
-        head.addWidget(self.choose_table)
+        head = lay_out(QHBoxLayout(), self._title, (self._name, 1), self.choose_table)
         how = (
             tr("A table combines many sessions without names."),
             tr("All sessions of this library are analysed into a folder. Their results there are not encrypted."),
@@ -220,15 +218,11 @@ class QuestionsPage(QWidget):
                 half.addLayout(part)
             half.addStretch(1)
         self._halves = QBoxLayout(QBoxLayout.Direction.LeftToRight, self._controls)
-        self._halves.setContentsMargins(0, 0, 0, 0)
-        self._halves.addLayout(self._first_half)
-        self._halves.addLayout(self._second_half)
+        lay_out(self._halves, self._first_half, self._second_half, margins=0)
         self._chart = Card()
-        self._chart.column.addWidget(self.plot)
-        self._chart.column.addWidget(self._legend)
+        lay_out(self._chart.column, self.plot, self._legend)
         self._figures = Card()
-        self._figures.column.addWidget(self.table)
-        self._figures.column.addWidget(self.more)
+        lay_out(self._figures.column, self.table, self.more)
         self._answer_column = QVBoxLayout(self.answer)
         self._answer_column.setContentsMargins(0, 0, 0, 0)
         answers: tuple[QWidget, ...] = (self.sentence, self.notes, self._chart, self._figures)
@@ -238,9 +232,7 @@ class QuestionsPage(QWidget):
         self._column.addLayout(head)
         for widget in (self.refusal, self._empty, self._controls, self.answer):
             self._column.addWidget(widget)
-        self._column.addStretch(1)
-        scaled(self._column.setContentsMargins, MARGIN, 16, MARGIN, 20)
-        scaled(self._column.setSpacing, 12)
+        lay_out(self._column, 1, margins=(MARGIN, 16, MARGIN, 20), spacing=12)
         scaled(self._answer_column.setSpacing, 8)
         for row in (self._halves, self._first_half, self._second_half):
             scaled(row.setSpacing, GAP)

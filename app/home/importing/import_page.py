@@ -14,6 +14,7 @@ from app.widgets.button import Button, ButtonKind
 from app.widgets.card import Card
 from app.widgets.field import Field, NumberField
 from app.widgets.findings_list import FindingsList
+from app.widgets.lay_out import lay_out
 from app.widgets.text import SEMIBOLD, Text
 from app.wording.translation import tr, tr_n
 from core.findings import Finding
@@ -131,12 +132,8 @@ class ImportPage(QWidget):
         self.read_again.setVisible(can_try_again)
 
     def _build(self) -> None:
-        buttons = QHBoxLayout()
-        for button in (self.choose_files, self.choose_folder):
-            buttons.addWidget(button)
-        buttons.addStretch(1)
-        self._begin.column.addLayout(buttons)
-        self._begin.column.addWidget(self._formats)
+        buttons = lay_out(QHBoxLayout(), self.choose_files, self.choose_folder, 1)
+        lay_out(self._begin.column, buttons, self._formats)
         of_code: tuple[QWidget, ...] = (self._recordings_title, self._recordings, self.code, self._hint, self.day_field)
         for part in of_code:
             self._card.column.addWidget(part)
@@ -144,11 +141,8 @@ class ImportPage(QWidget):
         of_unread: tuple[QWidget, ...] = (self._unread_words, self.rate, self.read_again)
         for part in of_unread:
             self._unread.column.addWidget(part)
-        self._column = QVBoxLayout(self)
         cards: tuple[QWidget, ...] = (self._begin, self.draft, self._unread, self.findings)
-        for part in (self._title, self._folder, *cards):
-            self._column.addWidget(part)
-        self._column.addStretch(1)
+        self._column = lay_out(QVBoxLayout(self), self._title, self._folder, *cards, 1)
         self.code.edited.connect(self.code_changed)
         self.day_field.edited.connect(self._on_day_edited)
         self.draft.changed.connect(self.changed)

@@ -19,6 +19,7 @@ from app.widgets.button import Button, ButtonKind
 from app.widgets.card import Card
 from app.widgets.field import Field
 from app.widgets.key_groups import KeyGroups
+from app.widgets.lay_out import lay_out
 from app.widgets.text import SEMIBOLD, Text
 from app.wording.translation import tr, tr_n
 
@@ -177,35 +178,22 @@ class FirstStartPage(EntryPage):
 
     def _build(self) -> None:
         self._first = Card(padding=24, spacing=16)
-        for part in (self.code, self.name, self.passphrase, self._strength, self.again, self.make):
-            self._first.column.addWidget(part)
+        lay_out(self._first.column, self.code, self.name, self.passphrase, self._strength, self.again, self.make)
         self._other_ways = QBoxLayout(QBoxLayout.Direction.LeftToRight)
         for way in (self.join, self.demonstration):
             self._other_ways.addWidget(way, 0, Qt.AlignmentFlag.AlignLeft)
         self._other_ways.addStretch(1)
         self._second = Card(padding=24, spacing=16)
-        self._keep_row = QBoxLayout(QBoxLayout.Direction.LeftToRight)
-        self._keep_row.addWidget(self.print, 1)
-        self._keep_row.addWidget(self.save, 1)
-        self._second.column.addWidget(self._key_words)
-        self._second.column.addLayout(self._keep_row)
-        self._second.column.addWidget(self.typed)
-        self._second.column.addWidget(self.go)
-        self._second.column.addWidget(self.renew)
-        self._second.column.addWidget(self.later)
+        self._keep_row = lay_out(QBoxLayout(QBoxLayout.Direction.LeftToRight), (self.print, 1), (self.save, 1))
+        lay_out(self._second.column, self._key_words, self._keep_row, self.typed, self.go, self.renew, self.later)
         self._missing_card = Card(padding=24, spacing=16)
-        self._missing_card.column.addWidget(self.look_again)
-        self._missing_card.column.addWidget(self.make_another)
+        lay_out(self._missing_card.column, self.look_again, self.make_another)
         for one in (self._missing_title, self.missing_lead, self._missing_card):
             self.column.addWidget(one)
         self.column.addWidget(self._title)
         self.column.addWidget(self._lead)
         self.column.addWidget(self._first)
-        self.column.addLayout(self._other_ways)
-        self.column.addWidget(self._key_title)
-        self.column.addWidget(self._key_lead)
-        self.column.addWidget(self._asking_lead)
-        self.column.addWidget(self._second)
+        lay_out(self.column, self._other_ways, self._key_title, self._key_lead, self._asking_lead, self._second)
 
     def _connect(self) -> None:
         self.look_again.clicked.connect(self.look_requested)

@@ -12,6 +12,7 @@ from app.theme.current import scaled
 from app.theme.icons import Icon
 from app.widgets.button import Button, ButtonKind
 from app.widgets.card import Card
+from app.widgets.lay_out import lay_out
 from app.widgets.server_fields import ServerFields
 from app.widgets.text import SEMIBOLD, Text
 from app.wording.translation import tr
@@ -87,15 +88,9 @@ class JoinPage(EntryPage):
 
     def _build(self) -> None:
         self._card = Card(padding=24, spacing=16)
-        for part in (*self.server.fields, self._hint, self.join):
-            self._card.column.addWidget(part)
-        self._quiet = QHBoxLayout()
-        self._quiet.addWidget(self.back)
-        self._quiet.addWidget(self.demonstration)
-        self._quiet.addStretch(1)
-        for block in (self._title, self.lead, self._card, self.again):
-            self.column.addWidget(block)
-        self.column.addLayout(self._quiet)
+        lay_out(self._card.column, *self.server.fields, self._hint, self.join)
+        self._quiet = lay_out(QHBoxLayout(), self.back, self.demonstration, 1)
+        lay_out(self.column, self._title, self.lead, self._card, self.again, self._quiet)
 
     def _connect(self) -> None:
         self.join.clicked.connect(self._on_join)

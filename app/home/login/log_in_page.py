@@ -18,6 +18,7 @@ from app.widgets.card import Card
 from app.widgets.choice import Choice
 from app.widgets.field import Field
 from app.widgets.icons import IconMark
+from app.widgets.lay_out import lay_out
 from app.widgets.text import MEDIUM, SEMIBOLD, Text
 from app.widgets.toggle import Toggle
 from app.wording.translation import tr
@@ -175,37 +176,22 @@ class LogInPage(EntryPage):
         return self.recovery_key if self._is_recovering else self.passphrase
 
     def _build(self) -> None:
-        row = QHBoxLayout(self._recording)
-        row.setContentsMargins(0, 0, 0, 0)
-        row.addWidget(IconMark(Icon.RECORDING, 24))
-        row.addWidget(self._recording_words, 1)
+        lay_out(QHBoxLayout(self._recording), IconMark(Icon.RECORDING, 24), (self._recording_words, 1), margins=0)
         self._card = Card(padding=24, spacing=16)
-        who = QVBoxLayout()
-        who.addWidget(self.operator_label)
-        who.addWidget(self.operator)
+        who = lay_out(QVBoxLayout(), self.operator_label, self.operator)
         self._who = who
         self._card.column.addLayout(who)
         self._card.column.addWidget(self.recovery_key)
         self._card.column.addWidget(self.passphrase)
         self._card.column.addWidget(self.new_passphrase)
-        self._card.column.addWidget(self._strength)
-        self._card.column.addWidget(self.again)
-        self._card.column.addWidget(self.remember)
-        self._card.column.addWidget(self.go)
-        self._card.column.addWidget(self.work_away)
-        self._card.column.addWidget(self.use_remembered)
+        lay_out(
+            self._card.column, self._strength, self.again, self.remember, self.go, self.work_away, self.use_remembered
+        )
         self._quiet = QVBoxLayout()
         for button in (self.use_recovery, self.leave, self.demonstration):
-            line = QHBoxLayout()
-            line.addWidget(button)
-            line.addStretch(1)
+            line = lay_out(QHBoxLayout(), button, 1)
             self._quiet.addLayout(line)
-        self.column.addWidget(self._title)
-        self.column.addWidget(self.library)
-        self.column.addWidget(self._why_own)
-        self.column.addWidget(self._recording)
-        self.column.addWidget(self._card)
-        self.column.addLayout(self._quiet)
+        lay_out(self.column, self._title, self.library, self._why_own, self._recording, self._card, self._quiet)
 
     def _connect(self) -> None:
         self.go.clicked.connect(self._on_go)

@@ -6,6 +6,7 @@ from PySide6.QtWidgets import QFrame, QHBoxLayout, QScrollArea, QVBoxLayout, QWi
 from app.theme.current import scaled
 from app.widgets.banner import Banner
 from app.widgets.header import ProductMark
+from app.widgets.lay_out import lay_out
 from app.widgets.text import SEMIBOLD, Text
 
 COLUMN = 540  # a whole recovery key fits into a field
@@ -17,29 +18,16 @@ class EntryPage(QWidget):
 
     def __init__(self) -> None:
         super().__init__()
-        mark_row = QHBoxLayout()
-        mark_row.addWidget(ProductMark())
-        mark_row.addWidget(Text("Gaitwright", size=18, weight=SEMIBOLD), 1)
-        scaled(mark_row.setSpacing, 12)
+        mark_row = lay_out(QHBoxLayout(), ProductMark(), (Text("Gaitwright", size=18, weight=SEMIBOLD), 1), spacing=12)
         self.banner = Banner()
         inside = QWidget()
         scaled(inside.setMaximumWidth, COLUMN + 48)
-        self.column = QVBoxLayout(inside)
-        scaled(self.column.setContentsMargins, 24, ABOVE, 24, 24)
-        scaled(self.column.setSpacing, 16)
-        self.column.addWidget(self.banner)
-        self.column.addLayout(mark_row)
+        self.column = lay_out(QVBoxLayout(inside), self.banner, mark_row, margins=(24, ABOVE, 24, 24), spacing=16)
         middle = QWidget()
-        row = QHBoxLayout(middle)
-        row.setContentsMargins(0, 0, 0, 0)
-        row.addStretch(1)
-        row.addWidget(inside, 100, Qt.AlignmentFlag.AlignTop)
-        row.addStretch(1)
+        lay_out(QHBoxLayout(middle), 1, (inside, 100, Qt.AlignmentFlag.AlignTop), 1, margins=0)
         scroll = QScrollArea()
         scroll.setWidgetResizable(True)
         scroll.setFrameShape(QFrame.Shape.NoFrame)
         scroll.setFocusPolicy(Qt.FocusPolicy.NoFocus)
         scroll.setWidget(middle)
-        outer = QVBoxLayout(self)
-        outer.setContentsMargins(0, 0, 0, 0)
-        outer.addWidget(scroll)
+        lay_out(QVBoxLayout(self), scroll, margins=0)

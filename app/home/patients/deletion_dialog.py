@@ -11,6 +11,7 @@ from app.storage.stored import KEPT_DELETED, WhatGoes
 from app.theme.current import current_theme
 from app.theme.icons import Icon
 from app.widgets.button import Button, ButtonKind
+from app.widgets.lay_out import lay_out
 from app.widgets.notice import Notice
 from app.widgets.text import SEMIBOLD, Text
 from app.wording.dates import date
@@ -48,14 +49,8 @@ class DeletionDialog(QDialog):
         self.cancel.setFocus()
 
     def _build(self, parent: QWidget) -> None:
-        buttons = QHBoxLayout()
-        buttons.addWidget(self.delete)
-        buttons.addStretch(1)
-        buttons.addWidget(self.cancel)
-        column = QVBoxLayout(self)
-        for part in (self._title, self.goes, self.others, self.until):
-            column.addWidget(part)
-        column.addLayout(buttons)
+        buttons = lay_out(QHBoxLayout(), self.delete, 1, self.cancel)
+        column = lay_out(QVBoxLayout(self), self._title, self.goes, self.others, self.until, buttons)
         px, colours = current_theme().px, current_theme().colours
         column.setContentsMargins(px(EDGE), px(20), px(EDGE), px(20))
         column.setSpacing(px(12))

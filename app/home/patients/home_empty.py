@@ -10,6 +10,7 @@ from app.widgets.button import Button, ButtonKind
 from app.widgets.card import Card
 from app.widgets.heard_order import hear_as_laid_out
 from app.widgets.icons import IconMark
+from app.widgets.lay_out import lay_out
 from app.widgets.painted_text import CENTRE, PaintedText
 from app.widgets.text import SEMIBOLD, Text
 from app.wording.translation import tr
@@ -44,21 +45,16 @@ class EmptyLibrary(Card):
             self._need(Icon.ARROW, tr("Eight-metre walkway"), tr("ten strides per leg")),
             self._need(Icon.CHECK, tr("No poses, no tape measure"), tr("the patient moves the legs freely")),
         ]
-        self.column.addStretch(2)
-        self.column.addWidget(Text(tr("No patients yet"), size=38, weight=SEMIBOLD, wraps=True))
+        lay_out(self.column, 2, Text(tr("No patients yet"), size=38, weight=SEMIBOLD, wraps=True))
         self._begin = Text(begin, size=16, tone="ink2", wraps=True)
         scaled(self._begin.setMaximumWidth, WIDEST_WORDS)
         begin_row = QHBoxLayout()  # which knows how high the words are at their greatest width
-        begin_row.addWidget(self._begin, 1)
-        begin_row.addStretch(0)
+        lay_out(begin_row, (self._begin, 1), 0)
         self.column.addLayout(begin_row)
         self.column.addLayout(self._ways)
         self.column.addStretch(2)
         self.column.addWidget(Text(tr("What a session needs"), size=16, weight=SEMIBOLD, wraps=True))
-        self.column.addLayout(self._needs)
-        self.column.addStretch(1)
-        self.column.addWidget(self.steps)
-        self.column.addStretch(2)
+        lay_out(self.column, self._needs, 1, self.steps, 2)
         scaled(self._ways.setSpacing, GAP)
         scaled(self._needs.setSpacing, GAP)
         self.set_room(1000)
@@ -84,14 +80,10 @@ class EmptyLibrary(Card):
 
     def _need(self, icon: Icon, what: str, more: str) -> QWidget:
         part = QWidget()
-        row = QHBoxLayout(part)
-        row.setContentsMargins(0, 0, 0, 0)
-        words = QVBoxLayout()
-        words.setSpacing(0)
-        words.addWidget(Text(what, weight=SEMIBOLD, wraps=True))
-        words.addWidget(Text(more, tone="ink2", wraps=True))
-        row.addWidget(IconMark(icon, size=24), 0, Qt.AlignmentFlag.AlignTop)
-        row.addLayout(words, 1)
+        words = lay_out(
+            QVBoxLayout(), Text(what, weight=SEMIBOLD, wraps=True), Text(more, tone="ink2", wraps=True), spacing=0
+        )
+        lay_out(QHBoxLayout(part), (IconMark(icon, size=24), 0, Qt.AlignmentFlag.AlignTop), (words, 1), margins=0)
         return part
 
 

@@ -23,6 +23,7 @@ from app.summary.course_lanes import CourseVisit
 from app.summary.course_words import NextStep
 from app.theme.current import current_theme, on_theme, scaled
 from app.theme.icons import Icon, paint_icon
+from app.widgets.lay_out import lay_out
 from app.widgets.line_list import PATIENT_ROW, Line, LineList, PatientLine, SessionLine
 from app.widgets.segmented import Segmented
 from app.widgets.text import MEDIUM, SEMIBOLD, Text
@@ -190,31 +191,20 @@ class HomePage(QWidget):
         return super().eventFilter(watched, event)
 
     def _build(self) -> None:
-        heading = QHBoxLayout()
-        heading.addWidget(self._title, 1)
-        heading.addWidget(self._count, 0, Qt.AlignmentFlag.AlignBottom)
+        heading = lay_out(QHBoxLayout(), (self._title, 1), (self._count, 0, Qt.AlignmentFlag.AlignBottom))
         self._left_room = QWidget()
         self._left = QVBoxLayout(self._left_room)
-        self._left.setContentsMargins(0, 0, 0, 0)
-        self._left.addLayout(heading)
-        self._left.addWidget(self.search)
-        self._left.addWidget(self.patients, 1)
-        self._left.addWidget(self.nobody, 1)
+        lay_out(self._left, heading, self.search, (self.patients, 1), (self.nobody, 1), margins=0, spacing=12)
         self._both = QWidget()
-        self._columns = QHBoxLayout(self._both)
-        self._columns.setContentsMargins(0, 0, 0, 0)
-        self._columns.addWidget(self._left_room)
-        self._columns.addWidget(self._panel_room, 1)
+        self._columns = lay_out(
+            QHBoxLayout(self._both), self._left_room, (self._panel_room, 1), margins=0, spacing=GUTTER
+        )
         self._empty_title = Text(tr("Patients"), size=26, weight=SEMIBOLD)
         self._page = QVBoxLayout(self)
         self._page.addWidget(self.view, 0, Qt.AlignmentFlag.AlignLeft)
-        self._page.addWidget(self._empty_title)
-        self._page.addWidget(self.empty, 1)
-        self._page.addWidget(self._both, 1)
-        scaled(self._page.setContentsMargins, EDGE, 12, EDGE, 12)
-        scaled(self._page.setSpacing, 12)
-        scaled(self._columns.setSpacing, GUTTER)
-        scaled(self._left.setSpacing, 12)
+        lay_out(
+            self._page, self._empty_title, (self.empty, 1), (self._both, 1), margins=(EDGE, 12, EDGE, 12), spacing=12
+        )
         scaled(self._panel_room.setMinimumSize, PANEL_AT_LEAST, PANEL_AT_LEAST)
 
     def _connect(self) -> None:

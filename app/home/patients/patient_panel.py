@@ -29,6 +29,7 @@ from app.widgets.card import Card
 from app.widgets.choice import Choice
 from app.widgets.header import Tag
 from app.widgets.heard_order import hear_as_laid_out
+from app.widgets.lay_out import lay_out
 from app.widgets.line_list import LineList, SessionLine
 from app.widgets.segmented import Segmented
 from app.widgets.tall_page import TallPage
@@ -172,16 +173,9 @@ class PatientPanel(TallPage):
             self.next_requested.emit(self._next)
 
     def _build(self) -> None:
-        self._who = QHBoxLayout()
-        self._who.addWidget(self.code)
-        self._who.addWidget(self.person, 1)
-        self._who.addWidget(self.simulated)
-        self._who.addWidget(self.more)
+        self._who = lay_out(QHBoxLayout(), self.code, (self.person, 1), self.simulated, self.more)
         self.next_room = QWidget()
-        self._next_row = QHBoxLayout(self.next_room)
-        self._next_row.setContentsMargins(0, 0, 0, 0)
-        self._next_row.addWidget(self.go)
-        self._next_row.addWidget(self.reason, 1)
+        self._next_row = lay_out(QHBoxLayout(self.next_room), self.go, (self.reason, 1), margins=0)
         head = self.course.head
         title = Text(tr("Progress"), size=16, weight=SEMIBOLD)
         for number, part in enumerate((title, self.shown, self.condition, self.count, self.goals)):
@@ -191,20 +185,10 @@ class PatientPanel(TallPage):
         self.sessions.setSizePolicy(QSizePolicy.Policy.Expanding, QSizePolicy.Policy.Fixed)
         self.sessions.fitted.connect(self._fit_sessions)
         self.visits_card = Card(padding=0)
-        self.visits_card.column.addWidget(self.sessions)
-        self.visits_card.column.addWidget(self.none_yet, 0, Qt.AlignmentFlag.AlignHCenter)
-        self._statement = QVBoxLayout()
-        self._statement.addWidget(self.sentence)
-        self._statement.addWidget(self.second)
-        self.column.setContentsMargins(0, 0, 0, 0)
+        lay_out(self.visits_card.column, self.sessions, (self.none_yet, 0, Qt.AlignmentFlag.AlignHCenter))
+        self._statement = lay_out(QVBoxLayout(), self.sentence, self.second, spacing=2)
         self.column.addLayout(self._who)
-        self.column.addLayout(self._statement)
-        self.column.addWidget(self.next_room)
-        self.column.addWidget(self.course)
-        self.column.addWidget(self.visits_card)
-        self.column.addStretch(1)
-        scaled(self.column.setSpacing, 12)
-        scaled(self._statement.setSpacing, 2)
+        lay_out(self.column, self._statement, self.next_room, self.course, self.visits_card, 1, margins=0, spacing=12)
         for row in (self._who, self._next_row):
             scaled(row.setSpacing, 16)
         scaled(self.none_yet.setMinimumHeight, 72)

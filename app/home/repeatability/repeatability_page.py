@@ -8,9 +8,9 @@ from PySide6.QtWidgets import QVBoxLayout, QWidget
 from app.cohort.repeatability.people import CONDITION
 from app.cohort.repeatability.table import ATTACHED_AGAIN, BETWEEN_LEGS, RepeatabilityRow, rows_of
 from app.summary.report_dates import day
-from app.theme.current import scaled
 from app.theme.icons import Icon
 from app.widgets.card import Card
+from app.widgets.lay_out import lay_out
 from app.widgets.notice import Notice
 from app.widgets.table import CellTable, TableColumn, TableRow
 from app.widgets.table_cells import EMPTY, RIGHT, TextCell
@@ -39,16 +39,13 @@ class RepeatabilityPage(QWidget):
         self.notes = Text(tone="ink2", wraps=True)
         self.table = CellTable(tr("Repeatability"))
         self._card = Card()
-        for part in (self.sentence, self.notes, self.table):
-            self._card.column.addWidget(part)
+        lay_out(self._card.column, self.sentence, self.notes, self.table)
         column = QVBoxLayout(self)
         for widget in (self._title, self._lead, self.used, self.refusal, self._card):
             column.addWidget(widget)
-        column.addStretch(1)
+        lay_out(column, 1, margins=(MARGIN, 16, MARGIN, GAP), spacing=GAP)
         self.setFocusPolicy(Qt.FocusPolicy.NoFocus)
         self.forget()
-        scaled(column.setContentsMargins, MARGIN, 16, MARGIN, GAP)
-        scaled(column.setSpacing, GAP)
 
     def focus(self) -> None:
         if self.own is not None:

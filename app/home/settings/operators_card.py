@@ -14,6 +14,7 @@ from app.widgets.button import Button, ButtonKind
 from app.widgets.choice import Choice
 from app.widgets.field import Field
 from app.widgets.heard_order import hear_as_laid_out
+from app.widgets.lay_out import lay_out
 from app.widgets.text import MEDIUM, Text
 from app.wording.translation import tr
 
@@ -156,10 +157,8 @@ class _OperatorRow(QWidget):
     def __init__(self, operator: OperatorLine) -> None:
         super().__init__()
         self._operator = operator
-        row = QHBoxLayout(self)
-        row.setContentsMargins(0, 0, 0, 0)
         words = ", ".join([operator.code, operator.name, operator.role])
-        row.addWidget(Text(words, size=15, wraps=True), 1)
+        row = lay_out(QHBoxLayout(self), (Text(words, size=15, wraps=True), 1), margins=0)
         self.button = Button(
             tr("Remove user")
             if operator.is_active

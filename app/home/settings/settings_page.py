@@ -16,6 +16,7 @@ from app.theme.icons import Icon
 from app.widgets.button import Button, ButtonKind
 from app.widgets.choice import Choice
 from app.widgets.field import Field
+from app.widgets.lay_out import lay_out
 from app.widgets.segmented import Segmented
 from app.widgets.tall_page import TallPage
 from app.widgets.text import MEDIUM, SEMIBOLD, Text
@@ -66,14 +67,13 @@ class SettingsPage(TallPage):
         self._shortest = shortest
         self._own: tuple[str, ...] = ()
         self._title = Text(tr("Settings"), size=26, weight=SEMIBOLD)
-        self.column.addWidget(self._title)
+        lay_out(self.column, self._title, margins=(24, 16, 24, 20), spacing=16)
         self._build_screen()
         self._build_access()
         self._build_backup()
         self.station = StationCard()
         self.more_stations = MoreStationsCard()
-        for card in (self.station, self.more_stations):
-            self.column.addWidget(card)
+        lay_out(self.column, self.station, self.more_stations)
         self._build_deleted()
         self._build_clinic()
         self.operators = OperatorsCard(shortest, roles, self.clinic)
@@ -82,8 +82,6 @@ class SettingsPage(TallPage):
         self.column.addStretch(1)
         self._connect()
         scaled(self.setMaximumWidth, COLUMN + 48)
-        scaled(self.column.setContentsMargins, 24, 16, 24, 20)
-        scaled(self.column.setSpacing, 16)
         scaled(self.deleted_rows.setSpacing, 4)
 
     @property
@@ -393,13 +391,10 @@ class _DeletedRow(QWidget):
     def __init__(self, line: DeletedLine) -> None:
         super().__init__()
         self._line = line
-        row = QHBoxLayout(self)
-        row.setContentsMargins(0, 0, 0, 0)
         words = QVBoxLayout()
-        words.setSpacing(0)
         words.addWidget(Text(line.words, size=15, wraps=True))
-        words.addWidget(Text(line.details, size=14, tone="ink2", wraps=True))
-        row.addLayout(words, 1)
+        lay_out(words, Text(line.details, size=14, tone="ink2", wraps=True), spacing=0)
+        row = lay_out(QHBoxLayout(self), (words, 1), margins=0)
         self.button = Button(tr("Restore"), height=44)
         self.button.setAccessibleName(f"{self.button.text()}, {line.words}")
         self.button.setAccessibleDescription(line.details)

@@ -47,17 +47,15 @@ class LiveLanes(Themed):
         self.setAttribute(Qt.WidgetAttribute.WA_OpaquePaintEvent)
         self.setSizePolicy(QSizePolicy.Policy.Expanding, QSizePolicy.Policy.Fixed)
 
-    def sizeHint(self) -> QSize:
+    def minimumSizeHint(self) -> QSize:
         px = current_theme().px
         return QSize(px(LEAST_WIDTH), 2 * px(LANE) + px(self._between) + px(self._axis_height))
-
-    def minimumSizeHint(self) -> QSize:
-        return self.sizeHint()
 
     def set_compact(self, is_compact: bool) -> None:
         self._between = BETWEEN_COMPACT if is_compact else BETWEEN
         self._axis_height = AXIS_HEIGHT_COMPACT if is_compact else AXIS_HEIGHT
-        self._apply_theme()
+        self.updateGeometry()
+        self.redraw()
 
     def set_seconds(self, seconds: float) -> None:
         """Set how much time is in sight."""
@@ -191,7 +189,6 @@ class LiveLanes(Themed):
             painter.drawText(label, Qt.AlignmentFlag.AlignCenter, stated)
 
     def _apply_theme(self) -> None:
-        self.updateGeometry()
         self.redraw()
 
 
