@@ -13,6 +13,7 @@ from app.widgets.action_bar import ActionBar, BarState
 from app.widgets.banner import Banner
 from app.widgets.grid import COMPACT_BELOW, CONTENT, LEAST, WIDE_FROM, side_margin
 from app.widgets.header import Header
+from app.widgets.lay_out import lay_out
 from app.widgets.page_stack import PageStack
 from app.widgets.rail_row import RailForm
 from app.widgets.sensor_strip import SensorStrip
@@ -176,27 +177,13 @@ class WizardShell(QWidget):
             scroll.setMinimumSize(1, 1)  # the hint of a scroll area would be more than a low window has
         self._scroll.setWidget(self._pages)
         scaled(self._scroll.setMinimumHeight, LEAST_PAGE)
-        self._banner_row = QVBoxLayout()
-        self._banner_row.addWidget(self.banner)
-        self._middle = QVBoxLayout()
-        self._middle.setSpacing(0)
-        self._middle.addLayout(self._banner_row)
-        self._middle.addWidget(self._scroll, 1)
-        self._column = QWidget()
-        right = QVBoxLayout(self._column)
-        right.setContentsMargins(0, 0, 0, 0)
-        right.setSpacing(0)
-        right.addWidget(self.header)
-        right.addWidget(self.strip)
-        right.addLayout(self._middle, 1)
-        right.addWidget(self.bar)
-        self._outer.setWidget(self._column)
+        self._banner_row = lay_out(QVBoxLayout(), self.banner)
+        self._middle = lay_out(QVBoxLayout(), self._banner_row, (self._scroll, 1), spacing=0)
+        column = QWidget()
+        lay_out(QVBoxLayout(column), self.header, self.strip, (self._middle, 1), self.bar, margins=0, spacing=0)
+        self._outer.setWidget(column)
         self._outer.setHorizontalScrollBarPolicy(Qt.ScrollBarPolicy.ScrollBarAlwaysOff)
-        row = QHBoxLayout(self)
-        row.setContentsMargins(0, 0, 0, 0)
-        row.setSpacing(0)
-        row.addWidget(self.rail)
-        row.addWidget(self._outer, 1)
+        lay_out(QHBoxLayout(self), self.rail, (self._outer, 1), margins=0, spacing=0)
 
     def _connect(self) -> None:
         self.header.fold.toggled.connect(self._on_fold_toggled)

@@ -21,6 +21,7 @@ from app.widgets.button import Button, ButtonKind
 from app.widgets.gauge import Gauge, GaugeFace
 from app.widgets.hint import Hint, HintBand
 from app.widgets.hip_gauge import HipFace, HipGauge
+from app.widgets.lay_out import lay_out
 from app.widgets.notice import Notice
 from app.wizard.free_motion.swap_banner import SwapBanner
 from core.body import LEG_JOINTS, Joint, Side, Site, hip_of
@@ -90,12 +91,8 @@ class FreeMotionPage(QWidget):
             self._grid.setColumnStretch(column, 1)
         for row in (0, 1):
             self._grid.setRowStretch(row, 1)
-        self._column = QVBoxLayout(self)
-        self._column.addWidget(self.question)
-        self._column.addWidget(self.band)
-        self._column.addWidget(self.swapped)
-        self._column.addLayout(self._hips)
-        self._column.addLayout(self._grid, 1)
+        parts = (self.question, self.band, self.swapped, self._hips, (self._grid, 1))
+        self._column = lay_out(QVBoxLayout(self), *parts)
         self.question.answered.connect(self.answered)
         self.swapped.pressed.connect(self.pressed)
         scaled(self._hips.setSpacing, 12)
@@ -210,13 +207,9 @@ class _Question(QWidget):
             Button("", ButtonKind.PRIMARY, height=44),
             Button("", ButtonKind.SECONDARY, height=44),
         )
-        row = QHBoxLayout(self)
-        row.addWidget(self.notice, 1)
+        lay_out(QHBoxLayout(self), (self.notice, 1), *self.buttons, margins=(6, 6, 10, 6), spacing=12)
         for button in self.buttons:
-            row.addWidget(button)
             button.clicked.connect(self._on_clicked)
-        scaled(row.setContentsMargins, 6, 6, 10, 6)
-        scaled(row.setSpacing, 12)
         self.hide()
 
     def ask(self, what: str, then: str, answers: tuple[str, ...], *, is_understood: bool) -> None:

@@ -18,6 +18,7 @@ from app.theme.icons import Icon, paint_icon
 from app.theme.theme import CARD_RADIUS
 from app.widgets.action_bar import BarAction, VerbButton
 from app.widgets.button import ButtonKind
+from app.widgets.lay_out import lay_out
 from app.widgets.painted_text import height_for
 from app.widgets.text import SEMIBOLD, Text
 
@@ -50,20 +51,11 @@ class SwapBanner(QWidget):
         self._then = Text(size=15, tone="caution_ink", wraps=True)
         self.use = VerbButton(self, is_primary=True)
         self.check = VerbButton(self)
-        words = QVBoxLayout()
-        words.setSpacing(0)
-        words.addStretch(1)
-        words.addWidget(self._what)
-        words.addWidget(self._then)
-        words.addStretch(1)
-        self._beside = QVBoxLayout()
+        words = lay_out(QVBoxLayout(), 1, self._what, self._then, 1, spacing=0)
+        self._beside = lay_out(QVBoxLayout(), *self.buttons)
         for button in (self.use, self.check):
-            self._beside.addWidget(button)
             button.clicked.connect(self._on_clicked)
-        self._row = QHBoxLayout(self)
-        self._row.addLayout(words, 1)
-        self._row.addLayout(self._beside)
-        scaled(self._row.setSpacing, 12)
+        self._row = lay_out(QHBoxLayout(self), (words, 1), self._beside, spacing=12)
         on_theme(self._fit_sentence)
         self.set_compact(False)
         self.hide()

@@ -12,6 +12,7 @@ from app.widgets.button import Button, ButtonKind
 from app.widgets.card import Card
 from app.widgets.heard_order import hear_as_laid_out
 from app.widgets.icons import IconMark
+from app.widgets.lay_out import lay_out
 from app.widgets.text import MEDIUM, SEMIBOLD, Text
 from app.wording.translation import figure_text, tr
 from core.verdicts.norms import ReferenceCurves
@@ -37,14 +38,10 @@ class BandCard(Card):
             n=curves.n, speed=figure_text(curves.speed_m_s, ".2f")
         )
         self._words = Text(size=14, wraps=True)
-        advice = QHBoxLayout()
-        scaled(advice.setSpacing, 10)
-        advice.addWidget(IconMark(Icon.INFO), 0, Qt.AlignmentFlag.AlignTop)
-        advice.addWidget(self._words, 1)
-        self.column.addWidget(Text(tr("Reference"), size=16, weight=SEMIBOLD))
-        self.column.addWidget(Text(group, size=14, wraps=True))
-        self.column.addWidget(_BandDrawing(curves))
-        self.column.addLayout(advice)
+        mark = (IconMark(Icon.INFO), 0, Qt.AlignmentFlag.AlignTop)
+        advice = lay_out(QHBoxLayout(), mark, (self._words, 1), spacing=10)
+        title = Text(tr("Reference"), size=16, weight=SEMIBOLD)
+        lay_out(self.column, title, Text(group, size=14, wraps=True), _BandDrawing(curves), advice)
 
     def judge(self, age: int | None) -> None:
         """Say whether a patient of `age` years is of the group's age."""
@@ -121,8 +118,7 @@ class TakenCard(Card):
         super().__init__(padding=20, spacing=12)
         self._title = Text(size=16, weight=SEMIBOLD, wraps=True)
         self.open = Button(tr("Open this patient"), ButtonKind.SECONDARY, Icon.FOLDER)
-        self.column.addWidget(self._title)
-        self.column.addWidget(self.open)
+        lay_out(self.column, self._title, self.open)
 
     def show_code(self, code: str) -> None:
         self._title.setText(tr("{code} is in the library").format(code=code))
@@ -141,10 +137,7 @@ class LastVisitCard(Card):
         self.same = Button(tr("Use last visit's set-up"), ButtonKind.SECONDARY, Icon.REPEAT)
         self._facts.setColumnStretch(1, 1)
         self._shown: list[Text] = []
-        self.column.addWidget(self._title)
-        self.column.addLayout(self._facts)
-        self.column.addStretch(1)
-        self.column.addWidget(self.same)
+        lay_out(self.column, self._title, self._facts, 1, self.same)
 
     def show_visit(self, visit: LastVisit) -> None:
         self._title.setText(visit.title)

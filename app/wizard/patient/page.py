@@ -11,12 +11,13 @@ from PySide6.QtGui import QResizeEvent
 from PySide6.QtWidgets import QBoxLayout, QHBoxLayout, QSizePolicy, QVBoxLayout, QWidget
 
 from app.summary.reference_bands import reference_curves
-from app.theme.current import current_theme, on_theme, scaled
+from app.theme.current import current_theme, on_theme
 from app.theme.ground import Ground, set_ground
 from app.widgets.card import Card
 from app.widgets.chips import Chips
 from app.widgets.field import Field, NumberField
-from app.widgets.scrolling import scrolling
+from app.widgets.lay_out import lay_out
+from app.widgets.reading_area import scrolled
 from app.widgets.segmented import Segmented
 from app.widgets.text import MEDIUM, SEMIBOLD, Text
 from app.wizard.patient.cards import BandCard, LastVisit, LastVisitCard, TakenCard
@@ -212,10 +213,8 @@ class PatientPage(QWidget):
         subtitle = Text(how, size=15, tone="ink2", wraps=True)
         self._limb_box = _Captioned(self.limb, tr("This side is"))
         ankles = QWidget()
-        self._ankle_row = QBoxLayout(_ACROSS, ankles)
-        self._ankle_row.setContentsMargins(0, 0, 0, 0)
-        for chips in self.ankles.values():
-            self._ankle_row.addWidget(chips, 1)
+        both = [(chips, 1) for chips in self.ankles.values()]
+        self._ankle_row = lay_out(QBoxLayout(_ACROSS, ankles), *both, margins=0, spacing=16)
         self._ankle_box = _Captioned(
             ankles,
             tr("Prosthetic foot"),
@@ -239,38 +238,20 @@ class PatientPage(QWidget):
             self._form.column.addLayout(row)
         self._form.column.addStretch(1)
         self._beside = QWidget()
-        beside = QVBoxLayout(self._beside)
-        beside.setContentsMargins(0, 0, 0, 0)
-        for card, stretch in ((self._taken, 0), (self._band, 0), (self._last, 1)):
-            beside.addWidget(card, stretch)
-        beside.addStretch(0)
-        self._cards = QBoxLayout(_ACROSS)
-        self._cards.addWidget(self._form, 1)
-        self._cards.addWidget(self._beside)
-        words = QHBoxLayout()
-        words.addWidget(subtitle, 1)
-        words.addWidget(self._saved, 0, Qt.AlignmentFlag.AlignBottom)
+        lay_out(QVBoxLayout(self._beside), self._taken, self._band, (self._last, 1), 0, margins=0, spacing=16)
+        self._cards = lay_out(QBoxLayout(_ACROSS), (self._form, 1), self._beside, spacing=16)
+        saved = (self._saved, 0, Qt.AlignmentFlag.AlignBottom)
+        words = lay_out(QHBoxLayout(), (subtitle, 1), saved, margins=(0, 0, 0, 12), spacing=16)
         content = QWidget()
-        self._column = QVBoxLayout(content)
-        self._column.addWidget(Text(tr("Patient details"), size=26, weight=SEMIBOLD, wraps=True))
-        self._column.addLayout(words)
-        self._column.addLayout(self._cards, 1)
-        self._column.addStretch(0)
-        self._scroll = scrolling(content)
+        title = Text(tr("Patient details"), size=26, weight=SEMIBOLD, wraps=True)
+        self._column = lay_out(QVBoxLayout(content), title, words, (self._cards, 1), 0, spacing=4)
+        self._scroll = scrolled(content)
         content.installEventFilter(self)
-        whole = QVBoxLayout(self)
-        whole.setContentsMargins(0, 0, 0, 0)
-        whole.addWidget(self._scroll)
-        scaled(self._column.setSpacing, 4)
-        scaled(words.setContentsMargins, 0, 0, 0, 12)
-        for row in (words, self._cards, beside, self._ankle_row, *self._rows):
-            scaled(row.setSpacing, 16)
+        lay_out(QVBoxLayout(self), self._scroll, margins=0)
 
     def _row(self, *widgets: QWidget) -> QBoxLayout:
-        row = QBoxLayout(_ACROSS)
-        for widget in widgets:
-            row.addWidget(widget, 1, Qt.AlignmentFlag.AlignTop)
-        return row
+        parts = [(widget, 1, Qt.AlignmentFlag.AlignTop) for widget in widgets]
+        return lay_out(QBoxLayout(_ACROSS), *parts, spacing=16)
 
     def _connect(self) -> None:
         for line in (self.code, self.birth_year, self.height_cm, self.mass_kg, self.device):
@@ -335,14 +316,8 @@ class _Captioned(QWidget):
         self.setSizePolicy(QSizePolicy.Policy.Expanding, QSizePolicy.Policy.Maximum)
         self._note = Text(note, size=12, tone="ink2", wraps=True)
         self._note.setAlignment(Qt.AlignmentFlag.AlignRight | Qt.AlignmentFlag.AlignBottom)
-        above, column = QHBoxLayout(), QVBoxLayout(self)
-        above.addWidget(Text(caption, size=14, weight=MEDIUM))
-        above.addWidget(self._note, 1)
-        column.setContentsMargins(0, 0, 0, 0)
-        column.addLayout(above)
-        column.addWidget(content)
-        scaled(column.setSpacing, 6)
-        scaled(above.setSpacing, 8)
+        above = lay_out(QHBoxLayout(), Text(caption, size=14, weight=MEDIUM), (self._note, 1), spacing=8)
+        lay_out(QVBoxLayout(self), above, content, margins=0, spacing=6)
 
     def set_note(self, note: str) -> None:
         self._note.setText(note)

@@ -15,6 +15,7 @@ from app.theme.icons import Icon
 from app.widgets.button import Button, ButtonKind
 from app.widgets.card import Card
 from app.widgets.choice import Choice
+from app.widgets.lay_out import lay_out
 from app.widgets.notice import Notice
 from app.widgets.text import SEMIBOLD, Text
 from app.wording.translation import tr
@@ -154,8 +155,7 @@ class ColumnsForm(QWidget):
 
     def _choice(self, label: str, options: dict[str, str]) -> Choice:
         choice = Choice(label)
-        for key, words in options.items():
-            choice.addItem(words, key)
+        choice.offer(((words, key) for key, words in options.items()), chosen=None)
         choice.activated.connect(self.changed)
         return choice
 
@@ -189,9 +189,7 @@ class ColumnsForm(QWidget):
         self._body.setDirection(way)
 
     def _build(self) -> None:
-        card, heading = Card(), QVBoxLayout()
-        heading.addWidget(Text(tr("Meaning of the columns"), 20, SEMIBOLD, wraps=True))
-        heading.addWidget(self._where)
+        card, title = Card(), Text(tr("Meaning of the columns"), 20, SEMIBOLD, wraps=True)
         self._grid = QGridLayout()
         self._grid.setColumnStretch(1, 1)
         self._units = QGridLayout()
@@ -199,23 +197,13 @@ class ColumnsForm(QWidget):
             self._units.addWidget(Text(choice.accessibleName(), 15), number, 0)
             self._units.addWidget(choice, number, 1)
         self._units.setRowStretch(4, 1)
-        self._body = QBoxLayout(QBoxLayout.Direction.LeftToRight)
-        self._body.addLayout(self._grid, 3)
-        self._body.addLayout(self._units, 2)
-        card.column.addLayout(heading)
-        card.column.addWidget(self.notice)
-        card.column.addLayout(self._body)
-        card.column.addStretch(1)
-        verbs = QHBoxLayout()
-        verbs.addWidget(self.back)
-        verbs.addStretch(1)
-        column = QVBoxLayout(self)
-        column.setContentsMargins(0, 0, 0, 0)
-        column.addWidget(card, 1)
-        column.addLayout(verbs)
-        scaled(column.setSpacing, 12)
-        scaled(heading.setSpacing, 4)
-        scaled(self._body.setSpacing, 32)
+        self._body = lay_out(
+            QBoxLayout(QBoxLayout.Direction.LeftToRight), (self._grid, 3), (self._units, 2), spacing=32
+        )
+        heading = lay_out(QVBoxLayout(), title, self._where, spacing=4)
+        lay_out(card.column, heading, self.notice, self._body, 1)
+        verbs = lay_out(QHBoxLayout(), self.back, 1)
+        lay_out(QVBoxLayout(self), (card, 1), verbs, margins=0, spacing=12)
         for grid in (self._grid, self._units):
             scaled(grid.setHorizontalSpacing, 16)
             scaled(grid.setVerticalSpacing, 8)

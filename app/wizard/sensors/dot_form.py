@@ -17,6 +17,7 @@ from app.theme.theme import Theme
 from app.widgets.button import Button, ButtonKind
 from app.widgets.card import Card
 from app.widgets.choice import Choice
+from app.widgets.lay_out import lay_out
 from app.widgets.notice import Notice
 from app.widgets.table import CellTable, TableColumn, TableRow
 from app.widgets.table_cells import TableCell, TextCell
@@ -236,8 +237,7 @@ class DotForm(QWidget):
 
     def _choice(self, label: str, options: dict[int, str]) -> Choice:
         choice = Choice(label)
-        for key, words in options.items():
-            choice.addItem(words, key)
+        choice.offer(((words, key) for key, words in options.items()), chosen=None)
         return choice
 
     def _row(self, number: int, line: DotLine) -> TableRow:
@@ -254,37 +254,16 @@ class DotForm(QWidget):
 
     def _build(self) -> None:
         self._card = Card()
-        heading = QVBoxLayout()
-        heading.addWidget(self._title)
-        heading.addWidget(self._lead)
-        left, self._choices = QVBoxLayout(), QVBoxLayout()
-        left.addWidget(self.list, 1)
-        below = QHBoxLayout()
-        below.addWidget(self.identify)
-        below.addStretch(1)
-        left.addLayout(below)
+        heading = lay_out(QVBoxLayout(), self._title, self._lead, spacing=4)
+        left = lay_out(QVBoxLayout(), (self.list, 1), lay_out(QHBoxLayout(), self.identify, 1))
+        self._choices = lay_out(QVBoxLayout(), spacing=6)
         for choice in (self.walks, self.rate, self.profile):
-            self._choices.addWidget(Text(choice.accessibleName(), 14, tone="ink2"))
-            self._choices.addWidget(choice)
-        self._choices.addWidget(self._consequence)
-        self._choices.addStretch(1)
-        self._body = QBoxLayout(QBoxLayout.Direction.LeftToRight)
-        self._body.addLayout(left, 3)
-        self._body.addLayout(self._choices, 2)
-        self._card.column.addLayout(heading)
-        self._card.column.addWidget(self.notice)
-        self._card.column.addLayout(self._body, 1)
-        verbs = QHBoxLayout()
-        verbs.addWidget(self.back)
-        verbs.addStretch(1)
-        column = QVBoxLayout(self)
-        column.setContentsMargins(0, 0, 0, 0)
-        column.addWidget(self._card, 1)
-        column.addLayout(verbs)
-        scaled(column.setSpacing, 12)
-        scaled(heading.setSpacing, 4)
-        scaled(self._body.setSpacing, 32)
-        scaled(self._choices.setSpacing, 6)
+            lay_out(self._choices, Text(choice.accessibleName(), 14, tone="ink2"), choice)
+        lay_out(self._choices, self._consequence, 1)
+        self._body = lay_out(QBoxLayout(QBoxLayout.Direction.LeftToRight), (left, 3), (self._choices, 2), spacing=32)
+        lay_out(self._card.column, heading, self.notice, (self._body, 1))
+        verbs = lay_out(QHBoxLayout(), self.back, 1)
+        lay_out(QVBoxLayout(self), (self._card, 1), verbs, margins=0, spacing=12)
         scaled(self.list.setMinimumHeight, HEAD + AT_LEAST_ROWS * ROW)
         self.show_message("")
 

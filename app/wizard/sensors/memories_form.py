@@ -9,6 +9,7 @@ from PySide6.QtWidgets import QVBoxLayout, QWidget
 from app.theme.current import scaled
 from app.theme.icons import Icon
 from app.widgets.card import Card
+from app.widgets.lay_out import lay_out
 from app.widgets.notice import Notice
 from app.widgets.table import CellTable, TableColumn, TableRow
 from app.widgets.table_cells import TextCell
@@ -48,14 +49,8 @@ class MemoriesForm(QWidget):
         self.list = CellTable(tr("Recordings in the sensors"), row=ROW, head=HEAD, padding=PADDING, is_list=True)
         self.notice = Notice(size=16)
         card = Card()
-        card.column.addWidget(self._title)
-        card.column.addWidget(self._lead)
-        card.column.addWidget(self.notice)
-        card.column.addWidget(self.list, 1)
-        card.column.addStretch()  # where there is no list
-        column = QVBoxLayout(self)
-        column.setContentsMargins(0, 0, 0, 0)
-        column.addWidget(card, 1)
+        lay_out(card.column, self._title, self._lead, self.notice, (self.list, 1), 0)  # the 0: where there is no list
+        lay_out(QVBoxLayout(self), (card, 1), margins=0)
         scaled(self.list.setMinimumHeight, HEAD + AT_LEAST_ROWS * ROW)
         self.list.chosen.connect(self._on_chosen)
         self.show_message("")

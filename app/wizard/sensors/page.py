@@ -10,14 +10,15 @@ from itertools import pairwise
 
 from PySide6.QtCore import QSignalBlocker, Qt, QTimer, Signal
 from PySide6.QtGui import QHideEvent, QResizeEvent
-from PySide6.QtWidgets import QBoxLayout, QHBoxLayout, QVBoxLayout, QWidget
+from PySide6.QtWidgets import QBoxLayout, QHBoxLayout, QScrollArea, QSizePolicy, QVBoxLayout, QWidget
 
 from app.theme.current import current_theme, on_theme, px, scaled
 from app.theme.icons import Icon
 from app.widgets.body_figure import SensorMark
 from app.widgets.choice import Choice
+from app.widgets.lay_out import lay_out
 from app.widgets.notice import Notice
-from app.widgets.scrolling import scrolling
+from app.widgets.reading_area import scrolled
 from app.widgets.segmented import Segmented
 from app.widgets.sensors_progress import SensorsProgress
 from app.widgets.text import SEMIBOLD, Text
@@ -166,13 +167,9 @@ class SensorsPage(QWidget):
         if (is_shown and (tuple(options), chosen) == self._offered) or self.sources.view().isVisible():
             return  # in its view one is chosen now
         self._offered = (tuple(options), chosen)
-        with QSignalBlocker(self.sources):
-            self.sources.clear()
-            for option in options:
-                words = tr("{source}: {found}").format(source=option.name, found=option.note)
-                self.sources.addItem(words if option.note else option.name, option.key)
-            self.sources.setCurrentIndex(self.sources.findData(chosen))
-        self.sources.updateGeometry()
+        found = tr("{source}: {found}")
+        lines = [(found.format(source=one.name, found=one.note) if one.note else one.name, one.key) for one in options]
+        self.sources.offer(lines, chosen, otherwise=-1)
         usual = [option for option in options if not option.is_last][:OFFERED_AT_ONCE]
         self.nothing.show_options([*usual, *(option for option in options if option.is_last)])
         for before, after in pairwise(
@@ -298,36 +295,23 @@ class SensorsPage(QWidget):
         return list(self.places.shown_tiles.values())
 
     def _build(self) -> None:
-        words, head, beside = QVBoxLayout(), QHBoxLayout(), QVBoxLayout()
-        words.addWidget(self.title)
-        words.addWidget(self.subtitle)
-        head.addLayout(words, 1)
-        head.addWidget(self.sources, 0, Qt.AlignmentFlag.AlignVCenter)
-        self._rows = scrolling(self.list)
-        beside.addWidget(self.ways)
-        beside.addWidget(self._rows, 1)
-        beside.addWidget(self.notice)
+        words = lay_out(QVBoxLayout(), self.title, self.subtitle, spacing=4)
+        sources = (self.sources, 0, Qt.AlignmentFlag.AlignVCenter)
+        head = lay_out(QHBoxLayout(), (words, 1), sources, spacing=16)
+        self._rows = _scrolled(self.list)
+        beside = lay_out(QVBoxLayout(), self.ways, (self._rows, 1), self.notice, spacing=8)
         self._lists = QWidget()
         self._body = QBoxLayout(QBoxLayout.Direction.LeftToRight, self._lists)
-        self._body.setContentsMargins(0, 0, 0, 0)
-        self._body.addWidget(self.places, 0)
-        self._body.addLayout(beside, 1)
+        lay_out(self._body, self.places, (beside, 1), margins=0)
         content = QWidget()
-        self._column = QVBoxLayout(content)
-        self._column.addLayout(head)
+        self._column = lay_out(QVBoxLayout(content), head, spacing=16)
         self._in_sight: QWidget = self.nothing
         asking = self.searching, self.stored, self.columns, self.dots, self.memories, self.progress
         for page in (self.nothing, *asking, self._lists):  # not stacked: each would ask room for all
             self._column.addWidget(page, 1)
             page.setVisible(page is self.nothing)
-        whole = QVBoxLayout(self)
-        whole.setContentsMargins(0, 0, 0, 0)
-        self._whole = scrolling(content)
-        whole.addWidget(self._whole)
-        scaled(self._column.setSpacing, 16)
-        scaled(words.setSpacing, 4)
-        scaled(head.setSpacing, 16)
-        scaled(beside.setSpacing, 8)
+        self._whole = _scrolled(content)
+        lay_out(QVBoxLayout(self), self._whole, margins=0)
         scaled(self.notice.setMinimumHeight, 66)
 
     def _connect(self) -> None:
@@ -488,3 +472,10 @@ class SensorsPage(QWidget):
             margin = px(8)
             self._rows.ensureWidgetVisible(row, 0, margin)
             self._whole.ensureWidgetVisible(row, 0, margin)
+
+
+def _scrolled(content: QWidget) -> QScrollArea:
+    """Give it the room that is left, of which it asks for none."""
+    area = scrolled(content)
+    area.setSizePolicy(QSizePolicy.Policy.Ignored, QSizePolicy.Policy.Ignored)
+    return area

@@ -10,6 +10,7 @@ from app.theme.current import scaled
 from app.theme.icons import Icon
 from app.widgets.button import Button, ButtonKind
 from app.widgets.card import Card
+from app.widgets.lay_out import lay_out
 from app.widgets.line_list import LineList, PatientLine
 from app.widgets.notice import Notice
 from app.widgets.text import SEMIBOLD, Text
@@ -56,23 +57,10 @@ class SessionChooser(QWidget):
         self._lists.addWidget(self.sessions)
         self._lists.addWidget(self._none)
         card = Card(padding=0)
-        heading = QVBoxLayout()
-        for one in (title, why, self.notice):
-            heading.addWidget(one)
-        card.column.addLayout(heading)
-        card.column.addWidget(self._lists, 1)
-        verbs = QHBoxLayout()
-        verbs.addWidget(self.folder)
-        verbs.addWidget(self.back)
-        verbs.addStretch(1)
-        column = QVBoxLayout(self)
-        column.setContentsMargins(0, 0, 0, 0)
-        column.addWidget(card, 1)
-        column.addLayout(verbs)
-        scaled(column.setSpacing, 12)
-        scaled(verbs.setSpacing, 12)
-        scaled(heading.setContentsMargins, 24, 16, 24, 4)
-        scaled(heading.setSpacing, 4)
+        heading = lay_out(QVBoxLayout(), title, why, self.notice, margins=(24, 16, 24, 4), spacing=4)
+        lay_out(card.column, heading, (self._lists, 1))
+        verbs = lay_out(QHBoxLayout(), self.folder, self.back, 1, spacing=12)
+        lay_out(QVBoxLayout(self), (card, 1), verbs, margins=0, spacing=12)
         scaled(self._none.setContentsMargins, 24, 8, 24, 16)
         scaled(self.sessions.setMinimumHeight, LEAST_LIST)
         self.sessions.chosen.connect(self.chosen)

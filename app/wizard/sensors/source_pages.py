@@ -10,6 +10,7 @@ from app.theme.current import scaled
 from app.theme.icons import Icon
 from app.widgets.button import Button, ButtonKind
 from app.widgets.heard_order import hear_as_laid_out
+from app.widgets.lay_out import lay_out
 from app.widgets.notice import Notice
 from app.widgets.text import SEMIBOLD, Text
 from app.wording.translation import tr
@@ -43,16 +44,8 @@ class NoSource(QWidget):
         self._left_out = Text(size=14, tone="ink2", wraps=True)
         self._left_out.setAlignment(Qt.AlignmentFlag.AlignCenter)
         self._left_out.hide()
-        self._row = QVBoxLayout()
-        column = QVBoxLayout(self)
-        column.addWidget(self.notice)
-        column.addStretch(1)
-        column.addWidget(sentence)
-        column.addLayout(self._row)
-        column.addWidget(self._left_out)
-        column.addStretch(2)
-        scaled(column.setSpacing, 24)
-        scaled(self._row.setSpacing, 12)
+        self._row = lay_out(QVBoxLayout(), spacing=12)
+        lay_out(QVBoxLayout(self), self.notice, 1, sentence, self._row, self._left_out, 2, spacing=24)
 
     def show_message(self, what: str, then: str) -> None:
         """Say why nothing is connected, above the sources that may be tried instead."""
@@ -106,13 +99,9 @@ class Searching(QWidget):
         self._line.setTextVisible(False)
         self._line.setRange(0, 0)
         self.stop = Button(tr("Stop"), ButtonKind.SECONDARY, Icon.STOP)
-        column = QVBoxLayout(self)
-        column.addStretch(1)
-        column.addWidget(self._sentence)
-        column.addWidget(self._line, 0, Qt.AlignmentFlag.AlignHCenter)
-        column.addWidget(self.stop, 0, Qt.AlignmentFlag.AlignHCenter)
-        column.addStretch(2)
-        scaled(column.setSpacing, 20)
+        middle = Qt.AlignmentFlag.AlignHCenter
+        parts = (1, self._sentence, (self._line, 0, middle), (self.stop, 0, middle), 2)
+        lay_out(QVBoxLayout(self), *parts, spacing=20)
         scaled(self._line.setFixedSize, 320, 8)
 
     def focus(self) -> None:

@@ -18,8 +18,9 @@ from app.theme.icons import Icon
 from app.widgets.button import Button
 from app.widgets.card import Card
 from app.widgets.field import NumberField
+from app.widgets.lay_out import lay_out
 from app.widgets.notice import Notice
-from app.widgets.scrolling import scrolling
+from app.widgets.reading_area import scrolled
 from app.widgets.stillness import INSET, STEPS, CountRing, MovementBars, RingFace
 from app.widgets.text import MEDIUM, SEMIBOLD, Text
 from app.wording.body import name_of
@@ -119,9 +120,7 @@ class StandStillPage(QWidget):
         self.zero = _ZeroCard()
         self.zero.edited.connect(self.zero_edited)
         self.zero.button.clicked.connect(self._on_button_clicked)
-        self._row = QHBoxLayout(self)
-        self._row.addWidget(self._count, 1)
-        self._row.addWidget(self.zero)
+        self._row = lay_out(QHBoxLayout(self), (self._count, 1), self.zero)
         on_theme(self._fit)
         self.set_compact(False)
 
@@ -177,22 +176,11 @@ class StandStillPage(QWidget):
         self._fit()
 
     def _build_count(self) -> None:
-        above, side, self._middle = QHBoxLayout(), QVBoxLayout(), QHBoxLayout()
-        above.addWidget(Text(tr("Movement now"), size=14, weight=MEDIUM), 1)
-        above.addWidget(self._limit)
-        side.addStretch(1)
-        side.addLayout(above)
-        side.addWidget(self.bars)
-        side.addWidget(self.verdict)
-        side.addStretch(1)
-        self._middle.addWidget(self._ring, 1)
-        self._middle.addLayout(side)
-        scaled(side.setSpacing, 8)
-        scaled(above.setContentsMargins, INSET, 0, INSET, 0)
-        column = self._count.column
-        column.addWidget(self._title)
-        column.addWidget(self._how)
-        column.addLayout(self._middle, 1)
+        now = Text(tr("Movement now"), size=14, weight=MEDIUM)
+        above = lay_out(QHBoxLayout(), (now, 1), self._limit, margins=(INSET, 0, INSET, 0))
+        side = lay_out(QVBoxLayout(), 1, above, self.bars, self.verdict, 1, spacing=8)
+        self._middle = lay_out(QHBoxLayout(), (self._ring, 1), side)
+        lay_out(self._count.column, self._title, self._how, (self._middle, 1))
         self._count.setSizePolicy(QSizePolicy.Policy.Expanding, QSizePolicy.Policy.Expanding)
 
     def _on_button_clicked(self) -> None:
@@ -217,29 +205,25 @@ class _ZeroCard(Card):
     def __init__(self) -> None:
         super().__init__(padding=20, spacing=12)
         self._inside = QWidget()
-        column, self._grid = QVBoxLayout(self._inside), QGridLayout()
-        column.setContentsMargins(0, 0, 0, 0)
-        scaled(column.setSpacing, 8)
+        self._grid = QGridLayout()
         scaled(self._grid.setHorizontalSpacing, 12)
         scaled(self._grid.setVerticalSpacing, 6)
         self._is_compact = False
         self._view = StandStillView()
         self._worn: frozenset[Joint] = frozenset(LEG_JOINTS)
         self.fields: dict[Joint, NumberField] = {}
-        column.addWidget(Text(tr("Standing angle"), size=20, weight=SEMIBOLD))
+        named = Text(tr("Standing angle"), size=20, weight=SEMIBOLD)
         explained = tr("Enter 0° if the joint is straight now. With a contracture, enter the goniometer value.")
-        column.addWidget(Text(explained, size=14, tone="ink2", wraps=True))
+        how = Text(explained, size=14, tone="ink2", wraps=True)
         self._add_joint(tr("Knee"), tr("flexion is +"), tr("Knee flexion"), KNEE_DEG, is_knee=True)
         self._add_joint(tr("Ankle"), tr("dorsiflexion is +"), tr("Ankle dorsiflexion"), ANKLE_DEG, is_knee=False)
-        column.addLayout(self._grid)
         self._why = Text(size=14, tone="ink2", wraps=True)
-        column.addWidget(self._why)
-        column.addStretch(1)
+        lay_out(QVBoxLayout(self._inside), named, how, self._grid, self._why, 1, margins=0, spacing=8)
+        fields = scrolled(self._inside)
+        fields.setSizePolicy(QSizePolicy.Policy.Ignored, QSizePolicy.Policy.Ignored)
         self.note = Notice(size=14)
         self.button = Button(tr("Patient cannot stand still"))
-        self.column.addWidget(scrolling(self._inside), 1)
-        self.column.addWidget(self.note)
-        self.column.addWidget(self.button)
+        lay_out(self.column, (fields, 1), self.note, self.button)
         self._show()
 
     @property
@@ -291,10 +275,9 @@ class _ZeroCard(Card):
 
     def _add_joint(self, name: str, sign: str, label: str, range_deg: tuple[float, float], is_knee: bool) -> None:
         row = self._grid.rowCount()
-        heading = QHBoxLayout()
-        scaled(heading.setContentsMargins, 0, 8, 0, 0)
-        heading.addWidget(Text(name, size=14, weight=MEDIUM), 1)
-        heading.addWidget(Text(sign, size=12, tone="ink2"), 0, Qt.AlignmentFlag.AlignBottom)
+        words, way = Text(name, size=14, weight=MEDIUM), Text(sign, size=12, tone="ink2")
+        below = Qt.AlignmentFlag.AlignBottom
+        heading = lay_out(QHBoxLayout(), (words, 1), (way, 0, below), margins=(0, 8, 0, 0))
         self._grid.addLayout(heading, row, 0, 1, 2)
         for column, side in enumerate((Side.LEFT, Side.RIGHT)):
             joint = next(joint for joint in LEG_JOINTS if joint.side is side and joint.is_knee == is_knee)
