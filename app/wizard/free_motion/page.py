@@ -60,18 +60,7 @@ class FreeMotionFace:
 
 
 class FreeMotionPage(QWidget):
-    """Its gauges are laid out like the patient who faces you; where there is little room, without the figure.
-
-    Signals
-    -------
-    answered
-        Number of the answer to what was asked.
-    pressed
-        The BarAction of the banner's button that was pressed.
-    """
-
-    answered = Signal(int)
-    pressed = Signal(object)
+    """Its gauges are laid out like the patient who faces you; where there is little room, without the figure."""
 
     def __init__(self) -> None:
         super().__init__()
@@ -93,8 +82,6 @@ class FreeMotionPage(QWidget):
             self._grid.setRowStretch(row, 1)
         parts = (self.question, self.band, self.swapped, self._hips, (self._grid, 1))
         self._column = lay_out(QVBoxLayout(self), *parts)
-        self.question.answered.connect(self.answered)
-        self.swapped.pressed.connect(self.pressed)
         scaled(self._hips.setSpacing, 12)
         scaled(self._grid.setVerticalSpacing, 12)
         self.set_compact(False)
@@ -132,13 +119,6 @@ class FreeMotionPage(QWidget):
         scaled(self._grid.setHorizontalSpacing, 6 if is_compact else 0)
         scaled(self._set_figure_width, 0 if is_compact else FIGURE_WIDTH)
         self.update()
-
-    def ask(self, what: str, then: str = "", answers: tuple[str, ...] = (), *, is_understood: bool = False) -> None:
-        """Say what the motion contradicts, or cannot show, and offer one or two answers; empty takes it back.
-
-        `is_understood`: it is no question but what was answered to one, and the second button takes that back.
-        """
-        self.question.ask(what, then, answers, is_understood=is_understood)
 
     def show_state(self, view: FreeMotionFace) -> None:
         """Show how far the motion has come; only what reads otherwise is painted again."""
@@ -198,7 +178,7 @@ class FreeMotionPage(QWidget):
 class _Question(QWidget):
     """What has to be answered by somebody who sees the patient; hidden while nothing has."""
 
-    answered = Signal(int)
+    answered = Signal(int)  # the answer's number
 
     def __init__(self) -> None:
         super().__init__()
@@ -212,7 +192,11 @@ class _Question(QWidget):
             button.clicked.connect(self._on_clicked)
         self.hide()
 
-    def ask(self, what: str, then: str, answers: tuple[str, ...], *, is_understood: bool) -> None:
+    def ask(self, what: str, then: str = "", answers: tuple[str, ...] = (), *, is_understood: bool = False) -> None:
+        """Say what the motion contradicts, or cannot show, and offer one or two answers; empty takes it back.
+
+        `is_understood`: it is no question but what was answered to one, and the second button takes that back.
+        """
         offered = dict(enumerate(answers, start=int(is_understood)))
         for number, button in enumerate(self.buttons):
             button.setVisible(number in offered)

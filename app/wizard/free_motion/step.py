@@ -103,8 +103,7 @@ class FreeMotionStep(Step):
     def page(self) -> FreeMotionPage:
         if self._page is None:
             self._page = FreeMotionPage()
-            self._page.answered.connect(self._answer)
-            self._page.pressed.connect(self._on_pressed)
+            self._page.question.answered.connect(self._answer)
         return self._page
 
     @property
@@ -452,7 +451,7 @@ class FreeMotionStep(Step):
         words = self.question.words if self._is_recording and not self.is_in_doubt else SILENT
         if words != self._asked_words:
             self._asked_words = words
-            self.page.ask(*words, is_understood=self.question.reported is not None)
+            self.page.question.ask(*words, is_understood=self.question.reported is not None)
 
     def _answer(self, number: int) -> None:
         """Let the motion be that of the leg that was named; what was placed already changes legs."""
@@ -529,9 +528,6 @@ class FreeMotionStep(Step):
         if not self.is_in_doubt:
             return None
         return Swapped(*self._visit.sensors.doubt_in_words(), self._use_action, self._check_action)
-
-    def _on_pressed(self, action: BarAction) -> None:
-        action.run()
 
     def _asked(self) -> Asked:
         acquisition, sensors = self._visit.sensors.acquisition, self._visit.sensors

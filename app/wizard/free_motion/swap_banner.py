@@ -1,6 +1,6 @@
 """Banner in the place of the hint while sensors move like those of other places, with its two ways on."""
 
-from PySide6.QtCore import QPointF, QRectF, QSize, Signal
+from PySide6.QtCore import QPointF, QRectF, QSize
 from PySide6.QtGui import (
     QAccessible,
     QAccessibleAnnouncementEvent,
@@ -30,17 +30,9 @@ STACKED_BELOW = 620  # px of the design: the buttons stand below the words
 
 
 class SwapBanner(QWidget):
-    """Hidden until sensors look swapped.
-
-    Signals
-    -------
-    pressed
-        The BarAction of the button that was pressed.
-    """
+    """Hidden until sensors look swapped."""
 
     accessible_role = QAccessible.Role.AlertMessage
-
-    pressed = Signal(object)
 
     def __init__(self) -> None:
         super().__init__()
@@ -143,4 +135,4 @@ class SwapBanner(QWidget):
     def _on_clicked(self) -> None:
         button = self.sender()
         assert isinstance(button, VerbButton)
-        self.pressed.emit(button.verb)
+        button.verb.run()

@@ -51,8 +51,6 @@ class PatientPage(QWidget):
     -------
     edited
         What is on the page, with every letter.
-    code_committed
-        The code has been typed to its end.
     open_pressed
         The patient whose code was typed is in the library: take that one.
     same_set_up_pressed
@@ -60,7 +58,6 @@ class PatientPage(QWidget):
     """
 
     edited = Signal(PatientDraft)
-    code_committed = Signal()
     open_pressed = Signal(str)
     same_set_up_pressed = Signal()
 
@@ -260,7 +257,6 @@ class PatientPage(QWidget):
             segmented.chosen.connect(self._on_edited)
         for chips in (*self.ankles.values(), self.aids):
             chips.turned.connect(self._on_edited)
-        self.code.committed.connect(self.code_committed)
         self._taken.open.clicked.connect(self._on_open_clicked)
         self._last.same.clicked.connect(self.same_set_up_pressed)
 

@@ -63,12 +63,9 @@ class ColumnsForm(QWidget):
     -------
     changed
         Something else is entered.
-    back_pressed
-        Other sources are asked for.
     """
 
     changed = Signal()
-    back_pressed = Signal()
 
     def __init__(self) -> None:
         super().__init__()
@@ -99,7 +96,6 @@ class ColumnsForm(QWidget):
         self.notice = Notice(size=16)
         self.back = Button(tr("Other sources"), ButtonKind.QUIET)
         self._build()
-        self.back.clicked.connect(self.back_pressed)
 
     @property
     def reported(self) -> ColumnsReported:

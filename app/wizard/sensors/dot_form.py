@@ -122,14 +122,11 @@ class DotForm(QWidget):
         The number of the sensor whose light is to blink.
     changed
         They are to measure otherwise.
-    back_pressed
-        Other sources are asked for.
     """
 
     turned = Signal(int)
     identify_pressed = Signal(int)
     changed = Signal()
-    back_pressed = Signal()
 
     def __init__(self) -> None:
         super().__init__()
@@ -273,7 +270,6 @@ class DotForm(QWidget):
         self.identify.clicked.connect(self._on_identify_clicked)
         for choice in (self.walks, self.rate, self.profile):
             choice.activated.connect(self._on_chosen)
-        self.back.clicked.connect(self.back_pressed)
 
     def _show_consequence(self) -> None:
         record_hz = self.choice.record_hz

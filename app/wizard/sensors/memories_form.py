@@ -3,7 +3,6 @@
 from collections.abc import Sequence
 from dataclasses import dataclass
 
-from PySide6.QtCore import Signal
 from PySide6.QtWidgets import QVBoxLayout, QWidget
 
 from app.theme.current import scaled
@@ -32,15 +31,6 @@ class HeldLine:
 
 
 class MemoriesForm(QWidget):
-    """
-    Signals
-    -------
-    chosen
-        Another line is.
-    """
-
-    chosen = Signal()
-
     def __init__(self) -> None:
         super().__init__()
         self._lines: tuple[HeldLine, ...] = ()
@@ -52,7 +42,6 @@ class MemoriesForm(QWidget):
         lay_out(card.column, self._title, self._lead, self.notice, (self.list, 1), 0)  # the 0: where there is no list
         lay_out(QVBoxLayout(self), (card, 1), margins=0)
         scaled(self.list.setMinimumHeight, HEAD + AT_LEAST_ROWS * ROW)
-        self.list.chosen.connect(self._on_chosen)
         self.show_message("")
         self.show_lines(())
 
@@ -105,9 +94,6 @@ class MemoriesForm(QWidget):
         """Say what is the matter, and what to do; "" takes it back."""
         self.notice.show_message(Icon.WARNING if what else None, what, then, is_caution=bool(what))
         self.notice.setVisible(bool(what))
-
-    def _on_chosen(self, _number: object) -> None:
-        self.chosen.emit()
 
 
 def _row(number: int, line: HeldLine) -> TableRow:

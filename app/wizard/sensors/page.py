@@ -59,18 +59,11 @@ class SensorsPage(QWidget):
         A `Way`.
     source_chosen
         The key of a `SourceOption`.
-    identify_pressed, reconnect_pressed
-        A sensor's name.
-    stop_pressed
-        Look for sensors no longer.
     """
 
     assigned = Signal(str, object)
     way_chosen = Signal(str)
     source_chosen = Signal(str)
-    identify_pressed = Signal(str)
-    reconnect_pressed = Signal(str)
-    stop_pressed = Signal()
 
     def __init__(self) -> None:
         super().__init__()
@@ -278,7 +271,7 @@ class SensorsPage(QWidget):
         row = self.list.rows.get(self.list.selection)
         if row is None or not row.sensor.can_identify or self._in_sight is not self._lists:
             return False
-        self.identify_pressed.emit(row.name)
+        self.list.identify_pressed.emit(row.name)
         return True
 
     def resizeEvent(self, event: QResizeEvent) -> None:
@@ -317,15 +310,12 @@ class SensorsPage(QWidget):
     def _connect(self) -> None:
         self.sources.activated.connect(self._on_source_activated)
         self.nothing.chosen.connect(self.source_chosen)
-        self.searching.stop.clicked.connect(self.stop_pressed)
         self.ways.chosen.connect(self._on_way_chosen)
         self.places.dropped.connect(self.assign)
         self.places.hovered.connect(self._on_hovered)
         self.places.pressed.connect(self._on_place_pressed)
         self.list.assigned.connect(self.assign)
         self.list.selected.connect(self._on_selected)
-        self.list.identify_pressed.connect(self.identify_pressed)
-        self.list.reconnect_pressed.connect(self.reconnect_pressed)
         self._flash_end.timeout.connect(self._end_flash)
 
     def _show(self, page: QWidget) -> None:

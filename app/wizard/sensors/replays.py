@@ -104,10 +104,10 @@ class StoredReplay(QObject):
     def show_on(self, form: "SessionChooser") -> None:
         """Have this show what can be chosen, from now on."""
         self._form = form
-        form.chosen.connect(self.changed)
-        form.opened.connect(self._replay)
-        form.folder_pressed.connect(self._choose_folder)
-        form.back_pressed.connect(self.left)
+        form.sessions.chosen.connect(self.changed)
+        form.sessions.opened.connect(self._replay)
+        form.folder.clicked.connect(self._choose_folder)
+        form.back.clicked.connect(self.left)
 
     def begin(self) -> None:
         """Ask which is to be played: what sends now goes on doing so meanwhile."""

@@ -3,7 +3,6 @@
 from collections.abc import Sequence
 from uuid import UUID
 
-from PySide6.QtCore import Signal
 from PySide6.QtWidgets import QHBoxLayout, QSizePolicy, QStackedWidget, QVBoxLayout, QWidget
 
 from app.theme.current import scaled
@@ -20,23 +19,7 @@ LEAST_LIST = 101  # a line and a part of the next, so that it is seen that there
 
 
 class SessionChooser(QWidget):
-    """
-    Signals
-    -------
-    chosen
-        Another session is chosen: its id, or None.
-    opened
-        The id of a session that is to be replayed.
-    folder_pressed
-        A session folder is asked for instead.
-    back_pressed
-        No session is asked for after all.
-    """
-
-    chosen = Signal(object)
-    opened = Signal(object)
-    folder_pressed = Signal()
-    back_pressed = Signal()
+    """`sessions` states which is chosen and which is to be played; `folder` and `back` lead elsewhere."""
 
     def __init__(self) -> None:
         super().__init__()
@@ -63,10 +46,6 @@ class SessionChooser(QWidget):
         lay_out(QVBoxLayout(self), (card, 1), verbs, margins=0, spacing=12)
         scaled(self._none.setContentsMargins, 24, 8, 24, 16)
         scaled(self.sessions.setMinimumHeight, LEAST_LIST)
-        self.sessions.chosen.connect(self.chosen)
-        self.sessions.opened.connect(self.opened)
-        self.folder.clicked.connect(self.folder_pressed)
-        self.back.clicked.connect(self.back_pressed)
         self.show_sessions(())
         self.show_message("")
 

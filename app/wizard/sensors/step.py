@@ -78,10 +78,10 @@ class SensorsStep(Step):
             page.assigned.connect(self._visit.sensors.assign)
             page.way_chosen.connect(self._on_way_chosen)
             page.source_chosen.connect(self._on_source_chosen)
-            page.identify_pressed.connect(self._on_identify_pressed)
-            page.reconnect_pressed.connect(self._on_reconnect_pressed)
-            page.stop_pressed.connect(self._on_stop_pressed)
-            page.columns.back_pressed.connect(self._on_asking_left)
+            page.list.identify_pressed.connect(self._on_identify_pressed)
+            page.list.reconnect_pressed.connect(self._reconnect)
+            page.searching.stop.clicked.connect(self._on_stop_pressed)
+            page.columns.back.clicked.connect(self._on_asking_left)
             self.stored.show_on(page.stored)
             self.setup.show_on(page.dots, page.progress)
             self.memories.show_on(page.memories, page.progress)
@@ -514,6 +514,3 @@ class SensorsStep(Step):
                 tr("{sensor} has no LED that can be lit.").format(sensor=sensor), tr("Shake the sensor instead.")
             )
             self._show_rows()
-
-    def _on_reconnect_pressed(self, _sensor: str) -> None:
-        self._reconnect()

@@ -95,13 +95,10 @@ class StandStillPage(QWidget):
 
     Signals
     -------
-    zero_edited
-        Joint and degrees; None where nothing is in the field any more.
     cannot_stand_pressed, can_stand_pressed
         The patient cannot, or can after all.
     """
 
-    zero_edited = Signal(object, object)
     cannot_stand_pressed = Signal()
     can_stand_pressed = Signal()
 
@@ -118,7 +115,6 @@ class StandStillPage(QWidget):
         self.verdict = Notice()
         self._build_count()
         self.zero = _ZeroCard()
-        self.zero.edited.connect(self.zero_edited)
         self.zero.button.clicked.connect(self._on_button_clicked)
         self._row = lay_out(QHBoxLayout(self), (self._count, 1), self.zero)
         on_theme(self._fit)
@@ -149,10 +145,6 @@ class StandStillPage(QWidget):
         scaled(self._count.column.setContentsMargins, *((16, 10, 16, 10) if is_compact else (24, 18, 24, 18)))
         self._fit()
         self._show()
-
-    def show_zero(self, zero_deg: Mapping[Joint, float]) -> None:
-        """Show the goniometer's angle of each joint that has its sensors; the others have no field to type into."""
-        self.zero.show_zero(zero_deg)
 
     def show_state(self, view: StandStillView) -> None:
         """Show how the standing goes; only what changed is painted again."""
@@ -200,7 +192,7 @@ class StandStillPage(QWidget):
 class _ZeroCard(Card):
     """The angles of the patient in standing, and the way round the standing. The fields scroll where they must."""
 
-    edited = Signal(object, object)
+    edited = Signal(object, object)  # joint and degrees; None where nothing is in the field any more
 
     def __init__(self) -> None:
         super().__init__(padding=20, spacing=12)
@@ -248,6 +240,7 @@ class _ZeroCard(Card):
         self._show()
 
     def show_zero(self, zero_deg: Mapping[Joint, float]) -> None:
+        """Show the goniometer's angle of each joint that has its sensors; the others have no field to type into."""
         self._worn = frozenset(zero_deg)
         for joint, one in self.fields.items():
             one.set_value(zero_deg.get(joint))

@@ -406,19 +406,19 @@ def test_two_legs_that_begin_together_are_reported_apart_by_asking(
     assert unplaced is not None
     step.ask_for_side(together)
     assert question.notice.text == f"Both legs moved at once. Which leg has {shanks[0]} on the shank?"
-    step.page.answered.emit(1)
+    step.page.question.answered.emit(1)
     assert step.question.reported is None  # the library knows it of the left leg
     assert question.notice.text == f"{shanks[0]} was on the left leg before. Which leg is it on now?"
-    step.page.answered.emit(1)
+    step.page.question.answered.emit(1)
     assert unplaced._answer == (shanks[0], Side.RIGHT)
     for _ in range(3):
         step.ask_for_side(together)  # the estimator has not taken it yet
     assert question.notice.text == f"{shanks[0]} is now assigned to the right leg."
     assert [button.text() for button in question.buttons if not button.isHidden()] == ["Undo"]
-    step.page.answered.emit(1)
+    step.page.question.answered.emit(1)
     assert step.question.reported is None
     assert "Both legs moved at once" in question.notice.text
-    step.page.answered.emit(0)
+    step.page.question.answered.emit(0)
     assert question.notice.text == f"{shanks[0]} is now assigned to the left leg."
 
 
@@ -431,10 +431,10 @@ def test_a_leg_that_was_named_wrongly_changes_places_when_that_is_undone(
     shank = f"DEMO-{Site.LEFT_SHANK}"
     step.ask_for_side(chains(shank, f"DEMO-{Site.RIGHT_SHANK}"))
     for _ in range(2):  # the library knows it of the left leg
-        step.page.answered.emit(1)
+        step.page.question.answered.emit(1)
     visit.sensors.assign_all({sensor: opposite(site) for sensor, site in worn.items()})  # as the motion then reports
     for number in (1, 0):
-        step.page.answered.emit(number)
+        step.page.question.answered.emit(number)
     assert visit.sensors.site_of == worn
     assert step.page.question.notice.text == f"{shank} is now assigned to the left leg."
     step._stop()
