@@ -80,7 +80,7 @@ class SwapBanner(QWidget):
         self._then.set_size(14 if is_compact else 15)
         left, down = self._inset + self._mark + (16 if is_compact else 20), 6 if is_compact else 10
         scaled(self._row.setContentsMargins, left, down, 16 if is_compact else 24, down)
-        scaled(self._beside.setSpacing, 1 if is_compact else 4)
+        scaled(self._beside.setSpacing, 0.4 if is_compact else 4)  # the former is one px at every size
         scaled(self.use.setMinimumWidth, 0 if is_compact else BUTTONS)
         self._fit_sentence()
         self.updateGeometry()

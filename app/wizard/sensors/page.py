@@ -8,9 +8,9 @@ from collections.abc import Mapping, Sequence
 from enum import StrEnum
 from itertools import pairwise
 
-from PySide6.QtCore import QSignalBlocker, Qt, QTimer, Signal
+from PySide6.QtCore import QSignalBlocker, QSize, Qt, QTimer, Signal
 from PySide6.QtGui import QHideEvent, QResizeEvent
-from PySide6.QtWidgets import QBoxLayout, QHBoxLayout, QScrollArea, QSizePolicy, QVBoxLayout, QWidget
+from PySide6.QtWidgets import QBoxLayout, QHBoxLayout, QScrollArea, QVBoxLayout, QWidget
 
 from app.theme.current import current_theme, on_theme, px, scaled
 from app.theme.icons import Icon
@@ -18,7 +18,6 @@ from app.widgets.body_figure import SensorMark
 from app.widgets.choice import Choice
 from app.widgets.lay_out import lay_out
 from app.widgets.notice import Notice
-from app.widgets.reading_area import scrolled
 from app.widgets.segmented import Segmented
 from app.widgets.sensors_progress import SensorsProgress
 from app.widgets.text import SEMIBOLD, Text
@@ -291,7 +290,7 @@ class SensorsPage(QWidget):
         words = lay_out(QVBoxLayout(), self.title, self.subtitle, spacing=4)
         sources = (self.sources, 0, Qt.AlignmentFlag.AlignVCenter)
         head = lay_out(QHBoxLayout(), (words, 1), sources, spacing=16)
-        self._rows = _scrolled(self.list)
+        self._rows = _Scroll(self.list)
         beside = lay_out(QVBoxLayout(), self.ways, (self._rows, 1), self.notice, spacing=8)
         self._lists = QWidget()
         self._body = QBoxLayout(QBoxLayout.Direction.LeftToRight, self._lists)
@@ -303,7 +302,7 @@ class SensorsPage(QWidget):
         for page in (self.nothing, *asking, self._lists):  # not stacked: each would ask room for all
             self._column.addWidget(page, 1)
             page.setVisible(page is self.nothing)
-        self._whole = _scrolled(content)
+        self._whole = _Scroll(content)
         lay_out(QVBoxLayout(self), self._whole, margins=0)
         scaled(self.notice.setMinimumHeight, 66)
 
@@ -464,8 +463,15 @@ class SensorsPage(QWidget):
             self._whole.ensureWidgetVisible(row, 0, margin)
 
 
-def _scrolled(content: QWidget) -> QScrollArea:
-    """Give it the room that is left, of which it asks for none."""
-    area = scrolled(content)
-    area.setSizePolicy(QSizePolicy.Policy.Ignored, QSizePolicy.Policy.Ignored)
-    return area
+class _Scroll(QScrollArea):
+    """Takes the room that is left and asks for none."""
+
+    def __init__(self, content: QWidget) -> None:
+        super().__init__()
+        self.setWidgetResizable(True)
+        self.setFocusPolicy(Qt.FocusPolicy.NoFocus)
+        self.setHorizontalScrollBarPolicy(Qt.ScrollBarPolicy.ScrollBarAlwaysOff)
+        self.setWidget(content)
+
+    def sizeHint(self) -> QSize:
+        return self.minimumSizeHint()
