@@ -164,7 +164,7 @@ class SessionScreen(QWidget):
             page.open_demonstration.clicked.connect(self.demonstration_requested)
         self.bar.back.clicked.connect(self.leave)
         self.bar.how_found.clicked.connect(self._on_how_found)
-        self.working.stop_pressed.connect(self.stop)
+        self.working.stop.clicked.connect(self.stop)
         self._background.progressed.connect(self._on_progressed)
         self._background.done.connect(self._on_done)
         self._background.failed.connect(self._on_failed)

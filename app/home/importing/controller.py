@@ -88,8 +88,8 @@ class Importing(QObject):
         self._dialog: QFileDialog | None = None
         self.page = ImportPage()
         self.page.code.line_edit.returnPressed.connect(self.take_in)
-        self.page.files_requested.connect(self._choose_files)
-        self.page.folder_requested.connect(self._choose_folder)
+        self.page.choose_files.clicked.connect(self._choose_files)
+        self.page.choose_folder.clicked.connect(self._choose_folder)
         self.page.reading_requested.connect(self._on_reading_requested)
         self.page.draft.placing_requested.connect(self._on_placing_requested)
 

@@ -48,10 +48,7 @@ class HomePage(QWidget):
     patient_chosen = Signal(object)  # UUID or None
     session_opened = Signal(object)  # UUID
     new_session_requested = Signal()  # Enter
-    new_patient_requested = Signal()
     demonstration_requested = Signal()
-    import_requested = Signal()
-    computing_requested = Signal()  # of the visits that have no figures yet
     patient_deleted = Signal(object)  # UUID: by key or menu
     session_deleted = Signal(object)
 
@@ -215,12 +212,9 @@ class HomePage(QWidget):
         self.sessions.opened.connect(self.session_opened)
         self.sessions.selectionModel().currentRowChanged.connect(self._panel_room.show_row)
         self.panel.course.visit_opened.connect(self.session_opened)
-        self.panel.course.computing_requested.connect(self.computing_requested)
-        self.panel.delete_patient_requested.connect(self._on_delete_patient)
-        self.panel.delete_session_requested.connect(self._on_delete_session)
-        self.empty.new_patient.clicked.connect(self.new_patient_requested)
+        self.panel.delete_patient.triggered.connect(self._on_delete_patient)
+        self.panel.delete_session.triggered.connect(self._on_delete_session)
         self.empty.demonstration.clicked.connect(self.demonstration_requested)
-        self.empty.importing.clicked.connect(self.import_requested)
         for watched in (self.search, self.patients, self.sessions):
             watched.installEventFilter(self)
 
