@@ -27,7 +27,7 @@ from app.home.settings.controller import SettingsController
 from app.home.settings.settings_page import SettingsPage
 from app.summary.course_words import NextKind, NextStep
 from app.system.settings import Scheme, Settings
-from app.theme.current import current_theme, on_theme, scaled
+from app.theme.current import current_theme, on_theme, px, scaled
 from app.theme.icons import Icon
 from app.widgets.action_bar import ActionBar, BarAction, BarState
 from app.widgets.banner import Banner
@@ -335,7 +335,6 @@ class Home(QWidget):
         if self._goals is not None:
             self._goals.page.set_room(width - form.value)
         self.bar.show_state(self._bar())
-        px = current_theme().px
         self.toast.move(px(form.value + 24), self.height() - self.bar.height() - self.toast.height() - px(16))
 
     def _show(self) -> None:

@@ -225,7 +225,6 @@ class ActionBar(QWidget):
 
     def _arrange(self) -> None:
         """Put all in one row, or the words above the verbs, or the verbs in as many rows as they need."""
-        px = current_theme().px
         margin = side_margin(self.width(), current_theme())
         gap = px(16 if self.width() >= px(NARROW_BELOW) else 8)
         room = max(self.width(), px(LEAST)) - 2 * margin
@@ -263,7 +262,6 @@ class ActionBar(QWidget):
 
     def _fits(self, width: int) -> bool:
         """Return whether the words may stand beside the verbs: not squeezed, and no higher than the bar."""
-        px = current_theme().px
         texts = [text for text in (self._title, self._note) if text.text()]
         widest = max((text.fontMetrics().horizontalAdvance(text.text()) for text in texts), default=0)
         return width >= min(widest, px(NOTE_AT_LEAST)) and self._words_height(width) <= px(BAR - 8)
@@ -274,7 +272,6 @@ class ActionBar(QWidget):
 
     def _narrowed(self, box: QRect) -> QRect:
         """Give lines of a length that is read at a glance: two short ones rather than a long one."""
-        px = current_theme().px
         if self._state.recording is not None:
             return box
         for widest in (NOTE_WIDTH, 2 * NOTE_WIDTH):

@@ -11,7 +11,7 @@ from PySide6.QtCore import QPointF, QRectF, QSize, Qt
 from PySide6.QtGui import QAccessible, QColor, QFontMetrics, QPainter, QPainterPath, QPaintEvent, QPolygonF, QTransform
 from PySide6.QtWidgets import QSizePolicy, QWidget
 
-from app.theme.current import current_theme
+from app.theme.current import current_theme, px, smooth_painter
 from app.theme.theme import Theme
 from app.widgets.body_shapes import BARE_LEGS, LEGS, WHOLE, body_shapes
 from app.widgets.text import SEMIBOLD
@@ -156,7 +156,6 @@ class BodyFigure(QWidget):
         return self._placed().map(body_shapes().points[joint])
 
     def sizeHint(self) -> QSize:
-        px = current_theme().px
         return QSize(px(200), px(440)) if self._is_legs_only else QSize(px(300), px(520))
 
     def minimumSizeHint(self) -> QSize:
@@ -168,8 +167,7 @@ class BodyFigure(QWidget):
 
     def paintEvent(self, _event: QPaintEvent) -> None:
         theme = current_theme()
-        painter = QPainter(self)
-        painter.setRenderHint(QPainter.RenderHint.Antialiasing)
+        painter = smooth_painter(self)
         place = self._placed()
         if self._is_legs_only:
             paint_legs(painter, self._room(), theme, self._emphasised, self._worn, self._is_from_behind)
@@ -190,7 +188,6 @@ class BodyFigure(QWidget):
         painter.drawText(foot, Qt.AlignmentFlag.AlignCenter, self._sentence())
 
     def _room(self) -> QRectF:
-        px = current_theme().px
         room = QRectF(0, px(4), self.width(), self.height() - px(4 + SENTENCE_ROOM))
         if self._beside:
             part = LEGS if self._is_legs_only else WHOLE

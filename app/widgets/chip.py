@@ -4,7 +4,7 @@ from PySide6.QtCore import QRectF, QSize
 from PySide6.QtGui import QAccessible, QPainter, QPaintEvent
 from PySide6.QtWidgets import QSizePolicy, QWidget
 
-from app.theme.current import current_theme, scaled
+from app.theme.current import current_theme, px, scaled, smooth_painter
 from app.theme.leg_chip import CHIP, paint_chip
 from app.wording.translation import tr
 from core.body import Side
@@ -49,13 +49,11 @@ class SideKey(QWidget):
         self.setAccessibleName(leg_name(side))
 
     def sizeHint(self) -> QSize:
-        px = current_theme().px
         return QSize(px(CHIP) + px(8) + px(LINE), px(CHIP))
 
     def paintEvent(self, _event: QPaintEvent) -> None:
         theme = current_theme()
-        painter = QPainter(self)
-        painter.setRenderHint(QPainter.RenderHint.Antialiasing)
+        painter = smooth_painter(self)
         chip = theme.px(CHIP)
         paint_chip(painter, QRectF(0, (self.height() - chip) / 2, chip, chip), self._side, theme)
         painter.setPen(theme.side_pen(self._side, 2))

@@ -6,7 +6,7 @@ from PySide6.QtCore import QRect, QSize, Qt, Signal
 from PySide6.QtGui import QAccessible, QKeyEvent, QResizeEvent
 from PySide6.QtWidgets import QAbstractButton, QSizePolicy, QWidget
 
-from app.theme.current import current_theme, on_theme, px
+from app.theme.current import on_theme, px
 from app.widgets.button import Button, ButtonKind
 
 HEIGHT = 44
@@ -87,7 +87,6 @@ class Chips(QWidget):
 
     def _flow(self, width: int) -> list[QRect]:
         """Where each chip lies in lines of `width`."""
-        px = current_theme().px
         return flow([chip.sizeHint().width() for chip in self._chips.values()], width, px(GAP), px(HEIGHT))
 
     def _height_for(self, width: int) -> int:

@@ -4,7 +4,7 @@ from PySide6.QtCore import QRectF, QSize, Qt
 from PySide6.QtGui import QColor, QFontMetricsF, QPainter, QPaintEvent
 from PySide6.QtWidgets import QSizePolicy, QWidget
 
-from app.theme.current import current_theme, scaled
+from app.theme.current import current_theme, px, scaled
 from app.widgets.text import SEMIBOLD
 
 UNIT_SHARE = 0.3  # of the figure's size
@@ -31,7 +31,6 @@ class Digits(QWidget):
             self.update()
 
     def sizeHint(self) -> QSize:
-        px = current_theme().px
         return QSize(px(self._most * 2), px(self._most))
 
     def cells(self) -> list[tuple[str, QRectF]]:

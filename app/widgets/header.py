@@ -1,10 +1,10 @@
 """Header line at the top of every page: whose session is on the screen, and whether it is real."""
 
 from PySide6.QtCore import QPoint, QPointF, QRect, QSize, Qt
-from PySide6.QtGui import QPainter, QPaintEvent, QResizeEvent
+from PySide6.QtGui import QPaintEvent, QResizeEvent
 from PySide6.QtWidgets import QSizePolicy, QWidget
 
-from app.theme.current import current_theme, on_theme, scaled
+from app.theme.current import current_theme, on_theme, px, scaled, smooth_painter
 from app.theme.ground import Ground, set_ground
 from app.theme.theme import CHIP_RADIUS
 from app.widgets.grid import LEAST, side_margin
@@ -86,7 +86,6 @@ class Header(QWidget):
             self._arrange()
 
     def _arrange(self) -> None:
-        px = current_theme().px
         margin, gap = side_margin(self.width(), current_theme()), px(16)
         line = px(COMPACT_HEIGHT if self._is_compact else HEIGHT)
         room = max(self.width(), px(LEAST)) - 2 * margin
@@ -143,8 +142,7 @@ class ProductMark(QWidget):
 
     def paintEvent(self, _event: QPaintEvent) -> None:
         theme = current_theme()
-        painter = QPainter(self)
-        painter.setRenderHint(QPainter.RenderHint.Antialiasing)
+        painter = smooth_painter(self)
         unit = self.width() / 24
         hip = QPointF(12.5 * unit, 2.5 * unit)
         for side, foot in ((Side.RIGHT, 3.5), (Side.LEFT, 20.5)):  # it faces you: the right leg is at your left

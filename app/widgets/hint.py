@@ -71,7 +71,6 @@ class HintBand(QWidget):
         self.update()
 
     def sizeHint(self) -> QSize:
-        px = current_theme().px
         height = COMPACT_HEIGHT if self._is_compact else LARGE_HEIGHT if self._is_large else HEIGHT
         return QSize(px(480), px(height))
 
@@ -132,7 +131,6 @@ class HintBand(QWidget):
         return not self._is_compact and self.width() >= px(LARGE_FROM)
 
     def _clock(self) -> QRectF:
-        px = current_theme().px
         small = current_theme().font(14 if self._is_compact else 16, MEDIUM)
         width = max(px(128), QFontMetrics(small).horizontalAdvance(self._usual) + px(4))
         height = px(64 if self._is_compact else 88)

@@ -10,7 +10,7 @@ from PySide6.QtCore import QRectF, QSize, Qt
 from PySide6.QtGui import QAccessible, QColor, QFontMetrics, QPainter, QPaintEvent
 from PySide6.QtWidgets import QSizePolicy, QWidget
 
-from app.theme.current import current_theme, px, scaled
+from app.theme.current import current_theme, px, scaled, smooth_painter
 from app.theme.icons import Icon, paint_icon
 from app.theme.leg_chip import paint_chip
 from app.theme.theme import CARD_RADIUS
@@ -85,7 +85,6 @@ class HipGauge(QWidget):
         self.update()
 
     def sizeHint(self) -> QSize:
-        px = current_theme().px
         return QSize(px(300), px(COMPACT_HEIGHT if self._is_compact else HEIGHT))
 
     @property
@@ -130,8 +129,7 @@ class HipGauge(QWidget):
     def paintEvent(self, _event: QPaintEvent) -> None:
         theme, face = current_theme(), self._face
         c = theme.colours
-        painter = QPainter(self)
-        painter.setRenderHint(QPainter.RenderHint.Antialiasing)
+        painter = smooth_painter(self)
         pen = theme.pen(c.ink if face.is_now else c.control if face.note else c.line, 2.5 if face.is_now else 1)
         if face.note:
             pen.setDashPattern([3.0, 3.0])
@@ -148,12 +146,10 @@ class HipGauge(QWidget):
             text.paint(painter, c)
 
     def _ring(self) -> QRectF:
-        px = current_theme().px
         side = min(px(RING), self.height() - px(16))
         return QRectF(px(14), (self.height() - side) / 2, side, side)
 
     def _chip_left(self) -> float:
-        px = current_theme().px
         return px(14) if self._is_low else self._ring().right() + px(12)
 
     def _paint_ring(self, painter: QPainter, room: QRectF) -> None:

@@ -151,7 +151,6 @@ class SmallSheets(QWidget):
         return max(min(px(SMALL_WIDTH), room / max(heights, 1.0)), px(LEAST_WIDTH))
 
     def sizeHint(self) -> QSize:
-        px = current_theme().px
         return QSize(px(SMALL_WIDTH + 16), px(SMALL_WIDTH))
 
     def keyPressEvent(self, event: QKeyEvent) -> None:

@@ -11,7 +11,7 @@ from PySide6.QtGui import (
 )
 from PySide6.QtWidgets import QSizePolicy, QVBoxLayout, QWidget
 
-from app.theme.current import current_theme, on_theme, scaled
+from app.theme.current import on_theme, px, scaled
 from app.theme.ground import Ground, set_ground
 from app.theme.icons import Icon
 from app.widgets.header import ProductMark
@@ -167,7 +167,6 @@ class StepRail(QWidget):
         self._note.setVisible(has_words and bool(self._note.text()))
 
     def _apply_theme(self) -> None:
-        px = current_theme().px
         is_compact = self._form is RailForm.COMPACT
         self.setFixedWidth(px(self._form.value))
         self._head.setFixedHeight(px(53 if is_compact else 72))
@@ -196,7 +195,6 @@ class _NameTag(Text):
         self.hide()
 
     def name(self, row: RailButton) -> None:
-        px = current_theme().px
         window = self._rail.window()
         if self.parentWidget() is not window:
             self.setParent(window)

@@ -8,7 +8,7 @@ from PySide6.QtCore import QPointF, QRect, QRectF, QSize, Qt
 from PySide6.QtGui import QAccessible, QColor, QFontMetrics, QPainter, QPaintEvent
 from PySide6.QtWidgets import QSizePolicy, QWidget
 
-from app.theme.current import current_theme, px, scaled
+from app.theme.current import current_theme, px, scaled, smooth_painter
 from app.theme.icons import Icon, paint_icon
 from app.theme.leg_chip import CHIP, paint_chip
 from app.theme.theme import CHIP_RADIUS
@@ -62,8 +62,7 @@ class CountRing(QWidget):
         c = theme.colours
         side = min(self.width(), self.height(), theme.px(1.3 * RING_SIZE))
         grow = side / RING_SIZE  # of what lies inside
-        painter = QPainter(self)
-        painter.setRenderHint(QPainter.RenderHint.Antialiasing)
+        painter = smooth_painter(self)
         box = QRectF((self.width() - side) / 2, (self.height() - side) / 2, side, side)
         width = RING * grow
         arc = box.adjusted(width / 2, width / 2, -width / 2, -width / 2)
@@ -180,14 +179,12 @@ class MovementBars(QWidget):
         return QSize(px(230), max(1, len(self._rows)) * self._row_height)
 
     def minimumSizeHint(self) -> QSize:
-        px = current_theme().px
         return QSize(
             px(INSET + CHIP + 8) + self._name_width + px(8 + 50 + 8) + self._figure_width, self.sizeHint().height()
         )
 
     def paintEvent(self, event: QPaintEvent) -> None:
-        painter = QPainter(self)
-        painter.setRenderHint(QPainter.RenderHint.Antialiasing)
+        painter = smooth_painter(self)
         for number, (sensor, row) in enumerate(self._rows.items()):
             place = QRect(0, number * self._row_height, self.width(), self._row_height)
             if event.rect().intersects(place):

@@ -1,10 +1,10 @@
 """Stopwatch of the session: the time since it began, and a line that grows to the target; never an alarm."""
 
 from PySide6.QtCore import QRectF, QSize, Qt
-from PySide6.QtGui import QColor, QFontMetrics, QPainter, QPaintEvent
+from PySide6.QtGui import QColor, QFontMetrics, QPaintEvent
 from PySide6.QtWidgets import QSizePolicy, QWidget
 
-from app.theme.current import current_theme
+from app.theme.current import current_theme, px, smooth_painter
 from app.widgets.painted_text import RIGHT, PaintedText
 from app.widgets.text import SEMIBOLD
 from app.wording.numbers import clock
@@ -37,7 +37,6 @@ class Stopwatch(QWidget):
         self._refresh()
 
     def sizeHint(self) -> QSize:
-        px = current_theme().px
         words, time = self._columns()
         return QSize(words + px(16) + time, px(40))
 
@@ -60,8 +59,7 @@ class Stopwatch(QWidget):
     def paintEvent(self, _event: QPaintEvent) -> None:
         theme = current_theme()
         c, px = theme.colours, theme.px
-        painter = QPainter(self)
-        painter.setRenderHint(QPainter.RenderHint.Antialiasing)
+        painter = smooth_painter(self)
         texts = self.painted_texts()
         for text in texts:
             text.paint(painter, c)

@@ -13,7 +13,7 @@ from PySide6.QtWidgets import QBoxLayout, QHBoxLayout, QWidget
 
 from app.home.login.typed_entry import COLUMN, EntryPage
 from app.system.passphrases import REFUSED, strength_in_words, strength_of
-from app.theme.current import current_theme, on_theme
+from app.theme.current import on_theme, px
 from app.theme.icons import Icon
 from app.widgets.button import Button, ButtonKind
 from app.widgets.card import Card
@@ -159,7 +159,6 @@ class FirstStartPage(EntryPage):
 
     def _fit(self) -> None:
         """The other ways stand beside each other where there is the room."""
-        px = current_theme().px
         room = min(px(COLUMN), self.width() - px(48))
         needed = self.join.sizeHint().width() + self.demonstration.sizeHint().width() + px(4)
         way = QBoxLayout.Direction.LeftToRight if needed <= room else QBoxLayout.Direction.TopToBottom

@@ -1,10 +1,10 @@
 """What is shown in place of patients while there are none: how to begin, what a session needs and how it goes."""
 
 from PySide6.QtCore import QPointF, QRectF, QSize, Qt
-from PySide6.QtGui import QFontMetrics, QPainter, QPaintEvent
+from PySide6.QtGui import QFontMetrics, QPaintEvent
 from PySide6.QtWidgets import QBoxLayout, QGridLayout, QHBoxLayout, QSizePolicy, QVBoxLayout, QWidget
 
-from app.theme.current import current_theme, px, scaled
+from app.theme.current import current_theme, px, scaled, smooth_painter
 from app.theme.icons import Icon
 from app.widgets.button import Button, ButtonKind
 from app.widgets.card import Card
@@ -59,7 +59,6 @@ class EmptyLibrary(Card):
 
     def set_room(self, width: float) -> None:
         """Lay out for a page of this width, in px of the design."""
-        px = current_theme().px
         edge = EDGE if width >= WIDE_FROM else NARROW_EDGE
         scaled(self.column.setContentsMargins, edge, 24, edge, 24)
         room = px(width - 2 * PAGE_EDGE) - 2 * px(edge)
@@ -107,7 +106,6 @@ class StepsPreview(QWidget):
         self.update()
 
     def sizeHint(self) -> QSize:
-        px = current_theme().px
         return QSize(self._wide(self._rows), self._rows * px(CIRCLE + 8 + 2 * LINE) + (self._rows - 1) * px(12))
 
     def painted_texts(self) -> list[PaintedText]:
@@ -126,8 +124,7 @@ class StepsPreview(QWidget):
 
     def paintEvent(self, _event: QPaintEvent) -> None:
         theme, half = current_theme(), px(CIRCLE) / 2
-        painter = QPainter(self)
-        painter.setRenderHint(QPainter.RenderHint.Antialiasing)
+        painter = smooth_painter(self)
         painter.setPen(theme.pen(theme.colours.control, 1.25))
         for number in range(len(self.steps)):
             centre = self._place(number) + QPointF(half, half)
@@ -151,5 +148,4 @@ class StepsPreview(QWidget):
     def _place(self, number: int) -> QPointF:
         """The upper left corner of a step."""
         row, column = divmod(number, self._in_row)
-        px = current_theme().px
         return QPointF(column * self.width() / self._in_row, row * px(CIRCLE + 8 + 2 * LINE + 12))
