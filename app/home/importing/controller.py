@@ -7,10 +7,10 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from PySide6.QtCore import QObject, Signal
-from PySide6.QtWidgets import QFileDialog
 
 from app.home.importing.import_page import ImportPage
 from app.home.importing.import_words import program_name
+from app.home.long_work import LongWork
 from app.importing.untrusted_files import gather_foreign, read_foreign_session, read_foreign_trial
 from app.storage.exchange import import_session
 from app.system.progress import Report
@@ -51,15 +51,11 @@ class _Read:
     again: tuple[Path, ...]
 
 
-class Importing(QObject):
+class Importing(LongWork):
     """What leads to the page that shows what is in files, and on from it: one session after the other.
 
     Signals
     -------
-    working
-        Something takes a while: its title.
-    progressed
-        The share that is done, and what is being done.
     asked
         Something is on the page, to be imported or not.
     left
@@ -70,22 +66,18 @@ class Importing(QObject):
         What came of it, and what to do.
     """
 
-    working = Signal(str)
-    progressed = Signal(float, str)
     asked = Signal()
     left = Signal()
     imported = Signal(object)
     reported = Signal(str, str)
 
     def __init__(self, controller: LibraryController, parent: QObject) -> None:
-        super().__init__(parent)
-        self._controller = controller
+        super().__init__(controller, parent)
         self._waiting: deque[_Found] = deque()
         self._shown: _Found | None = None
         self._number = self._count = 0
         self._again: tuple[Path, ...] = ()
         self._is_importing = False
-        self._dialog: QFileDialog | None = None
         self.page = ImportPage()
         self.page.code.line_edit.returnPressed.connect(self.take_in)
         self.page.choose_files.clicked.connect(self._choose_files)
@@ -184,9 +176,6 @@ class Importing(QObject):
 
     def _on_reading_requested(self, rate_hz: float) -> None:
         self.read(self._again, rate_hz)
-
-    def _on_progressed(self, share: float, what: str) -> None:
-        self.progressed.emit(share, what)
 
     def _on_read(self, read: _Read) -> None:
         self._again = read.again
