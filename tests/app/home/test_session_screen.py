@@ -10,7 +10,7 @@ import pytest
 from PySide6.QtCore import QPoint, Qt
 from PySide6.QtGui import QFontInfo, QPalette
 from PySide6.QtTest import QTest
-from PySide6.QtWidgets import QAbstractButton, QApplication, QComboBox, QLabel, QWidget
+from PySide6.QtWidgets import QAbstractButton, QApplication, QLabel, QWidget
 from pytestqt.qtbot import QtBot
 
 from app.home import session_screen
@@ -29,7 +29,6 @@ from app.system.progress import Report
 from app.theme.colours import DARK, LIGHT
 from app.theme.current import current_theme, set_dark, set_scale
 from app.widgets.findings_list import FindingRow
-from app.widgets.table import CellTable
 from app.widgets.table_cells import TextCell
 from app.workers.background import Stopped, Work
 from app.workers.opening import Opened
@@ -49,6 +48,7 @@ from core.results import (
 from core.samples import FloatArray
 from core.session import Patient, RecordingKind, Session
 from devices.simulation.walker import DEMONSTRATION, FreeMotion, Standing, Walk, simulate
+from tests.app.room import is_cut
 
 TIME_S = np.arange(600) / 100
 GAP = slice(200, 260)
@@ -416,23 +416,6 @@ def test_the_bundled_fonts_are_used() -> None:
 
 def visible(window: QWidget) -> list[QWidget]:
     return [widget for widget in window.findChildren(QWidget) if widget.isVisible()]
-
-
-def is_cut(widget: QWidget) -> bool:
-    """Return whether a widget has less room than its words need."""
-    if isinstance(widget, QLabel):
-        margins = widget.contentsMargins()
-        room = widget.size().shrunkBy(margins)
-        flags = Qt.TextFlag.TextWordWrap if widget.wordWrap() else 0
-        needed = widget.fontMetrics().boundingRect(0, 0, room.width(), 10_000, int(flags), widget.text())
-        return needed.width() > room.width() or needed.height() > room.height()
-    if isinstance(widget, CellTable):
-        is_narrow = any(widget.columnWidth(k) < need for k, need in enumerate(widget.needed_widths))
-        return is_narrow or widget.height() < widget.minimumSizeHint().height()
-    if isinstance(widget, QAbstractButton | QComboBox) and widget.accessibleName():
-        need = widget.minimumSizeHint()
-        return need.width() > widget.width() or need.height() > widget.height()
-    return False
 
 
 def sticks_out(widget: QWidget, window: SessionScreen) -> bool:
