@@ -17,7 +17,7 @@ from app.home import session_screen
 from app.home.session_screen import ENDED_EARLY, STOPPED, SessionScreen
 from app.plots.angle_chart import AngleChart
 from app.results.found_page import FoundPage
-from app.results.result_page import (
+from app.results.tools_row import ANSWER, COMPARE, STRIDES, WHOLE
     ANSWER,
     COMPARE,
     STRIDES,
