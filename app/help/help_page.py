@@ -15,8 +15,6 @@ from PySide6.QtWidgets import (
     QAbstractButton,
     QBoxLayout,
     QButtonGroup,
-    QFrame,
-    QScrollArea,
     QSizePolicy,
     QVBoxLayout,
     QWidget,
@@ -31,6 +29,7 @@ from app.widgets.card import Card
 from app.widgets.choice import Choice
 from app.widgets.field import Field
 from app.widgets.lay_out import lay_out
+from app.widgets.page_scroll import PageScroll
 from app.widgets.text import MEDIUM, REGULAR, SEMIBOLD, Text
 from app.wording.translation import tr, tr_n
 
@@ -115,12 +114,7 @@ class HelpPage(QWidget):
                 super().keyPressEvent(event)
 
     def _build(self) -> None:
-        self._scroll = QScrollArea()
-        self._scroll.setWidgetResizable(True)
-        self._scroll.setFrameShape(QFrame.Shape.NoFrame)
-        self._scroll.setFocusPolicy(Qt.FocusPolicy.NoFocus)
-        self._scroll.setHorizontalScrollBarPolicy(Qt.ScrollBarPolicy.ScrollBarAlwaysOff)
-        self._scroll.setWidget(self.topics)
+        self._scroll = PageScroll(self.topics, is_upright=True)
         self._beside = QWidget()
         self._side = QBoxLayout(QBoxLayout.Direction.TopToBottom, self._beside)
         searching = lay_out(QVBoxLayout(), self.search, self.found)
@@ -229,7 +223,7 @@ class _TopicRow(QAbstractButton):
         self.setAutoExclusive(True)
         self.setFocusPolicy(Qt.FocusPolicy.StrongFocus)
         self.setAttribute(Qt.WidgetAttribute.WA_Hover)
-        self.setSizePolicy(QSizePolicy.Policy.Expanding, QSizePolicy.Policy.Fixed)
+        self.setSizePolicy(QSizePolicy.Policy.MinimumExpanding, QSizePolicy.Policy.Fixed)
         self.show_count(None)
 
     def show_count(self, count: int | None) -> None:
@@ -244,9 +238,6 @@ class _TopicRow(QAbstractButton):
         theme = current_theme()
         width = QFontMetrics(theme.font(14, SEMIBOLD)).horizontalAdvance(self.text())
         return QSize(width + self._count_width() + theme.px(3 * PADDING), theme.px(ROW))
-
-    def minimumSizeHint(self) -> QSize:
-        return self.sizeHint()
 
     def paintEvent(self, _event: QPaintEvent) -> None:
         theme = current_theme()

@@ -4,7 +4,7 @@ from pathlib import Path
 
 from PySide6.QtCore import Qt, Signal
 from PySide6.QtGui import QKeySequence, QResizeEvent, QShortcut
-from PySide6.QtWidgets import QFrame, QHBoxLayout, QScrollArea, QStackedWidget, QVBoxLayout, QWidget
+from PySide6.QtWidgets import QHBoxLayout, QScrollArea, QStackedWidget, QVBoxLayout, QWidget
 
 from app.home.again.analyse_again_page import AnalyseAgainPage
 from app.home.again.controller import AnalysingAgain
@@ -33,6 +33,7 @@ from app.widgets.action_bar import ActionBar, BarAction, BarState
 from app.widgets.banner import Banner
 from app.widgets.grid import COMPACT_BELOW
 from app.widgets.lay_out import lay_out
+from app.widgets.page_scroll import PageScroll
 from app.widgets.rail_row import RailForm, RailRow, StepState
 from app.widgets.start_pages import WorkingPage
 from app.widgets.step_rail import StepRail, home_below
@@ -245,12 +246,7 @@ class Home(QWidget):
         lay_out(QHBoxLayout(self), self.rail, (column, 1), margins=0, spacing=0)
 
     def _add_page(self, page: QWidget) -> None:
-        scroll = QScrollArea()
-        scroll.setWidgetResizable(True)
-        scroll.setFrameShape(QFrame.Shape.NoFrame)
-        scroll.setFocusPolicy(Qt.FocusPolicy.NoFocus)
-        scroll.setWidget(page)
-        self._pages.addWidget(scroll)
+        self._pages.addWidget(PageScroll(page))
 
     def _connect(self) -> None:
         page = self.page

@@ -10,9 +10,7 @@ from PySide6.QtCore import QSize, Qt, QUrl, Signal
 from PySide6.QtGui import QResizeEvent
 from PySide6.QtWidgets import (
     QFileDialog,
-    QFrame,
     QHBoxLayout,
-    QScrollArea,
     QSizePolicy,
     QVBoxLayout,
     QWidget,
@@ -28,6 +26,7 @@ from app.widgets.button import Button, ButtonKind
 from app.widgets.folder_dialog import ask_for_folder
 from app.widgets.header import Header
 from app.widgets.lay_out import lay_out
+from app.widgets.page_scroll import PageScroll
 from app.widgets.page_stack import PageStack
 from app.widgets.start_pages import EmptyPage, WorkingPage
 from app.widgets.text import Text
@@ -83,7 +82,6 @@ class SessionScreen(QWidget):
         self.bar = _ActionBar()
         self._build()
         self._connect()
-        scaled(self._banner_row.setContentsMargins, 24, 0, 24, 0)
         on_theme(self._fit)
         self._show_page(self.empty)
 
@@ -156,14 +154,9 @@ class SessionScreen(QWidget):
     def _build(self) -> None:
         for page in (self.empty, self.working):
             self.pages.addWidget(page)
-        self._banner_row = lay_out(QVBoxLayout(), self.banner)
-        column = lay_out(QVBoxLayout(self), self.header, self._banner_row, margins=0, spacing=0)
-        scroll = QScrollArea()
-        scroll.setWidgetResizable(True)
-        scroll.setFrameShape(QFrame.Shape.NoFrame)
-        scroll.setFocusPolicy(Qt.FocusPolicy.NoFocus)
-        scroll.setWidget(self.pages)
-        lay_out(column, (scroll, 1), self.bar)
+        banner_row = lay_out(QVBoxLayout(), self.banner, margins=(24, 0, 24, 0))
+        pages = PageScroll(self.pages)
+        lay_out(QVBoxLayout(self), self.header, banner_row, (pages, 1), self.bar, margins=0, spacing=0)
 
     def _connect(self) -> None:
         for page in (self.empty, self.bar):

@@ -13,6 +13,7 @@ class Card(Themed):
         super().__init__()
         set_ground(self, Ground("surface", "line", radius=CARD_RADIUS))
         self.column = QVBoxLayout(self)
-        scaled(self.column.setContentsMargins, padding, padding * 0.75, padding, padding * 0.75)
+        side = padding or 0.5  # one pixel: the line round the card stays in sight
+        scaled(self.column.setContentsMargins, side, side * 0.75, side, side * 0.75)
         scaled(self.column.setSpacing, spacing)
         self._apply_theme()

@@ -4,7 +4,7 @@ from PySide6.QtCore import QRectF, QSize, Qt
 from PySide6.QtGui import QColor, QFontMetricsF, QPainter, QPaintEvent
 from PySide6.QtWidgets import QSizePolicy, QWidget
 
-from app.theme.current import current_theme, px
+from app.theme.current import current_theme, scaled
 from app.widgets.text import SEMIBOLD
 
 UNIT_SHARE = 0.3  # of the figure's size
@@ -16,6 +16,7 @@ class Digits(QWidget):
     def __init__(self, size: float, widest: str, unit: str = "", parent: QWidget | None = None):
         super().__init__(parent)
         self._most, self._widest, self._unit, self._text = size, widest, unit, ""
+        scaled(self.setMinimumSize, 120, 72)
         self.setSizePolicy(QSizePolicy.Policy.Expanding, QSizePolicy.Policy.Expanding)
 
     @property
@@ -28,9 +29,6 @@ class Digits(QWidget):
         if shown != (self._text, self._unit, self._widest):
             self._text, self._unit, self._widest = shown
             self.update()
-
-    def minimumSizeHint(self) -> QSize:
-        return QSize(px(120), px(72))
 
     def sizeHint(self) -> QSize:
         px = current_theme().px

@@ -68,7 +68,7 @@ class FindingRow(QWidget):
         what, then = _in_two(text)
         self.setAccessibleName(f"{tr(SEVERITY_WORDS[severity])}: {text}")
         row = QHBoxLayout(self)
-        row.setSpacing(px(12))
+        scaled(row.setSpacing, 12)
         lay_out(row, (IconMark(icon), 0, Qt.AlignmentFlag.AlignTop), margins=0)
         words = lay_out(QVBoxLayout(), Text(what, weight=SEMIBOLD, wraps=True), spacing=0)
         if then:

@@ -11,7 +11,7 @@ from PySide6.QtCore import QPointF, QRect, QRectF, QSize, Qt
 from PySide6.QtGui import QAccessible, QColor, QFont, QFontMetrics, QPainter, QPaintEvent
 from PySide6.QtWidgets import QSizePolicy, QWidget
 
-from app.theme.current import current_theme, px
+from app.theme.current import current_theme, px, scaled
 from app.theme.icons import Icon, paint_icon
 from app.theme.leg_chip import paint_chip
 from app.theme.theme import CARD_RADIUS
@@ -146,9 +146,9 @@ class Gauge(QWidget):
         super().__init__()
         self._joint = joint
         self._face = GaugeFace()
-        self._is_compact = False
         self.setSizePolicy(QSizePolicy.Policy.Expanding, QSizePolicy.Policy.Expanding)
         self._name()
+        self.set_compact(is_compact=False)
 
     @property
     def face(self) -> GaugeFace:
@@ -167,14 +167,12 @@ class Gauge(QWidget):
 
     def set_compact(self, is_compact: bool) -> None:
         self._is_compact = is_compact
-        self._refresh()
+        scaled(self.setMinimumSize, 300 if is_compact else 330, 112)
+        self.updateGeometry()
+        self.update()
 
     def sizeHint(self) -> QSize:
         return (COMPACT_CARD if self._is_compact else CARD) * current_theme().scale
-
-    def minimumSizeHint(self) -> QSize:
-        px = current_theme().px
-        return QSize(px(300 if self._is_compact else 330), px(112))
 
     @property
     def is_brief(self) -> bool:
@@ -454,10 +452,6 @@ class Gauge(QWidget):
                 parts.append(tr("under {limit} required").format(limit=measure.required))
         parts.append(face.note or (tr("move now") if face.state is GaugeState.NOW else state_word(face.state)))
         self.setAccessibleName(", ".join(parts))
-
-    def _refresh(self) -> None:
-        self.updateGeometry()
-        self.update()
 
 
 _ICONS: dict[GaugeState, Icon | None] = {

@@ -40,7 +40,7 @@ class HintBand(QWidget):
         self._hint = Hint("")
         self._elapsed, self._usual = "", ""
         self._is_compact = False
-        self.setSizePolicy(QSizePolicy.Policy.Expanding, QSizePolicy.Policy.Fixed)
+        self.setSizePolicy(QSizePolicy.Policy.MinimumExpanding, QSizePolicy.Policy.Fixed)
 
     @property
     def hint(self) -> Hint:
@@ -67,15 +67,13 @@ class HintBand(QWidget):
 
     def set_compact(self, is_compact: bool) -> None:
         self._is_compact = is_compact
-        self._refresh()
+        self.updateGeometry()
+        self.update()
 
     def sizeHint(self) -> QSize:
         px = current_theme().px
         height = COMPACT_HEIGHT if self._is_compact else LARGE_HEIGHT if self._is_large else HEIGHT
         return QSize(px(480), px(height))
-
-    def minimumSizeHint(self) -> QSize:
-        return self.sizeHint()
 
     def paintEvent(self, _event: QPaintEvent) -> None:
         theme, hint = current_theme(), self._hint
@@ -139,7 +137,3 @@ class HintBand(QWidget):
         width = max(px(128), QFontMetrics(small).horizontalAdvance(self._usual) + px(4))
         height = px(64 if self._is_compact else 88)
         return QRectF(self.width() - px(24) - width, (self.height() - height) / 2, width, height)
-
-    def _refresh(self) -> None:
-        self.updateGeometry()
-        self.update()

@@ -10,7 +10,7 @@ from PySide6.QtCore import QRectF, QSize, Qt
 from PySide6.QtGui import QAccessible, QColor, QFontMetrics, QPainter, QPaintEvent
 from PySide6.QtWidgets import QSizePolicy, QWidget
 
-from app.theme.current import current_theme, px
+from app.theme.current import current_theme, px, scaled
 from app.theme.icons import Icon, paint_icon
 from app.theme.leg_chip import paint_chip
 from app.theme.theme import CARD_RADIUS
@@ -64,6 +64,7 @@ class HipGauge(QWidget):
         self._joint = joint
         self._face = HipFace()
         self._is_compact = False
+        scaled(self.setMinimumSize, 300, LEAST_HEIGHT)
         self.setSizePolicy(QSizePolicy.Policy.Expanding, QSizePolicy.Policy.Maximum)
         self._name()
 
@@ -86,10 +87,6 @@ class HipGauge(QWidget):
     def sizeHint(self) -> QSize:
         px = current_theme().px
         return QSize(px(300), px(COMPACT_HEIGHT if self._is_compact else HEIGHT))
-
-    def minimumSizeHint(self) -> QSize:
-        px = current_theme().px
-        return QSize(px(300), px(LEAST_HEIGHT))
 
     @property
     def _is_low(self) -> bool:

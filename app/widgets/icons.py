@@ -16,8 +16,8 @@ class IconMark(QWidget):
         self._icon, self._tone = icon, tone
         scaled(self.setFixedSize, size, size)
 
-    def set_icon(self, icon: Icon) -> None:
-        self._icon = icon
+    def set_icon(self, icon: Icon, tone: str = "") -> None:
+        self._icon, self._tone = icon, tone or self._tone
         self.update()
 
     def paintEvent(self, _event: QPaintEvent) -> None:

@@ -35,7 +35,7 @@ class KeyGroups(QTextEdit):
         self.setWordWrapMode(QTextOption.WrapMode.NoWrap)
         for set_policy in (self.setHorizontalScrollBarPolicy, self.setVerticalScrollBarPolicy):
             set_policy(Qt.ScrollBarPolicy.ScrollBarAlwaysOff)
-        self.setSizePolicy(QSizePolicy.Policy.Expanding, QSizePolicy.Policy.Fixed)
+        self.setSizePolicy(QSizePolicy.Policy.MinimumExpanding, QSizePolicy.Policy.Fixed)
         self.document().setDocumentMargin(0)
         self.viewport().setAutoFillBackground(False)
         on_theme(self._apply_theme)
@@ -58,9 +58,6 @@ class KeyGroups(QTextEdit):
 
     def sizeHint(self) -> QSize:
         return QSize(px(COLUMNS * WIDTH), px(ROW) * len(self._rows))
-
-    def minimumSizeHint(self) -> QSize:
-        return self.sizeHint()
 
     @property
     def _rows(self) -> list[list[str]]:

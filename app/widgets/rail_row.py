@@ -121,9 +121,6 @@ class RailButton(QAbstractButton):
         title, note = self._heights()
         return QSize(px(150), max(title + note + px(14), px(56 if self._is_step else 44)))
 
-    def minimumSizeHint(self) -> QSize:
-        return QSize(0, self.sizeHint().height())
-
     def painted_texts(self) -> list[PaintedText]:
         """Give what is painted now, each in its box."""
         theme = current_theme()

@@ -4,16 +4,16 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from enum import Enum, auto
 
-from PySide6.QtCore import QRectF, QSize, Qt, Signal
-from PySide6.QtGui import QFontMetrics, QPainter, QPaintEvent, QResizeEvent
+from PySide6.QtCore import Qt, Signal
+from PySide6.QtGui import QResizeEvent
 from PySide6.QtWidgets import QHBoxLayout, QProgressBar, QSizePolicy, QVBoxLayout, QWidget
 
-from app.theme.current import current_theme, on_theme, px, scaled
-from app.theme.icons import Icon, paint_icon
+from app.theme.current import on_theme, px, scaled
+from app.theme.icons import Icon
 from app.widgets.button import Button, ButtonKind
+from app.widgets.icons import IconMark
 from app.widgets.lay_out import lay_out
 from app.widgets.notice import Notice
-from app.widgets.painted_text import LEFT, PaintedText
 from app.widgets.text import MEDIUM, SEMIBOLD, Text
 from app.wording.translation import tr
 
@@ -131,47 +131,33 @@ class _SensorLines(QWidget):
     def __init__(self) -> None:
         super().__init__()
         self._shown: tuple[SensorLine, ...] = ()
+        self._rows: list[tuple[QWidget, IconMark, Text]] = []
+        self._column = lay_out(QVBoxLayout(self), margins=0, spacing=0)
         self.setSizePolicy(QSizePolicy.Policy.Preferred, QSizePolicy.Policy.Fixed)
 
     def show_lines(self, lines: Sequence[SensorLine]) -> None:
         if tuple(lines) == self._shown:
             return
-        is_other_size = len(lines) != len(self._shown)
         self._shown = tuple(lines)
         self.setVisible(bool(lines))
         self.setAccessibleName(", ".join(f"{line.name} {line.words or _STATES[line.state]()}" for line in lines))
-        if is_other_size:
-            self.updateGeometry()
-        self.update()
+        while len(self._rows) < len(lines):
+            self._add_row()
+        for number, (row, mark, words) in enumerate(self._rows):
+            row.setVisible(number < len(lines))
+            if number < len(lines):
+                line = lines[number]
+                tone = "ink2" if line.state is LineState.TO_DO else "ink"
+                mark.set_icon(_ICONS[line.state], tone)
+                words.set_tone(tone)
+                words.setText(f"{line.name} · {line.words}" if line.words else line.name)
 
-    def sizeHint(self) -> QSize:
-        px = current_theme().px
-        widths = [QFontMetrics(text.font).horizontalAdvance(text.text) for text in self.painted_texts()]
-        return QSize(max(widths, default=0) + px(MARK + GAP), len(self._shown) * px(LINE))
-
-    def minimumSizeHint(self) -> QSize:
-        return QSize(0, self.sizeHint().height())
-
-    def painted_texts(self) -> list[PaintedText]:
-        """Give what is painted now, each in its box."""
-        px, theme = current_theme().px, current_theme()
-        texts = []
-        for number, line in enumerate(self._shown):
-            box = QRectF(px(MARK + GAP), number * px(LINE), self.width() - px(MARK + GAP), px(LINE))
-            stated = f"{line.name} · {line.words}" if line.words else line.name
-            tone = "ink2" if line.state is LineState.TO_DO else "ink"
-            texts.append(PaintedText(stated, box, theme.font(14, MEDIUM), tone, LEFT))
-        return texts
-
-    def paintEvent(self, _event: QPaintEvent) -> None:
-        px, c = current_theme().px, current_theme().colours
-        painter = QPainter(self)
-        painter.setRenderHint(QPainter.RenderHint.Antialiasing)
-        for number, line in enumerate(self._shown):
-            mark = QRectF(0, number * px(LINE) + px((LINE - MARK) / 2), px(MARK), px(MARK))
-            paint_icon(painter, _ICONS[line.state], mark, c.ink2 if line.state is LineState.TO_DO else c.ink)
-        for text in self.painted_texts():
-            text.paint(painter, c)
+    def _add_row(self) -> None:
+        row, mark, words = QWidget(), IconMark(Icon.UNCHECKED, MARK), Text(weight=MEDIUM)
+        lay_out(QHBoxLayout(row), mark, (words, 1), margins=0, spacing=GAP)
+        scaled(row.setFixedHeight, LINE)
+        self._column.addWidget(row)
+        self._rows.append((row, mark, words))
 
 
 _ICONS = {

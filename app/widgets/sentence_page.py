@@ -20,11 +20,8 @@ class SentencePage(QWidget):
             text.setAlignment(Qt.AlignmentFlag.AlignCenter)
         self.button = Button("", ButtonKind.SECONDARY, Icon.CHEVRON)
         self.button.clicked.connect(self.pressed)
-        column = QVBoxLayout(self)
-        column.addStretch(1)
-        lay_out(
-            column, self._what, self._then, (self.button, 0, Qt.AlignmentFlag.AlignHCenter), 1, margins=24, spacing=16
-        )
+        parts = (1, self._what, self._then, (self.button, 0, Qt.AlignmentFlag.AlignHCenter), 1)
+        lay_out(QVBoxLayout(self), *parts, margins=24, spacing=16)
 
     def focus(self) -> None:
         """Give the focus to the button; without one the bar has it."""
@@ -39,4 +36,3 @@ class SentencePage(QWidget):
         self.button.setText(button)
         self.button.setAccessibleName(button)
         self.button.setVisible(bool(button))
-        self.button.updateGeometry()

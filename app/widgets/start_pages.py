@@ -10,6 +10,7 @@ from app.widgets.lay_out import lay_out
 from app.widgets.text import SEMIBOLD, Text
 from app.wording.translation import later, tr
 
+MIDDLE = Qt.AlignmentFlag.AlignHCenter
 SENTENCE = later("No session is open.")
 
 
@@ -23,10 +24,8 @@ class EmptyPage(QWidget):
         self._sentence = Text(tr(SENTENCE), size=26, weight=SEMIBOLD)
         self._hint = Text(tr("You can also drop a session folder here."), tone="ink2")
         self._row = lay_out(QHBoxLayout(), 1, self.open_folder, self.open_demonstration, 1, spacing=16)
-        self._column = QVBoxLayout(self)
-        self._column.addStretch(1)
-        self._column.addWidget(self._sentence, 0, Qt.AlignmentFlag.AlignHCenter)
-        lay_out(self._column, self._row, (self._hint, 0, Qt.AlignmentFlag.AlignHCenter), 1, margins=24, spacing=24)
+        parts = (1, (self._sentence, 0, MIDDLE), self._row, (self._hint, 0, MIDDLE), 1)
+        lay_out(QVBoxLayout(self), *parts, margins=24, spacing=24)
 
     def set_narrow(self, is_narrow: bool) -> None:
         """Stack the two buttons where they do not fit side by side."""
@@ -49,12 +48,8 @@ class WorkingPage(QWidget):
         self._line.setRange(0, 1000)
         self._line.setAccessibleName(tr("Progress so far"))
         self.stop = Button(tr("Stop"), ButtonKind.SECONDARY, Icon.STOP, tr("Esc"))
-        self._column = QVBoxLayout(self)
-        self._column.addStretch(1)
-        self._column.addWidget(self._title)
-        self._column.addWidget(self._line, 0, Qt.AlignmentFlag.AlignHCenter)
-        self._column.addWidget(self._what, 0, Qt.AlignmentFlag.AlignHCenter)
-        lay_out(self._column, (self.stop, 0, Qt.AlignmentFlag.AlignHCenter), 1, margins=24, spacing=16)
+        parts = (1, self._title, (self._line, 0, MIDDLE), (self._what, 0, MIDDLE), (self.stop, 0, MIDDLE), 1)
+        lay_out(QVBoxLayout(self), *parts, margins=24, spacing=16)
         self.stop.clicked.connect(self.stop_pressed)
         scaled(self._line.setFixedSize, 400, 8)
 

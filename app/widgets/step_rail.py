@@ -9,7 +9,7 @@ from PySide6.QtCore import QPoint, Qt, Signal
 from PySide6.QtGui import (
     QAccessible,
 )
-from PySide6.QtWidgets import QFrame, QScrollArea, QSizePolicy, QVBoxLayout, QWidget
+from PySide6.QtWidgets import QSizePolicy, QVBoxLayout, QWidget
 
 from app.theme.current import current_theme, on_theme, scaled
 from app.theme.ground import Ground, set_ground
@@ -17,6 +17,7 @@ from app.theme.icons import Icon
 from app.widgets.header import ProductMark
 from app.widgets.heard_order import hear_as_laid_out
 from app.widgets.lay_out import lay_out
+from app.widgets.page_scroll import PageScroll
 from app.widgets.rail_row import BelowRow, RailButton, RailForm, RailRow
 from app.widgets.text import REGULAR, SEMIBOLD, Text
 from app.wording.translation import tr
@@ -109,13 +110,8 @@ class StepRail(QWidget):
             layout.setSpacing(0)
         self._note_row = lay_out(QVBoxLayout(), self._note)
         lay_out(self._column, self._head, self._steps, 1, self._note_row, self._foot, spacing=0)
-        self._scroll = QScrollArea()
-        self._scroll.setWidgetResizable(True)
-        self._scroll.setFrameShape(QFrame.Shape.NoFrame)
-        self._scroll.setFocusPolicy(Qt.FocusPolicy.NoFocus)
-        for hide in (self._scroll.setHorizontalScrollBarPolicy, self._scroll.setVerticalScrollBarPolicy):
-            hide(Qt.ScrollBarPolicy.ScrollBarAlwaysOff)  # no room for one; the wheel and the arrows scroll
-        self._scroll.setWidget(self._inside)
+        self._scroll = PageScroll(self._inside, is_upright=True)
+        self._scroll.setVerticalScrollBarPolicy(Qt.ScrollBarPolicy.ScrollBarAlwaysOff)  # wheel and arrows scroll
         lay_out(QVBoxLayout(self), self._scroll, margins=0)
 
     def _keep(self, rows: list[RailButton], count: int, layout: QVBoxLayout, slot: Callable[[], None]) -> None:

@@ -8,7 +8,7 @@ from PySide6.QtCore import QPointF, QRect, QRectF, QSize, Qt
 from PySide6.QtGui import QAccessible, QColor, QFontMetrics, QPainter, QPaintEvent
 from PySide6.QtWidgets import QSizePolicy, QWidget
 
-from app.theme.current import current_theme, px
+from app.theme.current import current_theme, px, scaled
 from app.theme.icons import Icon, paint_icon
 from app.theme.leg_chip import CHIP, paint_chip
 from app.theme.theme import CHIP_RADIUS
@@ -47,6 +47,7 @@ class CountRing(QWidget):
     def __init__(self) -> None:
         super().__init__()
         self._face = RingFace()
+        scaled(self.setMinimumSize, 160, 160)  # it takes the room there is, and asks for none that would have to scroll
         self.setSizePolicy(QSizePolicy.Policy.Expanding, QSizePolicy.Policy.Expanding)
 
     def show_face(self, face: RingFace) -> None:
@@ -55,13 +56,6 @@ class CountRing(QWidget):
         self._face = face
         self.setAccessibleName(" ".join(filter(None, [face.figure, face.word, face.key])))
         self.update()
-
-    def minimumSizeHint(self) -> QSize:
-        side = px(160)
-        return QSize(side, side)
-
-    def sizeHint(self) -> QSize:
-        return self.minimumSizeHint()  # it takes the room there is, and asks for none that would have to scroll
 
     def paintEvent(self, _event: QPaintEvent) -> None:
         theme, face = current_theme(), self._face

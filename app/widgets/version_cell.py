@@ -4,7 +4,7 @@ from PySide6.QtCore import QPointF, QRectF, QSize, Qt, Signal
 from PySide6.QtGui import QColor, QFont, QKeyEvent, QPainter, QPaintEvent, QStaticText, QTextOption, QTransform
 from PySide6.QtWidgets import QAbstractButton, QSizePolicy
 
-from app.theme.current import current_theme, px
+from app.theme.current import current_theme, px, scaled
 
 PADDING, MARK, GAP = 14, 20, 12
 VALUE_SIZE, WHOSE_SIZE = 16, 14
@@ -41,10 +41,8 @@ class VersionCell(QAbstractButton):
         self.setAttribute(Qt.WidgetAttribute.WA_Hover)
         policy = QSizePolicy(QSizePolicy.Policy.Expanding, QSizePolicy.Policy.Preferred)
         policy.setHeightForWidth(True)
+        scaled(self.setMinimumWidth, LEAST)
         self.setSizePolicy(policy)
-
-    def hasHeightForWidth(self) -> bool:  # noqa: N802  Qt calls it
-        return True
 
     def heightForWidth(self, width: int) -> int:  # noqa: N802  Qt calls it
         px = current_theme().px
@@ -54,9 +52,6 @@ class VersionCell(QAbstractButton):
     def sizeHint(self) -> QSize:
         width = px(LEAST)
         return QSize(width, self.heightForWidth(width))
-
-    def minimumSizeHint(self) -> QSize:
-        return QSize(px(LEAST), 0)
 
     def keyPressEvent(self, event: QKeyEvent) -> None:
         key = Qt.Key(event.key())

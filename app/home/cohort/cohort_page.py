@@ -10,7 +10,7 @@ from app.cohort.study.measures import in_order, measure_words
 from app.home.cohort.cohort_table import MOST_ROWS, groups_table
 from app.home.cohort.cohort_text import group_name, grouping_word, notes, sentence
 from app.plots.group_plot import GroupLine, GroupPlot
-from app.theme.current import current_theme, scaled
+from app.theme.current import current_theme
 from app.theme.icons import Icon
 from app.widgets.button import Button, ButtonKind
 from app.widgets.card import Card
@@ -211,31 +211,20 @@ class QuestionsPage(QWidget):
             (self._second_half, ((tr("Include"), self.included), ("", self.simulated))),
         ):
             for label, control in named:
-                part = QVBoxLayout()
+                part = lay_out(QVBoxLayout(), Text(label, weight=MEDIUM), (control, 1, Qt.AlignmentFlag.AlignVCenter))
                 part.setSpacing(4)
-                part.addWidget(Text(label, weight=MEDIUM))
-                part.addWidget(control, 1, Qt.AlignmentFlag.AlignVCenter)  # they are not all of one height
                 half.addLayout(part)
-            half.addStretch(1)
+            lay_out(half, 1, spacing=GAP)
         self._halves = QBoxLayout(QBoxLayout.Direction.LeftToRight, self._controls)
-        lay_out(self._halves, self._first_half, self._second_half, margins=0)
+        lay_out(self._halves, self._first_half, self._second_half, margins=0, spacing=GAP)
         self._chart = Card()
         lay_out(self._chart.column, self.plot, self._legend)
         self._figures = Card()
         lay_out(self._figures.column, self.table, self.more)
-        self._answer_column = QVBoxLayout(self.answer)
-        self._answer_column.setContentsMargins(0, 0, 0, 0)
-        answers: tuple[QWidget, ...] = (self.sentence, self.notes, self._chart, self._figures)
-        for widget in answers:
-            self._answer_column.addWidget(widget)
-        self._column = QVBoxLayout(self)
-        self._column.addLayout(head)
-        for widget in (self.refusal, self._empty, self._controls, self.answer):
-            self._column.addWidget(widget)
-        lay_out(self._column, 1, margins=(MARGIN, 16, MARGIN, 20), spacing=12)
-        scaled(self._answer_column.setSpacing, 8)
-        for row in (self._halves, self._first_half, self._second_half):
-            scaled(row.setSpacing, GAP)
+        answers = (self.sentence, self.notes, self._chart, self._figures)
+        lay_out(QVBoxLayout(self.answer), *answers, margins=0, spacing=8)
+        column = lay_out(QVBoxLayout(self), head, self.refusal, self._empty, self._controls, self.answer, 1)
+        lay_out(column, margins=(MARGIN, 16, MARGIN, 20), spacing=12)
 
     def _connect(self) -> None:
         self.make_table.clicked.connect(self.making_requested)

@@ -15,7 +15,7 @@ from app.home.importing.import_words import (
     origin_words,
     sensor_name,
 )
-from app.theme.current import px
+from app.theme.current import scaled
 from app.theme.icons import Icon
 from app.widgets.button import Button, ButtonKind
 from app.widgets.card import Card
@@ -147,15 +147,10 @@ class DraftCards(QWidget):
 
     def _build(self, of_code: QWidget) -> None:
         lay_out(self._of_recordings.column, self._recordings_title, self._recording_rows, 1)
-        column = self._of_sensors.column
-        column.addWidget(self._sensors_title)
-        column.addLayout(self._sensor_rows)
         self._sensor_rows.setColumnStretch(0, 1)
-        column.addWidget(self.trouble)
-        column.addWidget(self._question)
         buttons = lay_out(QHBoxLayout(), self.place, self.is_left, self.is_right, 1)
-        column.addLayout(buttons)
-        column.addStretch(1)
+        of_sensors = (self._sensors_title, self._sensor_rows, self.trouble, self._question, buttons)
+        lay_out(self._of_sensors.column, *of_sensors, 1)
         self._left = lay_out(QVBoxLayout(), self._of_recordings, of_code, 1)
         self._row = lay_out(
             QBoxLayout(QBoxLayout.Direction.LeftToRight, self), (self._left, 1), (self._of_sensors, 1), margins=0
@@ -167,7 +162,7 @@ class DraftCards(QWidget):
     def set_narrow(self, is_narrow: bool) -> None:
         """Put the sensors under the recordings."""
         for layout in (self._row, self._left):
-            layout.setSpacing(px(16))
+            scaled(layout.setSpacing, 16)
         way = QBoxLayout.Direction.TopToBottom if is_narrow else QBoxLayout.Direction.LeftToRight
         self._row.setDirection(way)
 

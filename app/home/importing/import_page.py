@@ -8,7 +8,6 @@ from PySide6.QtCore import Signal
 from PySide6.QtWidgets import QHBoxLayout, QVBoxLayout, QWidget
 
 from app.home.importing.import_draft import DraftCards
-from app.theme.current import scaled
 from app.theme.icons import Icon
 from app.widgets.button import Button, ButtonKind
 from app.widgets.card import Card
@@ -71,8 +70,6 @@ class ImportPage(QWidget):
         )
         self.read_again = Button(tr("Read again"), ButtonKind.SECONDARY, Icon.IMPORT, height=48)
         self._build()
-        scaled(self._column.setContentsMargins, 24, 16, 24, 20)
-        scaled(self._column.setSpacing, 16)
 
     @property
     def tab_order(self) -> list[QWidget]:
@@ -134,15 +131,12 @@ class ImportPage(QWidget):
     def _build(self) -> None:
         buttons = lay_out(QHBoxLayout(), self.choose_files, self.choose_folder, 1)
         lay_out(self._begin.column, buttons, self._formats)
-        of_code: tuple[QWidget, ...] = (self._recordings_title, self._recordings, self.code, self._hint, self.day_field)
-        for part in of_code:
-            self._card.column.addWidget(part)
-        self._unread.column.addWidget(Text(tr("Not read"), size=16, weight=SEMIBOLD))
-        of_unread: tuple[QWidget, ...] = (self._unread_words, self.rate, self.read_again)
-        for part in of_unread:
-            self._unread.column.addWidget(part)
-        cards: tuple[QWidget, ...] = (self._begin, self.draft, self._unread, self.findings)
-        self._column = lay_out(QVBoxLayout(self), self._title, self._folder, *cards, 1)
+        lay_out(self._card.column, self._recordings_title, self._recordings, self.code, self._hint, self.day_field)
+        not_read = Text(tr("Not read"), size=16, weight=SEMIBOLD)
+        lay_out(self._unread.column, not_read, self._unread_words, self.rate, self.read_again)
+        cards = (self._begin, self.draft, self._unread, self.findings)
+        column = lay_out(QVBoxLayout(self), self._title, self._folder, *cards, 1)
+        lay_out(column, margins=(24, 16, 24, 20), spacing=16)
         self.code.edited.connect(self.code_changed)
         self.day_field.edited.connect(self._on_day_edited)
         self.draft.changed.connect(self.changed)

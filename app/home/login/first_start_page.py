@@ -9,11 +9,11 @@ from collections.abc import Callable
 
 from PySide6.QtCore import Qt, Signal
 from PySide6.QtGui import QResizeEvent
-from PySide6.QtWidgets import QBoxLayout, QWidget
+from PySide6.QtWidgets import QBoxLayout, QHBoxLayout, QWidget
 
 from app.home.login.typed_entry import COLUMN, EntryPage
 from app.system.passphrases import REFUSED, strength_in_words, strength_of
-from app.theme.current import current_theme, on_theme, scaled
+from app.theme.current import current_theme, on_theme
 from app.theme.icons import Icon
 from app.widgets.button import Button, ButtonKind
 from app.widgets.card import Card
@@ -91,8 +91,6 @@ class FirstStartPage(EntryPage):
         self._build()
         self._connect()
         self._show()
-        scaled(self._keep_row.setSpacing, 12)
-        scaled(self._other_ways.setSpacing, 4)
         on_theme(self._fit)
 
     @property
@@ -152,7 +150,6 @@ class FirstStartPage(EntryPage):
         """Say that the library is being made."""
         self.make.setEnabled(not is_busy)
         self.make.setText(tr("Creating the library") if is_busy else tr("Create library"))
-        self.make.updateGeometry()
 
     def refuse(self, sentence: str) -> None:
         """Say why no library was made."""
@@ -180,20 +177,16 @@ class FirstStartPage(EntryPage):
         self._first = Card(padding=24, spacing=16)
         lay_out(self._first.column, self.code, self.name, self.passphrase, self._strength, self.again, self.make)
         self._other_ways = QBoxLayout(QBoxLayout.Direction.LeftToRight)
-        for way in (self.join, self.demonstration):
-            self._other_ways.addWidget(way, 0, Qt.AlignmentFlag.AlignLeft)
-        self._other_ways.addStretch(1)
+        left = Qt.AlignmentFlag.AlignLeft
+        lay_out(self._other_ways, (self.join, 0, left), (self.demonstration, 0, left), 1, spacing=4)
         self._second = Card(padding=24, spacing=16)
-        self._keep_row = lay_out(QBoxLayout(QBoxLayout.Direction.LeftToRight), (self.print, 1), (self.save, 1))
-        lay_out(self._second.column, self._key_words, self._keep_row, self.typed, self.go, self.renew, self.later)
+        keep_row = lay_out(QHBoxLayout(), (self.print, 1), (self.save, 1), spacing=12)
+        lay_out(self._second.column, self._key_words, keep_row, self.typed, self.go, self.renew, self.later)
         self._missing_card = Card(padding=24, spacing=16)
         lay_out(self._missing_card.column, self.look_again, self.make_another)
-        for one in (self._missing_title, self.missing_lead, self._missing_card):
-            self.column.addWidget(one)
-        self.column.addWidget(self._title)
-        self.column.addWidget(self._lead)
-        self.column.addWidget(self._first)
-        lay_out(self.column, self._other_ways, self._key_title, self._key_lead, self._asking_lead, self._second)
+        lay_out(self.column, self._missing_title, self.missing_lead, self._missing_card)
+        lay_out(self.column, self._title, self._lead, self._first, self._other_ways)
+        lay_out(self.column, self._key_title, self._key_lead, self._asking_lead, self._second)
 
     def _connect(self) -> None:
         self.look_again.clicked.connect(self.look_requested)

@@ -81,7 +81,6 @@ class JoinPage(EntryPage):
         self.join.setText(tr("Joining") if is_busy else tr("Join"))
         for part in (self.join, *self.server.fields, self.back, self.demonstration):
             part.setEnabled(not is_busy)
-        self.join.updateGeometry()
 
     def focus(self) -> None:
         (self.server.address if self.again.isHidden() else self.again).setFocus()

@@ -11,7 +11,6 @@ from PySide6.QtWidgets import QHBoxLayout, QVBoxLayout, QWidget
 
 from app.home.login.typed_entry import EntryPage
 from app.system.passphrases import REFUSED, strength_in_words, strength_of
-from app.theme.current import scaled
 from app.theme.icons import Icon
 from app.widgets.button import Button, ButtonKind
 from app.widgets.card import Card
@@ -71,8 +70,6 @@ class LogInPage(EntryPage):
         self._connect()
         self.show_library("")
         self._show()
-        scaled(self._who.setSpacing, 6)
-        scaled(self._quiet.setSpacing, 4)
 
     @property
     def tab_order(self) -> list[QWidget]:
@@ -178,20 +175,14 @@ class LogInPage(EntryPage):
     def _build(self) -> None:
         lay_out(QHBoxLayout(self._recording), IconMark(Icon.RECORDING, 24), (self._recording_words, 1), margins=0)
         self._card = Card(padding=24, spacing=16)
-        who = lay_out(QVBoxLayout(), self.operator_label, self.operator)
-        self._who = who
-        self._card.column.addLayout(who)
-        self._card.column.addWidget(self.recovery_key)
-        self._card.column.addWidget(self.passphrase)
-        self._card.column.addWidget(self.new_passphrase)
+        who = lay_out(QVBoxLayout(), self.operator_label, self.operator, spacing=6)
+        lay_out(self._card.column, who, self.recovery_key, self.passphrase, self.new_passphrase)
         lay_out(
             self._card.column, self._strength, self.again, self.remember, self.go, self.work_away, self.use_remembered
         )
-        self._quiet = QVBoxLayout()
-        for button in (self.use_recovery, self.leave, self.demonstration):
-            line = lay_out(QHBoxLayout(), button, 1)
-            self._quiet.addLayout(line)
-        lay_out(self.column, self._title, self.library, self._why_own, self._recording, self._card, self._quiet)
+        lines = (lay_out(QHBoxLayout(), one, 1) for one in (self.use_recovery, self.leave, self.demonstration))
+        quiet = lay_out(QVBoxLayout(), *lines, spacing=4)
+        lay_out(self.column, self._title, self.library, self._why_own, self._recording, self._card, quiet)
 
     def _connect(self) -> None:
         self.go.clicked.connect(self._on_go)
@@ -254,7 +245,6 @@ class LogInPage(EntryPage):
             words = tr("Next try in {seconds} s").format(seconds=math.ceil(self._left_s))
         self.go.setText(words)
         self.go.setAccessibleName(words)
-        self.go.updateGeometry()
         self.go.update()
 
     def _on_go(self) -> None:

@@ -1,12 +1,13 @@
 """What the pages before a library is open have in common: a narrow column of cards in the middle, which scrolls."""
 
 from PySide6.QtCore import Qt
-from PySide6.QtWidgets import QFrame, QHBoxLayout, QScrollArea, QVBoxLayout, QWidget
+from PySide6.QtWidgets import QHBoxLayout, QVBoxLayout, QWidget
 
 from app.theme.current import scaled
 from app.widgets.banner import Banner
 from app.widgets.header import ProductMark
 from app.widgets.lay_out import lay_out
+from app.widgets.page_scroll import PageScroll
 from app.widgets.text import SEMIBOLD, Text
 
 COLUMN = 540  # a whole recovery key fits into a field
@@ -25,9 +26,4 @@ class EntryPage(QWidget):
         self.column = lay_out(QVBoxLayout(inside), self.banner, mark_row, margins=(24, ABOVE, 24, 24), spacing=16)
         middle = QWidget()
         lay_out(QHBoxLayout(middle), 1, (inside, 100, Qt.AlignmentFlag.AlignTop), 1, margins=0)
-        scroll = QScrollArea()
-        scroll.setWidgetResizable(True)
-        scroll.setFrameShape(QFrame.Shape.NoFrame)
-        scroll.setFocusPolicy(Qt.FocusPolicy.NoFocus)
-        scroll.setWidget(middle)
-        lay_out(QVBoxLayout(self), scroll, margins=0)
+        lay_out(QVBoxLayout(self), PageScroll(middle), margins=0)

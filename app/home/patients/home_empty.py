@@ -37,9 +37,7 @@ class EmptyLibrary(Card):
             "Start with a code instead of a name. A first session takes about five minutes. The "
             "demonstration guides you through one, without sensors."
         )
-        for button in self.buttons:
-            self._ways.addWidget(button)
-        self._ways.addStretch(1)
+        lay_out(self._ways, *self.buttons, 1, spacing=GAP)
         self._need_parts = [
             self._need(Icon.WAVE, tr("Six sensors"), tr("thigh, shank, foot; any orientation")),
             self._need(Icon.ARROW, tr("Eight-metre walkway"), tr("ten strides per leg")),
@@ -50,12 +48,8 @@ class EmptyLibrary(Card):
         scaled(self._begin.setMaximumWidth, WIDEST_WORDS)
         begin_row = QHBoxLayout()  # which knows how high the words are at their greatest width
         lay_out(begin_row, (self._begin, 1), 0)
-        self.column.addLayout(begin_row)
-        self.column.addLayout(self._ways)
-        self.column.addStretch(2)
-        self.column.addWidget(Text(tr("What a session needs"), size=16, weight=SEMIBOLD, wraps=True))
-        lay_out(self.column, self._needs, 1, self.steps, 2)
-        scaled(self._ways.setSpacing, GAP)
+        needs = Text(tr("What a session needs"), size=16, weight=SEMIBOLD, wraps=True)
+        lay_out(self.column, begin_row, self._ways, 2, needs, self._needs, 1, self.steps, 2)
         scaled(self._needs.setSpacing, GAP)
         self.set_room(1000)
 
@@ -102,7 +96,7 @@ class StepsPreview(QWidget):
             (tr("Results"), tr("immediately")),
             (tr("Report"), tr("immediately")),
         )
-        self.setSizePolicy(QSizePolicy.Policy.Expanding, QSizePolicy.Policy.Fixed)
+        self.setSizePolicy(QSizePolicy.Policy.MinimumExpanding, QSizePolicy.Policy.Fixed)
         self.setAccessibleName(tr("Steps of a session"))
         self.setAccessibleDescription(", ".join(f"{name} {time}" for name, time in self.steps))
 
@@ -115,9 +109,6 @@ class StepsPreview(QWidget):
     def sizeHint(self) -> QSize:
         px = current_theme().px
         return QSize(self._wide(self._rows), self._rows * px(CIRCLE + 8 + 2 * LINE) + (self._rows - 1) * px(12))
-
-    def minimumSizeHint(self) -> QSize:
-        return self.sizeHint()
 
     def painted_texts(self) -> list[PaintedText]:
         theme, texts = current_theme(), []

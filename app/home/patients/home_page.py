@@ -8,10 +8,8 @@ from PySide6.QtCore import QEvent, QModelIndex, QObject, QRectF, Qt, Signal
 from PySide6.QtGui import QFontMetrics, QKeyEvent, QKeySequence, QPainter, QPaintEvent
 from PySide6.QtWidgets import (
     QApplication,
-    QFrame,
     QHBoxLayout,
     QLineEdit,
-    QScrollArea,
     QSizePolicy,
     QVBoxLayout,
     QWidget,
@@ -25,6 +23,7 @@ from app.theme.current import current_theme, on_theme, scaled
 from app.theme.icons import Icon, paint_icon
 from app.widgets.lay_out import lay_out
 from app.widgets.line_list import PATIENT_ROW, Line, LineList, PatientLine, SessionLine
+from app.widgets.page_scroll import PageScroll
 from app.widgets.segmented import Segmented
 from app.widgets.text import MEDIUM, SEMIBOLD, Text
 from app.wording.translation import tr, tr_n
@@ -276,17 +275,12 @@ class HomePage(QWidget):
             self.session_deleted.emit(line.id)
 
 
-class _PanelRoom(QScrollArea):
+class _PanelRoom(PageScroll):
     """The patient, who is scrolled as one."""
 
     def __init__(self, panel: PatientPanel) -> None:
-        super().__init__()
+        super().__init__(panel, is_upright=True)
         self._panel = panel
-        self.setWidgetResizable(True)
-        self.setFrameShape(QFrame.Shape.NoFrame)
-        self.setFocusPolicy(Qt.FocusPolicy.NoFocus)
-        self.setHorizontalScrollBarPolicy(Qt.ScrollBarPolicy.ScrollBarAlwaysOff)
-        self.setWidget(panel)
 
     def show_row(self, index: QModelIndex, _before: QModelIndex) -> None:
         """Have the visit in force in sight, where somebody moves among them."""

@@ -103,7 +103,6 @@ class StationCard(SettingsCard):
         self._is_copying = is_running
         _say(self.copy_stated, sentence)
         self.copy.setText(tr("Stop") if is_running else tr("Copy to a folder"))
-        self.copy.updateGeometry()
         self.back.setEnabled(not is_running)
 
     def show_back(self, sentence: str, *, is_running: bool = False) -> None:

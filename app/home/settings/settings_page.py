@@ -263,9 +263,7 @@ class SettingsPage(TallPage):
         self.backup_stated = Text(weight=MEDIUM, wraps=True)
         self.back_up = Button(tr("Back up now"))
         self.choose_folder = Button(tr("Choose the folder"), ButtonKind.QUIET, Icon.FOLDER)
-        self.backup_card.fill(Text(hint, tone="ink2", wraps=True))
-        self.backup_card.fill(self.backup_folder)
-        self.backup_card.fill(self.backup_stated)
+        self.backup_card.fill(Text(hint, tone="ink2", wraps=True), self.backup_folder, self.backup_stated)
         self.backup_card.add_left(self.back_up, self.choose_folder)
         self.show_backup("", "")
 
@@ -331,7 +329,6 @@ class SettingsPage(TallPage):
             tr("Backup folder: {folder}.").format(folder=folder) if folder else tr("No backup folder chosen yet.")
         )
         self.back_up.setText(tr("Stop") if is_running else tr("Back up now"))
-        self.back_up.updateGeometry()
         self._is_backing_up = is_running
         self.choose_folder.setEnabled(not is_running)
 
@@ -391,15 +388,13 @@ class _DeletedRow(QWidget):
     def __init__(self, line: DeletedLine) -> None:
         super().__init__()
         self._line = line
-        words = QVBoxLayout()
-        words.addWidget(Text(line.words, size=15, wraps=True))
-        lay_out(words, Text(line.details, size=14, tone="ink2", wraps=True), spacing=0)
-        row = lay_out(QHBoxLayout(self), (words, 1), margins=0)
+        of_line = Text(line.words, size=15, wraps=True), Text(line.details, size=14, tone="ink2", wraps=True)
+        words = lay_out(QVBoxLayout(), *of_line, spacing=0)
         self.button = Button(tr("Restore"), height=44)
         self.button.setAccessibleName(f"{self.button.text()}, {line.words}")
         self.button.setAccessibleDescription(line.details)
         self.button.clicked.connect(self._on_clicked)
-        row.addWidget(self.button)
+        lay_out(QHBoxLayout(self), (words, 1), self.button, margins=0)
 
     def _on_clicked(self) -> None:
         self.restored.emit(self._line.id, self._line.is_patient)
