@@ -109,7 +109,7 @@ class WalkingPage(QWidget):
         controls: list[QWidget] = [*self.patient_controls.controls, *self.bench.tab_order, *self.tabs.segments]
         controls += [self.memory.stop, self.stopped.discard, self.stopped.keep]
         controls += [*self.walks.buttons, self.walks.restrapped]
-        controls += [*self.next.chooser.stops, self.next.chooser.own.line_edit, self.next.test.box]
+        controls += [*self.next.chooser.stops, self.next.chooser.own.line_edit, self.next.test]
         return [one for one in controls if one.isVisibleTo(self)]
 
     def focus(self) -> None:

@@ -118,8 +118,7 @@ class TimedView(QWidget):
         self._distance_card.setVisible(has_distance)
         metres, why = distance_words(state)
         self.distance.show_text(metres, "" if metres == NO_FIGURE else "m")
-        if self.why.text() != why:
-            self.why.setText(why)
+        self.why.setText(why)
         self.why.setVisible(bool(why))
         self.course.show_state(state)
         words = (
@@ -213,9 +212,8 @@ class _ByItself(Card):
         self.column.addLayout(lay_out(QHBoxLayout(), IconMark(icon, size=20), (words, 1)))
 
     def show_words(self, first: str, then: str) -> None:
-        for label, text in ((self._first, first), (self._then, capitalised(then))):
-            if label.text() != text:
-                label.setText(text)
+        self._first.setText(first)
+        self._then.setText(capitalised(then))
 
 
 class _Course(Painted):
