@@ -313,7 +313,6 @@ class _History(QWidget):
     def _paint_words(self, painter: QPainter, picture: ScrollingPicture, ratio: float) -> None:
         """Say in each box who is missing, as far as the words have room; while it lasts they take it."""
         theme = current_theme()
-        px = theme.px
         painter.setFont(theme.font(12, MEDIUM))
         metrics = painter.fontMetrics()
         taken: list[tuple[float, float]] = []

@@ -17,7 +17,7 @@ from PySide6.QtWidgets import (
 )
 
 from app.patient_screen.controls import ControlsCard
-from app.theme.current import current_theme, on_theme, scaled
+from app.theme.current import on_theme, px, scaled
 from app.theme.icons import Icon
 from app.widgets.focus_ring import NO_RING
 from app.widgets.lay_out import lay_out
@@ -318,7 +318,6 @@ class WalkingPage(QWidget):
             layout.insertWidget(index, widget)
 
     def _fit(self) -> None:
-        px = current_theme().px
         is_wide = self.width() >= px(WIDE_FROM) and not self._is_compact
         self.charts.set_seconds(SECONDS_WIDE if is_wide else SECONDS)
         # between walks what comes next needs the room more
