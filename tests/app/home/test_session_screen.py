@@ -17,13 +17,8 @@ from app.home import session_screen
 from app.home.session_screen import ENDED_EARLY, STOPPED, SessionScreen
 from app.plots.angle_chart import AngleChart
 from app.results.found_page import FoundPage
-from app.results.result_page import (
-    ANSWER,
-    COMPARE,
-    STRIDES,
-    WHOLE,
-    ResultPage,
-)
+from app.results.result_page import ResultPage
+from app.results.tools_row import ANSWER, COMPARE, STRIDES, WHOLE
 from app.results.whole_page import BOTH, ORIENTATION, PUBLISHED, RESULT
 from app.system.progress import Report
 from app.theme.colours import DARK, LIGHT
