@@ -34,8 +34,8 @@ from app.widgets.action_bar import ActionBar, BarAction, BarState
 from app.widgets.banner import Banner
 from app.widgets.grid import COMPACT_BELOW
 from app.widgets.lay_out import lay_out
-from app.widgets.page_scroll import PageScroll
 from app.widgets.rail_row import RailForm, RailRow, StepState
+from app.widgets.reading_area import scrolled
 from app.widgets.start_pages import WorkingPage
 from app.widgets.step_rail import StepRail, home_below
 from app.widgets.toast import Toast
@@ -245,7 +245,7 @@ class Home(QWidget):
         lay_out(QHBoxLayout(self), self.rail, (column, 1), margins=0, spacing=0)
 
     def _add_page(self, page: QWidget) -> None:
-        self._pages.addWidget(PageScroll(page))
+        self._pages.addWidget(scrolled(page, is_upright=False))
 
     def _connect(self) -> None:
         page = self.page

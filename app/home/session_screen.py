@@ -26,8 +26,8 @@ from app.widgets.button import Button, ButtonKind
 from app.widgets.folder_dialog import ask_for_folder
 from app.widgets.header import Header
 from app.widgets.lay_out import lay_out
-from app.widgets.page_scroll import PageScroll
 from app.widgets.page_stack import PageStack
+from app.widgets.reading_area import scrolled
 from app.widgets.start_pages import EmptyPage, WorkingPage
 from app.widgets.text import Text
 from app.wording.body import side_name
@@ -155,7 +155,7 @@ class SessionScreen(QWidget):
         for page in (self.empty, self.working):
             self.pages.addWidget(page)
         banner_row = lay_out(QVBoxLayout(), self.banner, margins=(24, 0, 24, 0))
-        pages = PageScroll(self.pages)
+        pages = scrolled(self.pages, is_upright=False)
         lay_out(QVBoxLayout(self), self.header, banner_row, (pages, 1), self.bar, margins=0, spacing=0)
 
     def _connect(self) -> None:

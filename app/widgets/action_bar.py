@@ -14,7 +14,6 @@ from PySide6.QtGui import (
     QFontMetrics,
     QMouseEvent,
     QPainter,
-    QPaintEvent,
     QResizeEvent,
 )
 from PySide6.QtWidgets import QSizePolicy, QWidget
@@ -24,6 +23,7 @@ from app.theme.ground import Ground, set_ground
 from app.theme.icons import Icon, paint_icon
 from app.widgets.button import HEIGHT, Button, ButtonKind
 from app.widgets.grid import LEAST, NARROW_BELOW, side_margin
+from app.widgets.painted import Painted
 from app.widgets.painted_text import PaintedText
 from app.widgets.text import SEMIBOLD, Text
 from app.wording.numbers import clock
@@ -352,7 +352,7 @@ class VerbButton(Button):
         return size
 
 
-class _Clock(QWidget):
+class _Clock(Painted):
     """The dot of a recording and its time. The dot does not blink."""
 
     def __init__(self, parent: QWidget) -> None:
@@ -377,14 +377,11 @@ class _Clock(QWidget):
         widest = QFontMetrics(theme.font(40, SEMIBOLD)).horizontalAdvance("000:00")
         return QSize(self._text_left() + widest, theme.px(HEIGHT))
 
-    def paintEvent(self, _event: QPaintEvent) -> None:
+    def draw(self, painter: QPainter) -> None:
         theme = current_theme()
-        painter = QPainter(self)
         side = theme.px(DOT * 24 / 14)  # the icon's dot is 14 of its 24
         dot = QRectF(theme.px(12) - side / 2, (self.height() - side) / 2, side, side)
         paint_icon(painter, Icon.RECORDING, dot, theme.colours.inv_ink)
-        for text in self.painted_texts():
-            text.paint(painter, theme.colours)
 
     def _text_left(self) -> int:
         return px(36)

@@ -17,8 +17,8 @@ from app.theme.icons import Icon
 from app.widgets.header import ProductMark
 from app.widgets.heard_order import hear_as_laid_out
 from app.widgets.lay_out import lay_out
-from app.widgets.page_scroll import PageScroll
 from app.widgets.rail_row import BelowRow, RailButton, RailForm, RailRow
+from app.widgets.reading_area import scrolled
 from app.widgets.text import REGULAR, SEMIBOLD, Text
 from app.wording.translation import tr
 
@@ -110,7 +110,7 @@ class StepRail(QWidget):
             layout.setSpacing(0)
         self._note_row = lay_out(QVBoxLayout(), self._note)
         lay_out(self._column, self._head, self._steps, 1, self._note_row, self._foot, spacing=0)
-        self._scroll = PageScroll(self._inside, is_upright=True)
+        self._scroll = scrolled(self._inside)
         self._scroll.setVerticalScrollBarPolicy(Qt.ScrollBarPolicy.ScrollBarAlwaysOff)  # wheel and arrows scroll
         lay_out(QVBoxLayout(self), self._scroll, margins=0)
 

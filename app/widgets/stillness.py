@@ -12,6 +12,7 @@ from app.theme.current import current_theme, px, scaled, smooth_painter
 from app.theme.icons import Icon, paint_icon
 from app.theme.leg_chip import CHIP, paint_chip
 from app.theme.theme import CHIP_RADIUS
+from app.widgets.painted import Painted
 from app.widgets.text import MEDIUM, REGULAR, SEMIBOLD
 from app.wording.body import segment_name
 from app.wording.translation import figure_text, tr
@@ -39,7 +40,7 @@ class RingFace:
     is_dotted: bool = False
 
 
-class CountRing(QWidget):
+class CountRing(Painted):
     """As large as its place; the figure is read from six metres."""
 
     accessible_role = QAccessible.Role.Graphic
@@ -57,12 +58,11 @@ class CountRing(QWidget):
         self.setAccessibleName(" ".join(filter(None, [face.figure, face.word, face.key])))
         self.update()
 
-    def paintEvent(self, _event: QPaintEvent) -> None:
+    def draw(self, painter: QPainter) -> None:
         theme, face = current_theme(), self._face
         c = theme.colours
         side = min(self.width(), self.height(), theme.px(1.3 * RING_SIZE))
         grow = side / RING_SIZE  # of what lies inside
-        painter = smooth_painter(self)
         box = QRectF((self.width() - side) / 2, (self.height() - side) / 2, side, side)
         width = RING * grow
         arc = box.adjusted(width / 2, width / 2, -width / 2, -width / 2)

@@ -1,15 +1,16 @@
 """One sensor's tile: whose it is, how it is, and whether it moves."""
 
 from PySide6.QtCore import QRectF, Qt, Signal
-from PySide6.QtGui import QAccessible, QColor, QFont, QFontMetrics, QKeyEvent, QPainter, QPaintEvent
+from PySide6.QtGui import QAccessible, QColor, QFont, QFontMetrics, QKeyEvent, QPainter
 from PySide6.QtWidgets import QWidget
 
-from app.theme.current import current_theme, px, smooth_painter
+from app.theme.current import current_theme, px
 from app.theme.icons import Icon, paint_icon
 from app.theme.leg_chip import CHIP, paint_chip
 from app.theme.theme import CONTROL_RADIUS
 from app.widgets.battery import WIDTH as BATTERY_WIDTH
 from app.widgets.battery import paint_battery
+from app.widgets.painted import Painted
 from app.widgets.painted_text import PaintedText, height_for
 from app.widgets.sensor_tile import SensorTile, TileState, rate_and_loss
 from app.widgets.text import MEDIUM, SEMIBOLD
@@ -21,7 +22,7 @@ PADDING = 10
 MARKS = BATTERY_WIDTH + 4 + 18  # battery and movement
 
 
-class TileWidget(QWidget):
+class TileWidget(Painted):
     """One tile. It paints itself again only when what it shows has changed."""
 
     accessible_role = QAccessible.Role.ListItem
@@ -97,16 +98,13 @@ class TileWidget(QWidget):
             PaintedText(stated, words, font, tone, wraps=True),
         ]
 
-    def paintEvent(self, _event: QPaintEvent) -> None:
+    def draw(self, painter: QPainter) -> None:
         theme = current_theme()
         c = theme.colours
-        painter = smooth_painter(self)
         self._paint_frame(painter)
         if (side := self._tile.site.side) is not None:
             paint_chip(painter, self._chip(), side, theme)
         self._paint_marks(painter, QColor(c.caution_ink if self._tile.is_bad else c.ink2))
-        for text in self.painted_texts():
-            text.paint(painter, c)
 
     def keyPressEvent(self, event: QKeyEvent) -> None:
         steps = {Qt.Key.Key_Left: -1, Qt.Key.Key_Right: 1, Qt.Key.Key_Home: -9, Qt.Key.Key_End: 9}

@@ -1,16 +1,17 @@
 """What is shown in place of patients while there are none: how to begin, what a session needs and how it goes."""
 
 from PySide6.QtCore import QPointF, QRectF, QSize, Qt
-from PySide6.QtGui import QFontMetrics, QPaintEvent
+from PySide6.QtGui import QFontMetrics, QPainter
 from PySide6.QtWidgets import QBoxLayout, QGridLayout, QHBoxLayout, QSizePolicy, QVBoxLayout, QWidget
 
-from app.theme.current import current_theme, px, scaled, smooth_painter
+from app.theme.current import current_theme, px, scaled
 from app.theme.icons import Icon
 from app.widgets.button import Button, ButtonKind
 from app.widgets.card import Card
 from app.widgets.heard_order import hear_as_laid_out
 from app.widgets.icons import IconMark
 from app.widgets.lay_out import lay_out
+from app.widgets.painted import Painted
 from app.widgets.painted_text import CENTRE, PaintedText
 from app.widgets.text import SEMIBOLD, Text
 from app.wording.translation import tr
@@ -80,7 +81,7 @@ class EmptyLibrary(Card):
         return part
 
 
-class StepsPreview(QWidget):
+class StepsPreview(Painted):
     """The seven steps of a session on a line, and how long each takes."""
 
     def __init__(self) -> None:
@@ -122,9 +123,8 @@ class StepsPreview(QWidget):
             ]
         return texts
 
-    def paintEvent(self, _event: QPaintEvent) -> None:
+    def draw(self, painter: QPainter) -> None:
         theme, half = current_theme(), px(CIRCLE) / 2
-        painter = smooth_painter(self)
         painter.setPen(theme.pen(theme.colours.control, 1.25))
         for number in range(len(self.steps)):
             centre = self._place(number) + QPointF(half, half)
@@ -132,8 +132,6 @@ class StepsPreview(QWidget):
             if number + 1 < len(self.steps) and (number + 1) % self._in_row:
                 following = self._place(number + 1) + QPointF(0, half)
                 painter.drawLine(centre + QPointF(half, 0), following)
-        for text in self.painted_texts():
-            text.paint(painter, theme.colours)
 
     def _wide(self, rows: int) -> int:
         """How wide so many rows are."""
