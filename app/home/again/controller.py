@@ -100,18 +100,9 @@ class AnalysingAgain(LongWork):
         self._out, self.is_of_library = out, ids is None
 
         def work(opened: "OpenedLibrary", report: Report) -> "BatchResult":
-            from app.cohort.batch.analysed_folder import AnalysisChoices
-            from app.cohort.batch.done import batch_at
-            from app.cohort.batch.library_sessions import LibrarySessions
-            from app.cohort.batch.run import Batch
-            from core.published.angles import DEFAULT_TAU_S
-            from core.results import Method
+            from app.cohort.batch.of_library import analysed_into  # Arrow, and what a table is written with
 
-            sessions, choices = LibrarySessions(opened, ids), AnalysisChoices(Method.ROBUST, DEFAULT_TAU_S)
-            with batch_at(out) as folder, of_this_computer(processors()) as workers:
-                batch = Batch(sessions, folder, choices)
-                batch.run(workers, report)
-            return batch.result
+            return analysed_into(out, opened, ids, report)
 
         self._begin(tr("Analysing to a folder"))
         self._controller.run_long(work, self._on_written, self._on_refused, self._on_progressed, self)

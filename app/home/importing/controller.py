@@ -11,6 +11,7 @@ from PySide6.QtCore import QObject, Signal
 from app.home.importing.import_page import ImportPage
 from app.home.importing.import_words import program_name
 from app.home.long_work import LongWork
+from app.importing.import_drafts import SessionDraft, chains_of_motion, drafts_of, session_of
 from app.importing.untrusted_files import gather_foreign, read_foreign_session, read_foreign_trial
 from app.storage.exchange import import_session
 from app.system.progress import Report
@@ -23,7 +24,6 @@ from devices.files.refusal import FileRefusedError
 from devices.files.trial import PROGRAMS, SESSION
 
 if TYPE_CHECKING:
-    from app.importing.import_drafts import SessionDraft
     from app.storage.exchange import Imported
     from app.storage.opened import OpenedLibrary
     from core.placement.chains import Chains
@@ -39,7 +39,7 @@ class _Found:
 
     where: str
     session: "Session | None"
-    draft: "SessionDraft | None" = None
+    draft: SessionDraft | None = None
 
 
 @dataclass(frozen=True, slots=True)
@@ -124,8 +124,6 @@ class Importing(LongWork):
         def work(opened: "OpenedLibrary", report: Report) -> "Imported":
             session = shown.session
             if shown.draft is not None:
-                from app.importing.import_drafts import session_of
-
                 session = session_of(shown.draft, kinds, sites, day)
             assert session is not None  # it is one or the other
             return import_session(opened, session, report, code)
@@ -217,8 +215,6 @@ class Importing(LongWork):
         draft, worn = self._shown.draft if self._shown is not None else None, self.page.draft.worn
 
         def work(_opened: "OpenedLibrary") -> "Chains | None":
-            from app.importing.import_drafts import chains_of_motion
-
             return chains_of_motion(draft, worn) if draft is not None else None
 
         self._controller.run(work, self._on_placed, self._on_placing_refused, self)
@@ -273,8 +269,6 @@ class Importing(LongWork):
 
 def _read(paths: Sequence[Path], rate_hz: float | None, report: Report) -> _Read:
     """All that can be read of these files and folders, put together to sessions."""
-    from app.importing.import_drafts import drafts_of
-
     report(0.0, paths[0].name)
     gathered = gather_foreign(paths, lambda: report(0.0, paths[0].name))
     refused, again = list(gathered.refused), []

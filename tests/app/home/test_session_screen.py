@@ -20,13 +20,13 @@ from app.results.found_page import FoundPage
 from app.results.result_page import ResultPage
 from app.results.tools_row import ANSWER, COMPARE, STRIDES, WHOLE
 from app.results.whole_page import BOTH, ORIENTATION, PUBLISHED, RESULT
+from app.summary.request import AnalysedVisit
 from app.system.progress import Report
 from app.theme.colours import DARK, LIGHT
 from app.theme.current import current_theme, set_dark, set_scale
 from app.widgets.findings_list import FindingRow
 from app.widgets.table_cells import TextCell
 from app.workers.background import Stopped, Work
-from app.workers.opening import Opened
 from core.analysis import analyse
 from core.body import LEG_JOINTS, Joint, Side
 from core.findings import Finding, Severity
@@ -101,9 +101,9 @@ def analysis(is_simulated: bool = False, has_orientation: bool = True) -> Analys
     return Analysis(Method.ROBUST, is_simulated, (calibrated,), recordings, SOME_FINDINGS)
 
 
-def opened(is_simulated: bool = False, has_orientation: bool = True) -> Opened:
+def opened(is_simulated: bool = False, has_orientation: bool = True) -> AnalysedVisit:
     patient = Patient(code="P-0147", birth_year=1968, sex="male", prosthetic_side="left")
-    return Opened(Session((), patient, is_simulated=is_simulated), analysis(is_simulated, has_orientation))
+    return AnalysedVisit(Session((), patient, is_simulated=is_simulated), analysis(is_simulated, has_orientation))
 
 
 @pytest.fixture
@@ -420,11 +420,11 @@ def sticks_out(widget: QWidget, window: SessionScreen) -> bool:
 
 
 @pytest.fixture(scope="module")
-def walked() -> Opened:
+def walked() -> AnalysedVisit:
     """A simulated session whose walk is long enough for a spread."""
     settings = replace(DEMONSTRATION, recordings=(Standing(), FreeMotion(), Walk(strides=13, speed_m_s=0.9)))
     session = simulate(settings).session
-    return Opened(session, analyse(session))
+    return AnalysedVisit(session, analyse(session))
 
 
 @pytest.mark.parametrize(
@@ -445,7 +445,7 @@ def test_every_word_fits(
     qtbot: QtBot,
     window: SessionScreen,
     open_work: OpenWork,
-    walked: Opened,
+    walked: AnalysedVisit,
     qapp: QApplication,
     size: tuple[int, int],
     scale: float,
