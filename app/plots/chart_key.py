@@ -59,7 +59,6 @@ class ChartKey(Painted):
         self.update()
 
     def sizeHint(self) -> QSize:
-        px = current_theme().px
         return QSize(self._width_of_legs() + self._width_of_thin(self.words.thin) + px(GAP), px(HEIGHT))
 
     def minimumSizeHint(self) -> QSize:
@@ -127,7 +126,6 @@ class ChartKey(Painted):
         return thin, next(fitting, "")
 
     def _width_of_legs(self) -> int:
-        px = current_theme().px
         each = (
             px(CHIP) + px(LINE_APART) + px(LINE) + (px(LINE_APART) + px(ICON)) * (verdict is not Verdict.READ)
             for verdict in self.words.legs.values()
@@ -135,11 +133,9 @@ class ChartKey(Painted):
         return sum(each) + px(GAP) * max(len(self.words.legs) - 1, 0)
 
     def _width_of_thin(self, text: str) -> int:
-        px = current_theme().px
         return px(GAP) + px(LINE) + px(LINE_APART) + self._width(text) if text else 0
 
     def _width_of_reference(self, text: str) -> int:
-        px = current_theme().px
         return px(GAP) + (px(SWATCH[0]) + px(LINE_APART)) * self.words.has_band + self._width(text)
 
     def _width(self, text: str) -> int:

@@ -68,7 +68,6 @@ class CostMap(Painted):
         self.setFixedHeight(self._height_for(event.size().width()))
 
     def _height_for(self, width: int) -> int:
-        px = current_theme().px
         return min(width // 2, px(MOST_HEIGHT)) + px(SCALE_HEIGHT + 4)
 
     def globe(self) -> QRectF:
@@ -141,7 +140,6 @@ class CostMap(Painted):
         return QPolygonF([self.place(point) for point in points])
 
     def _paint_scale(self, painter: QPainter) -> None:
-        px = current_theme().px
         width = px(RAMP) / BANDS
         top = self.height() - px(SCALE_HEIGHT) + px(SCALE_HEIGHT - 10) / 2
         left = (self.width() - px(RAMP)) / 2

@@ -9,7 +9,7 @@ from PySide6.QtGui import QAccessible, QColor, QFont, QFontMetrics, QPainter
 from PySide6.QtWidgets import QSizePolicy
 
 from app.charts.on_screen import DOT, paint_letter
-from app.theme.current import current_theme
+from app.theme.current import current_theme, px
 from app.theme.icons import Icon, paint_icon
 from app.theme.leg_chip import CHIP, paint_chip
 from app.widgets.painted import Painted
@@ -106,7 +106,7 @@ class DifferencePlot(Painted):
 
     def draw(self, painter: QPainter) -> None:
         theme = current_theme()
-        c, px = theme.colours, theme.px
+        c = theme.colours
         for group, top in zip(self.groups, self._tops(), strict=True):
             painter.setPen(theme.pen(c.line, 1))
             painter.drawLine(QPointF(0, top), QPointF(self.width(), top))
@@ -117,7 +117,7 @@ class DifferencePlot(Painted):
 
     def _paint_row(self, painter: QPainter, row: DifferenceRow, middle: float) -> None:
         theme = current_theme()
-        c, px = theme.colours, theme.px
+        c = theme.colours
         if row.side is not None:
             chip = px(CHIP)
             paint_chip(painter, QRectF(0, middle - chip / 2, chip, chip), row.side, theme)
@@ -162,7 +162,6 @@ class DifferencePlot(Painted):
         return [k * step for k in range(-count, count + 1)] if self.groups else []
 
     def _plot(self) -> tuple[float, float]:
-        px = current_theme().px
         return self._words_right() + px(DOT), self.width() - px(DOT + MARK + 2)
 
     def _words_right(self) -> int:
@@ -181,7 +180,6 @@ class DifferencePlot(Painted):
         return current_theme().font(14, SEMIBOLD if row.exceeds else QFont.Weight.Normal)
 
     def _apply_theme(self) -> None:
-        px = current_theme().px
         title = max((QFontMetrics(self._title_font()).horizontalAdvance(g.title) for g in self.groups), default=0)
         self.setFixedHeight(sum(px(TITLE) + len(g.rows) * px(ROW) + px(GAP) for g in self.groups) + px(AXIS))
         self.setMinimumWidth(max(title, self._words_right() + px(LEAST_PLOT + 2 * DOT + MARK)))

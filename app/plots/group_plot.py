@@ -107,7 +107,7 @@ class GroupPlot(Painted):
         if not self.lines:
             return
         theme = current_theme()
-        c, px = theme.colours, theme.px
+        c = theme.colours
         bottom = len(self.lines) * px(ROW)
         left, right = self._plot()
         painter.setPen(theme.pen(c.line, 1))

@@ -63,7 +63,6 @@ class DatedPlot(Painted):
     @property
     def plot(self) -> QRectF:
         """Where values lie."""
-        px = current_theme().px
         return QRectF(0, px(OVER), self.width(), self.height() - px(OVER) - px(UNDER))
 
     def point_at(self, number: int | None) -> None:

@@ -13,7 +13,7 @@ from PySide6.QtGui import QAccessible, QColor, QMouseEvent, QPainter, QWheelEven
 from PySide6.QtWidgets import QGridLayout, QHBoxLayout, QSizePolicy
 
 from app.charts.axes import AXIS_WIDTH, RIGHT_MARGIN
-from app.theme.current import current_theme, on_theme, scaled
+from app.theme.current import current_theme, on_theme, px, scaled
 from app.theme.leg_chip import CHIP, paint_chip
 from app.theme.theme import Theme
 from app.widgets.card import Card
@@ -217,13 +217,11 @@ class PhaseLanes(Painted):
 
     def area(self, side: Side) -> QRectF:
         """The lane of a leg in px of the widget."""
-        px = current_theme().px
         top = list(self.lanes).index(side) * (px(LANE) + px(BETWEEN))
         return QRectF(px(AXIS_WIDTH), top, self.width() - px(AXIS_WIDTH) - px(RIGHT_MARGIN), px(LANE))
 
     def x_of(self, time_s: FloatArray) -> FloatArray:
         first, last = self._visible_s
-        px = current_theme().px
         width = self.width() - px(AXIS_WIDTH) - px(RIGHT_MARGIN)
         return px(AXIS_WIDTH) + width * (time_s - first) / (last - first)
 

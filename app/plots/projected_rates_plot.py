@@ -10,7 +10,7 @@ from PySide6.QtGui import QAccessible, QColor, QFont, QPainter, QPen, QPolygonF,
 from PySide6.QtWidgets import QSizePolicy
 
 from app.summary.diagnostics import parts_deg_s
-from app.theme.current import current_theme
+from app.theme.current import current_theme, px
 from app.widgets.painted import Painted
 from app.widgets.painted_text import CENTRE, PaintedText
 from app.widgets.text import MEDIUM
@@ -72,7 +72,6 @@ class ProjectedRatesPlot(Painted):
         self.setFixedHeight(self._height_for(event.size().width()))
 
     def _height_for(self, width: int) -> int:
-        px = current_theme().px
         return min((width - px(BETWEEN)) // 2, px(MOST_PANEL)) + px(TITLE + SCALE)
 
     def painted_texts(self) -> list[PaintedText]:
@@ -117,7 +116,6 @@ class ProjectedRatesPlot(Painted):
         return pg.functions.arrayToQPolygonF(panel.center().x() + scale * x, panel.center().y() - scale * y)
 
     def _panels(self) -> tuple[QRectF, QRectF]:
-        px = current_theme().px
         side = min((self.width() - px(BETWEEN)) / 2, self.height() - px(TITLE + SCALE)) - 1
         return QRectF(0.5, px(TITLE), side, side), QRectF(side + px(BETWEEN) + 0.5, px(TITLE), side, side)
 

@@ -153,7 +153,6 @@ class _Picture(Painted):
         self.setSizePolicy(QSizePolicy.Policy.Expanding, QSizePolicy.Policy.Expanding)
 
     def minimumSizeHint(self) -> QSize:
-        px = current_theme().px
         words = QFontMetrics(current_theme().font(SMALL)).horizontalAdvance(tr("not reported"))
         return QSize(max(px(LEAST_PICTURE[0]), px(CHIP + CHIP_GAP) + words + 1), px(LEAST_PICTURE[1]))
 
@@ -195,7 +194,7 @@ class _Picture(Painted):
         return found
 
     def _paint_legs(self, painter: QPainter, legs: MeanLegs, room: QRectF) -> None:
-        theme, px = current_theme(), current_theme().px
+        theme = current_theme()
         poses = {side: legs.pose_m(side, self.percent) for side in legs.points_m}
         points = np.concatenate([points_m.reshape(-1, 2) for points_m in legs.points_m.values()])
         above = 0.0 if legs.tilt_rad is None else PELVIS_M + PELVIS_HALF_M

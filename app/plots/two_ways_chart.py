@@ -11,7 +11,7 @@ from PySide6.QtWidgets import QSizePolicy
 from app.charts.axes import AXIS_WIDTH, KNEE_DEG, RIGHT_MARGIN, USUAL_DEG, angle_in_words, range_for
 from app.plots.angle_chart import DENSE_FROM, runs
 from app.plots.thinning import thin
-from app.theme.current import current_theme, scaled
+from app.theme.current import current_theme, px, scaled
 from app.widgets.painted_text import CENTRE, RIGHT, PaintedText
 from app.widgets.themed import Themed
 from app.wording.translation import figure_text, tr
@@ -79,7 +79,6 @@ class TwoWaysChart(Themed):
         return float(np.mean((seen < self.range_deg[0]) | (seen > self.range_deg[1]))) if len(seen) else 0.0
 
     def plot_area(self) -> QRectF:
-        px = current_theme().px
         left = px(AXIS_WIDTH)
         return QRectF(left, px(TOP), self.width() - left - px(RIGHT_MARGIN), self.height() - px(TOP + BELOW))
 

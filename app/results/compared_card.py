@@ -8,7 +8,7 @@ from app.plots.difference_plot import DifferencePlot
 from app.results.compared_plot import comparison_groups, side_groups
 from app.results.compared_table import comparison_table, has_brief_table, side_table
 from app.summary.comparison import Comparison, Contrast, SideRow
-from app.theme.current import current_theme
+from app.theme.current import px
 from app.widgets.card import Card
 from app.widgets.lay_out import lay_out
 from app.widgets.reading_area import scrolled
@@ -77,7 +77,6 @@ class ComparedCard(Card):
 
     def fit(self, *, is_alone: bool) -> None:
         """Leave the curves beside it the larger part."""
-        px = current_theme().px
         least = LEAST_IF_SPACIOUS if self._is_spacious else LEAST
         shown = [widget for widget in (self.plot, self.table) if not widget.isHidden()]
         needed = max([px(least), *(widget.minimumWidth() + px(2 * PADDING + SCROLL_BAR) for widget in shown)])

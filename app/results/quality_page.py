@@ -9,7 +9,7 @@ from PySide6.QtGui import QColor, QPainter, QPaintEvent
 from PySide6.QtWidgets import QGridLayout, QHBoxLayout, QSizePolicy, QVBoxLayout, QWidget
 
 from app.summary.data_quality import DataQuality, QualityLine
-from app.theme.current import current_theme, on_theme, scaled
+from app.theme.current import current_theme, on_theme, px, scaled
 from app.theme.ground import Ground, set_ground
 from app.theme.icons import VERDICT_ICONS, Icon, paint_icon
 from app.widgets.body_figure import SENSOR, BodyFigure, SensorMark
@@ -124,7 +124,6 @@ class QualityPage(QWidget):
 
     def set_room(self, width: int, *, is_compact: bool, is_narrow: bool) -> None:
         """Leave the figure out where it has no room, and let the doors stand below each other in `width` px."""
-        px = current_theme().px
         self._figure_card.setVisible(not is_compact)
         beside = 0 if is_compact else px(FIGURE_WIDTH) + self._columns.spacing()
         doors = (self.engineering, self.how_found, self.agreement)
@@ -244,7 +243,7 @@ class JointsFigure(BodyFigure):
     def paintEvent(self, event: QPaintEvent) -> None:
         super().paintEvent(event)
         theme = current_theme()
-        c, px = theme.colours, theme.px
+        c = theme.colours
         painter = QPainter(self)
         if self._has_pelvis:
             box = QRectF(0, 0, px(SENSOR[0]), px(SENSOR[1]))

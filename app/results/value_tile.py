@@ -8,7 +8,7 @@ from PySide6.QtGui import QAccessible, QColor, QFontMetrics, QPainter, QPolygonF
 from PySide6.QtWidgets import QHBoxLayout, QSizePolicy, QWidget
 
 from app.summary.tiles import Tile, TileValue
-from app.theme.current import current_theme, scaled
+from app.theme.current import current_theme, px, scaled
 from app.theme.ground import Ground, set_ground
 from app.theme.leg_chip import paint_chip
 from app.theme.theme import CARD_RADIUS
@@ -96,7 +96,7 @@ class ValueTile(Painted):
             self._paint_bar(painter, tile, bar)
 
     def _name(self, tile: Tile) -> PaintedText:
-        theme, px = current_theme(), current_theme().px
+        theme = current_theme()
         font = theme.font(NAME - self._is_brief, MEDIUM)
         box = QRectF(px(SIDE), px(7 if self._is_brief else 9), self.width() - 2 * px(SIDE), px(20))
         metrics = QFontMetrics(font)
@@ -106,7 +106,7 @@ class ValueTile(Painted):
 
     def value_texts(self, tile: Tile) -> list[tuple[PaintedText, Side | None]]:
         """Each value, with the side whose chip follows it; the unit is text of its own."""
-        theme, px = current_theme(), current_theme().px
+        theme = current_theme()
         top, height, left = px(26 if self._is_brief else 31), px(34), float(px(SIDE))
         is_two = len(tile.values) > 1
         size = VALUE - (4 if self._is_brief else 0) - (4 if is_two else 0)
@@ -153,7 +153,7 @@ class ValueTile(Painted):
         """Up or down before the change; filled beyond error, outlined within it."""
         if tile.change.rises is None or not (texts := self.change_texts(tile)):
             return
-        theme, px = current_theme(), current_theme().px
+        theme = current_theme()
         width, height = px(ARROW[0]), px(ARROW[1])
         left = texts[0].box.left() - width - px(5)
         middle = texts[0].box.center().y()
@@ -167,7 +167,6 @@ class ValueTile(Painted):
 
     def bar_of(self, tile: Tile) -> QRectF | None:
         """Where the scale is; None where there is no room, or nothing to show on it."""
-        px = current_theme().px
         if self._is_brief or not any(math.isfinite(one.value) for one in tile.values):
             return None
         ends = [
@@ -194,7 +193,7 @@ class ValueTile(Painted):
         return [PaintedText(tile.goal, QRectF(left, px(27), width, px(16)), font, "ink2")]
 
     def _paint_bar(self, painter: QPainter, tile: Tile, bar: QRectF) -> None:
-        theme, px = current_theme(), current_theme().px
+        theme = current_theme()
         c, middle = theme.colours, bar.center().y()
         theme.paint_box(painter, bar, c.track, radius=2)
         if tile.zone is not None:

@@ -51,7 +51,7 @@ BUSY_S = 1.5  # from one end of a bar to the other, where it is not known how lo
 
 
 class ButtonKind(Enum):
-    """What a button is for: what we wish, another way, one beside the matter; on or off; one of a few; any of a few."""
+    """What a button is for: a wish, another way, one beside the matter; on or off; one of a few, any, one label."""
 
     PRIMARY = auto()
     SECONDARY = auto()
@@ -59,6 +59,7 @@ class ButtonKind(Enum):
     TOGGLE = auto()
     SEGMENT = auto()
     CHIP = auto()
+    LABEL = auto()
 
 
 @dataclass(frozen=True, slots=True)
@@ -86,6 +87,7 @@ _MEASURES = {
     ButtonKind.QUIET: _Measures(padding=10, text=16, icon=22, gap=8),
     ButtonKind.SEGMENT: _Measures(padding=14, text=14, icon=0, gap=0),
     ButtonKind.CHIP: _Measures(padding=12, text=14, icon=16, gap=4),
+    ButtonKind.LABEL: _Measures(padding=14, text=14, icon=0, gap=8),
 }
 
 
@@ -238,7 +240,7 @@ class ControlStyle(QProxyStyle):
             paint_icon(painter, picture, QRectF(x, (rect.height() - icon) / 2, icon, icon), ink)
             x += icon + gap
         if option.text:
-            is_chip = face.kind is ButtonKind.CHIP
+            is_chip = face.kind in (ButtonKind.CHIP, ButtonKind.LABEL)
             is_light = is_chip and not option.state & State.State_On
             painter.setPen(ink)
             painter.setFont(theme.font(measures.text, MEDIUM if is_light else SEMIBOLD))

@@ -219,7 +219,7 @@ class _AlignmentRow(Painted):
         self._apply_theme()
 
     def painted_texts(self) -> list[PaintedText]:
-        theme, px = current_theme(), current_theme().px
+        theme = current_theme()
         left, width = px(PADDING + BADGE + GAP), self.width()
         role = {RowRole.SHOWN: tr("shown"), RowRole.BESIDE: tr("compared"), RowRole.NONE: ""}[self.reported.role]
         aside = QFontMetrics(theme.font(12, MEDIUM)).horizontalAdvance(role) + px(PADDING) + 2

@@ -55,15 +55,12 @@ class WalkFigures(Card):
     def show_figures(self, strides: Mapping[Side, int], cadence_steps_min: float) -> None:
         shown = str(max(strides.values())) if strides else NO_FIGURE
         cadence = f"{cadence_steps_min:.0f}" if math.isfinite(cadence_steps_min) else NO_FIGURE
-        for label, text in ((self._strides, shown), (self._cadence, cadence)):
-            if label.text() != text:
-                label.setText(text)
+        self._strides.setText(shown)
+        self._cadence.setText(cadence)
         for side in Side:
             self._chips[side].setVisible(side in strides)
             self._counts[side].setVisible(side in strides)
-            count = str(strides.get(side, 0))
-            if self._counts[side].text() != count:
-                self._counts[side].setText(count)
+            self._counts[side].setText(str(strides.get(side, 0)))
         stated = [tr("{count} strides.").format(count=shown)] if strides else []
         words = {Side.LEFT: tr("Left {count}."), Side.RIGHT: tr("Right {count}.")}
         stated += [words[side].format(count=strides[side]) for side in Side if side in strides]

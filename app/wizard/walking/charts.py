@@ -99,16 +99,14 @@ class WalkingCharts(Card):
     def _say_provisional(self, sides: list[Side]) -> None:
         words = tr("{sides} provisional") if self._is_compact else tr("{sides} provisional until five strides")
         stated = words.format(sides=", ".join(side.letter for side in sides)) if sides else ""
-        if stated != self._provisional.text():
-            self._provisional.setText(stated)
+        self._provisional.setText(stated)
 
     def _say_of_hips(self, provisional: list[Side], are_known: bool) -> None:
         words = tr("{sides} provisional") if self._is_compact else tr("{sides} provisional until calibrated by walking")
         stated = words.format(sides=", ".join(side.letter for side in provisional)) if provisional else ""
         if not are_known:
             stated = tr("not known yet") if self._is_compact else tr("not known before the first strides")
-        if stated != self._hip_note.text():
-            self._hip_note.setText(stated)
+        self._hip_note.setText(stated)
 
     def _build(self) -> None:
         hip = self._head(Text(tr("Hip"), size=16, weight=SEMIBOLD), tr("flexion + (°)"))

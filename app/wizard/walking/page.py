@@ -17,7 +17,7 @@ from PySide6.QtWidgets import (
 )
 
 from app.patient_screen.controls import ControlsCard
-from app.theme.current import current_theme, on_theme, scaled
+from app.theme.current import on_theme, px, scaled
 from app.theme.icons import Icon
 from app.widgets.focus_ring import NO_RING
 from app.widgets.lay_out import lay_out
@@ -109,7 +109,7 @@ class WalkingPage(QWidget):
         controls: list[QWidget] = [*self.patient_controls.controls, *self.bench.tab_order, *self.tabs.segments]
         controls += [self.memory.stop, self.stopped.discard, self.stopped.keep]
         controls += [*self.walks.buttons, self.walks.restrapped]
-        controls += [*self.next.chooser.stops, self.next.chooser.own.line_edit, self.next.test.box]
+        controls += [*self.next.chooser.stops, self.next.chooser.own.line_edit, self.next.test]
         return [one for one in controls if one.isVisibleTo(self)]
 
     def focus(self) -> None:
@@ -318,7 +318,6 @@ class WalkingPage(QWidget):
             layout.insertWidget(index, widget)
 
     def _fit(self) -> None:
-        px = current_theme().px
         is_wide = self.width() >= px(WIDE_FROM) and not self._is_compact
         self.charts.set_seconds(SECONDS_WIDE if is_wide else SECONDS)
         # between walks what comes next needs the room more

@@ -39,7 +39,6 @@ class Stepper(Painted):
 
     def minimumSizeHint(self) -> QSize:
         theme = current_theme()
-        px = theme.px
         caption = QFontMetrics(theme.font(12)).horizontalAdvance(self.caption)
         value = QFontMetrics(theme.font(14, SEMIBOLD)).horizontalAdvance(self.value) + 2 * px(END)
         return QSize(max(px(LEAST), caption + 2, value + 2), px(CAPTION + BOX))

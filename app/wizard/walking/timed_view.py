@@ -7,7 +7,7 @@ from PySide6.QtCore import QPointF, QRectF, QSize, Qt
 from PySide6.QtGui import QAccessible, QBrush, QColor, QFontMetrics, QPainter, QPen, QPolygonF
 from PySide6.QtWidgets import QHBoxLayout, QSizePolicy, QVBoxLayout, QWidget
 
-from app.theme.current import current_theme, scaled
+from app.theme.current import current_theme, px, scaled
 from app.theme.ground import Ground, set_ground
 from app.theme.icons import Icon
 from app.widgets.card import Card
@@ -118,8 +118,7 @@ class TimedView(QWidget):
         self._distance_card.setVisible(has_distance)
         metres, why = distance_words(state)
         self.distance.show_text(metres, "" if metres == NO_FIGURE else "m")
-        if self.why.text() != why:
-            self.why.setText(why)
+        self.why.setText(why)
         self.why.setVisible(bool(why))
         self.course.show_state(state)
         words = (
@@ -190,14 +189,13 @@ class _Status(Painted):
         return QSize(max(theme.px(176), words + theme.px(BEFORE_STATUS + BEHIND_STATUS)), theme.px(48))
 
     def draw(self, painter: QPainter) -> None:
-        c, px = current_theme().colours, current_theme().px
+        c = current_theme().colours
         dot = QRectF(px(20), 0.5 * (self.height() - px(12)), px(12), px(12))
         painter.setPen(QPen(QColor(c.inv_ink), 2))
         painter.setBrush(QColor(c.inv_ink) if self._is_on else Qt.BrushStyle.NoBrush)
         painter.drawEllipse(dot)
 
     def painted_texts(self) -> list[PaintedText]:
-        px = current_theme().px
         box = QRectF(px(BEFORE_STATUS), 0, self.width() - px(BEFORE_STATUS + BEHIND_STATUS), self.height())
         return [PaintedText(self._words, box, current_theme().font(18, SEMIBOLD), "inv_ink")]
 
@@ -213,9 +211,8 @@ class _ByItself(Card):
         self.column.addLayout(lay_out(QHBoxLayout(), IconMark(icon, size=20), (words, 1)))
 
     def show_words(self, first: str, then: str) -> None:
-        for label, text in ((self._first, first), (self._then, capitalised(then))):
-            if label.text() != text:
-                label.setText(text)
+        self._first.setText(first)
+        self._then.setText(capitalised(then))
 
 
 class _Course(Painted):
@@ -233,7 +230,6 @@ class _Course(Painted):
 
     def _boxes(self, state: TimedViewState) -> tuple[QRectF, QRectF]:
         """All of the course, and what of it is timed."""
-        px = current_theme().px
         whole = QRectF(px(4), px(36), self.width() - px(8), px(48))
         if DEFINITIONS[state.protocol].tape_m is None:
             return whole, whole

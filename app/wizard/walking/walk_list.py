@@ -135,7 +135,6 @@ class WalkList(Card):
         self.restrapped.setVisible(is_offered)
 
     def _fit(self) -> None:
-        px = current_theme().px
         rows = len(self._rows) if self._is_compact else min(LEAST_ROWS, len(self._rows))
         self._scroll.setMinimumHeight(px((ROW + BETWEEN) * rows))
         bar = 0 if self._is_compact else self._scroll.verticalScrollBar().sizeHint().width()
@@ -287,7 +286,6 @@ class ActionRow(PaintedButton):
     def painted_texts(self) -> list[PaintedText]:
         """Give what is painted now, each in its box."""
         theme = current_theme()
-        px = theme.px
         left, width = px(10 + 20 + 10), self._words_width
         text, note = theme.font(14, MEDIUM), theme.font(12)
         high, low = height_for(self.text(), text, width), height_for(self._note, note, width)
@@ -299,7 +297,7 @@ class ActionRow(PaintedButton):
 
     def paintEvent(self, _event: QPaintEvent) -> None:
         theme = current_theme()
-        c, px = theme.colours, theme.px
+        c = theme.colours
         painter = QPainter(self)
         box = QRectF(self.rect()).adjusted(1, 1, -1, -1)
         theme.paint_box(painter, box, c.surface, c.control)
@@ -311,7 +309,6 @@ class ActionRow(PaintedButton):
 
     @property
     def _words_width(self) -> int:
-        px = current_theme().px
         return max(self.width() - px(10 + 20 + 10) - px(8), 1)
 
     def _fit(self) -> None:
