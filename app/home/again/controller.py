@@ -7,11 +7,11 @@ from typing import TYPE_CHECKING
 from uuid import UUID
 
 from PySide6.QtCore import QObject, Signal
+from PySide6.QtWidgets import QFileDialog
 
 from app.cohort.batch.again import AgainResult, analyse_again
 from app.cohort.batch.executors import of_this_computer, processors
 from app.home.again.analyse_again_page import AgainLine, AnalyseAgainPage
-from app.home.long_work import LongWork
 from app.storage.kept_analyses import algorithm
 from app.system.progress import Report
 from app.theme.icons import Icon
@@ -22,6 +22,7 @@ from app.wording.patients import when
 from app.wording.recordings import name_in_words
 from app.wording.translation import tr, tr_n
 from app.workers.library_controller import LibraryController
+from app.workers.long_work import LongWork
 
 if TYPE_CHECKING:
     from app.cohort.batch.run import BatchResult
@@ -49,6 +50,7 @@ class AnalysingAgain(LongWork):
 
     def __init__(self, controller: LibraryController, parent: QObject) -> None:
         super().__init__(controller, parent)
+        self._dialog: QFileDialog | None = None
         self._failures: dict[UUID, str] = {}
         self._required: UUID | None = None
         self._out = Path()
