@@ -62,7 +62,7 @@ class Box:
 
 
 @dataclass
-class Ground:
+class ChartGround:
     """What a chart has drawn already: curves (n, 2), pale ones such as a band's edges, upright lines, and boxes."""
 
     frame: Frame
@@ -154,7 +154,7 @@ def _is_higher(chart: StrideChart, label: CurveLabel) -> bool:
     return bool(angle_deg >= np.mean(own[[max(at - PEAK_WIDTH, 0), min(at + PEAK_WIDTH, 100)]]))
 
 
-def ground_of(frame: Frame, chart: StrideChart, taken: Sequence[Box] = ()) -> Ground:
+def ground_of(frame: Frame, chart: StrideChart, taken: Sequence[Box] = ()) -> ChartGround:
     """What a chart draws before its marks."""
     curves = [line_of(frame, PERCENT, curve.angle_deg) for curve in (*chart.beside, *chart.curves) if curve.is_known]
     edges = []
@@ -164,7 +164,7 @@ def ground_of(frame: Frame, chart: StrideChart, taken: Sequence[Box] = ()) -> Gr
             line_of(frame, PERCENT, edge) for edge in (band.mean_deg - reach, band.mean_deg, band.mean_deg + reach)
         ]
     uprights = [float(frame.x(curve.toe_off_percent)) for curve in toe_offs_in_order(chart.curves, 0)]
-    return Ground(frame, curves, edges, uprights, list(taken))
+    return ChartGround(frame, curves, edges, uprights, list(taken))
 
 
 def line_of(frame: Frame, percent: FloatArray, angle_deg: FloatArray) -> FloatArray:
@@ -177,7 +177,7 @@ def line_of(frame: Frame, percent: FloatArray, angle_deg: FloatArray) -> FloatAr
 
 
 def place_mark(
-    ground: Ground, ends: Sequence[tuple[float, float]], sizes: Sequence[tuple[float, float]], usual_percent: float
+    ground: ChartGround, ends: Sequence[tuple[float, float]], sizes: Sequence[tuple[float, float]], usual_percent: float
 ) -> MarkPlace:
     """The place that covers least for the bar between two `ends` (x, y), and for the words beside it.
 
@@ -207,7 +207,11 @@ def place_mark(
 
 
 def place_labels(
-    ground: Ground, points: Sequence[tuple[float, float]], sizes: Sequence[Size], are_above: Sequence[bool], dot: float
+    ground: ChartGround,
+    points: Sequence[tuple[float, float]],
+    sizes: Sequence[Size],
+    are_above: Sequence[bool],
+    dot: float,
 ) -> list[Box | None]:
     """The room of each label beside its point that covers least: inside the frame, over nothing that is there.
 
@@ -237,7 +241,7 @@ def place_labels(
     return found
 
 
-def place_hidden(ground: Ground, size: Size) -> Box:
+def place_hidden(ground: ChartGround, size: Size) -> Box:
     """The room for the box of a curve that is hidden; top left where all are alike."""
     frame, (width, height) = ground.frame, size
     best, least = Box(frame.left, frame.top, frame.left + width, frame.top + height), np.inf
@@ -270,7 +274,7 @@ def _rooms(frame: Frame, bar_x: float, top: float, bottom: float, size: tuple[fl
                 yield words
 
 
-def _cost_of_bar(ground: Ground, bar_x: float, ends: Sequence[tuple[float, float]], usual_x: float) -> float:
+def _cost_of_bar(ground: ChartGround, bar_x: float, ends: Sequence[tuple[float, float]], usual_x: float) -> float:
     top, bottom = sorted(y for _, y in ends)
     bar = Box(bar_x - CLEAR, top, bar_x + CLEAR, bottom)
     cost = PER_LENGTH_AWAY * abs(bar_x - usual_x) + UNREADABLE * any(map(bar.overlaps, ground.taken))
@@ -290,7 +294,7 @@ def _cost_of_bar(ground: Ground, bar_x: float, ends: Sequence[tuple[float, float
     return float(cost)
 
 
-def _cost_of_words(ground: Ground, words: Box, bar_x: float, ends: Sequence[tuple[float, float]]) -> float:
+def _cost_of_words(ground: ChartGround, words: Box, bar_x: float, ends: Sequence[tuple[float, float]]) -> float:
     room = words.grown(CLEAR)
     cost = ground.covered(room) + PER_UPRIGHT * sum(room.left < x < room.right for x in ground.uprights)
     cost += WORDS_AT_RIGHT * (words.left > bar_x)

@@ -12,7 +12,7 @@ from PySide6.QtWidgets import QStyleOptionGraphicsItem, QWidget
 from app.charts.axes import AXIS_WIDTH, RIGHT_MARGIN, range_for
 from app.charts.marks import stretches
 from app.plots.thinning import envelope, thin
-from app.theme.current import current_theme
+from app.theme.current import current_theme, px
 from app.wording.numbers import MINUS, clock
 from app.wording.translation import figure_text
 from core.body import Side
@@ -21,6 +21,7 @@ from core.samples import FloatArray
 LEAST_SIZE = (320, 88)  # what can just be read; the page gives more where it has more
 LEAST_OF_THREE = 66  # px high: each of three over one another
 AXIS_HEIGHT, BARE_AXIS_HEIGHT = 24, 6
+FOOT = 6  # over and under an axis, whose last figure is half beyond it
 CURVE_PX = 2.0
 HAIR_PX = 1.0
 LINE_PIECE = 64  # points that are stroked at a time: the time for one line grows faster than its points
@@ -41,12 +42,56 @@ class Curve:
     second_deg: FloatArray | None = None
 
 
-class AngleChart(pg.GraphicsView):  # type: ignore[misc]  # pyqtgraph has no types
+class AngleAxis(pg.AxisItem):  # type: ignore[misc]  # pyqtgraph has no types
+    def tickStrings(self, values: list[float], _scale: float, _spacing: float) -> list[str]:
+        return [f"{value:.0f}".replace("-", MINUS) for value in values]
+
+
+class AngleAxes(pg.GraphicsView):  # type: ignore[misc]  # pyqtgraph has no types
+    """Angles over time in a view of their own.
+
+    It is put together from its parts, because a `PlotItem` brings menus and forty controls that nobody would see.
+    """
+
+    def __init__(self, beneath: pg.AxisItem, *, has_mouse: bool) -> None:
+        super().__init__(useOpenGL=False)
+        for part in (self, self.viewport()):  # a click goes on to the page's control, which takes the focus
+            part.setFocusPolicy(Qt.FocusPolicy.NoFocus)
+        self._view = pg.ViewBox(enableMenu=False, enableMouse=has_mouse)
+        self._angle_axis, self._beneath = AngleAxis("left"), beneath
+        self._layout = pg.GraphicsLayout()
+        self._layout.setSpacing(0)
+        self._layout.addItem(self._angle_axis, 0, 0)
+        self._layout.addItem(self._view, 0, 1)
+        self._layout.addItem(beneath, 1, 1)
+        self._angle_axis.linkToView(self._view)
+        self._view.setDefaultPadding(0.0)
+        self._view.disableAutoRange()
+        self.setCentralItem(self._layout)
+
+    def sizeHint(self) -> QSize:
+        return self.minimumSizeHint()  # Qt's own goes by the scene
+
+    def changeEvent(self, event: QEvent) -> None:
+        super().changeEvent(event)
+        if event.type() is QEvent.Type.StyleChange:
+            self._apply_theme()
+
+    def _apply_theme(self) -> None:
+        theme = current_theme()
+        self.setBackground(theme.colours.surface)
+        self._angle_axis.setWidth(theme.px(AXIS_WIDTH))
+        for axis in (self._angle_axis, self._beneath):
+            axis.setPen(theme.pen(theme.colours.control, 1))
+            axis.setTextPen(QColor(theme.colours.ink2))
+            axis.setStyle(tickFont=theme.font(12), tickLength=theme.px(4), maxTickLevel=0)
+        self._layout.setContentsMargins(0, theme.px(FOOT), theme.px(RIGHT_MARGIN), 0)
+
+
+class AngleChart(AngleAxes):
     """Axes that stay `lowest_deg` to `highest_deg` unless a curve leaves them.
 
     Above another chart on the same time, `has_times` is False: its times would say the same twice.
-
-    It is put together from its parts, because a `PlotItem` brings menus and forty controls that nobody would see.
     """
 
     accessible_role = QAccessible.Role.Chart
@@ -54,27 +99,14 @@ class AngleChart(pg.GraphicsView):  # type: ignore[misc]  # pyqtgraph has no typ
     view_moved = Signal()
 
     def __init__(self, lowest_deg: float, highest_deg: float, has_times: bool = True) -> None:
-        super().__init__(useOpenGL=False)
+        super().__init__(_TimeAxis("bottom"), has_mouse=True)
         self._has_times, self._is_of_three = has_times, False
         self._fixed = (lowest_deg, highest_deg)
         self.range_deg = self._fixed
         self.curves: Mapping[Side, Curve] = {}
         self._time_s: FloatArray = np.zeros(0)
-        for part in (self, self.viewport()):  # a click goes on to the page's control, which takes the focus
-            part.setFocusPolicy(Qt.FocusPolicy.NoFocus)
-        self._view = pg.ViewBox(enableMenu=False)
-        self._angle_axis, self._time_axis = AngleAxis("left"), _TimeAxis("bottom")
-        self._layout = pg.GraphicsLayout()
-        self._layout.setSpacing(0)
-        self._layout.addItem(self._angle_axis, 0, 0)
-        self._layout.addItem(self._view, 0, 1)
-        self._layout.addItem(self._time_axis, 1, 1)
-        self._angle_axis.linkToView(self._view)
-        self._time_axis.linkToView(self._view)
-        self.setCentralItem(self._layout)
+        self._beneath.linkToView(self._view)
         self._view.setMouseEnabled(x=True, y=False)
-        self._view.setDefaultPadding(0.0)
-        self._view.disableAutoRange()
         self._view.setYRange(*self._fixed, padding=0)
         self._zero = pg.InfiniteLine(0.0, angle=0)
         self._cursor = pg.InfiniteLine(angle=90)
@@ -86,18 +118,9 @@ class AngleChart(pg.GraphicsView):  # type: ignore[misc]  # pyqtgraph has no typ
         self._view.sigResized.connect(self._redraw)  # no finer than the screen: its width has changed
         self._apply_theme()
 
-    def changeEvent(self, event: QEvent) -> None:
-        super().changeEvent(event)
-        if event.type() is QEvent.Type.StyleChange:
-            self._apply_theme()
-
-    def sizeHint(self) -> QSize:
-        px = current_theme().px
+    def minimumSizeHint(self) -> QSize:
         less = 0 if self._has_times else AXIS_HEIGHT - BARE_AXIS_HEIGHT
         return QSize(px(LEAST_SIZE[0]), px((LEAST_OF_THREE if self._is_of_three else LEAST_SIZE[1]) - less))
-
-    def minimumSizeHint(self) -> QSize:
-        return self.sizeHint()
 
     def set_of_three(self, is_of_three: bool) -> None:
         """Let it be lower, where three charts share the room of two."""
@@ -170,26 +193,14 @@ class AngleChart(pg.GraphicsView):  # type: ignore[misc]  # pyqtgraph has no typ
         self.view_moved.emit()
 
     def _apply_theme(self) -> None:
-        theme = current_theme()
-        c = theme.colours
-        self.setBackground(c.surface)
-        self._angle_axis.setWidth(theme.px(AXIS_WIDTH))
-        self._time_axis.setHeight(theme.px(AXIS_HEIGHT if self._has_times else BARE_AXIS_HEIGHT))
-        self._time_axis.setStyle(showValues=self._has_times)
-        for axis in (self._angle_axis, self._time_axis):
-            axis.setPen(theme.pen(c.control, 1))
-            axis.setTextPen(QColor(c.ink2))
-            axis.setStyle(tickFont=theme.font(12), tickLength=theme.px(4), maxTickLevel=0)
-        self._layout.setContentsMargins(0, theme.px(6), theme.px(RIGHT_MARGIN), 0)
+        super()._apply_theme()
+        c = current_theme().colours
+        self._beneath.setHeight(px(AXIS_HEIGHT if self._has_times else BARE_AXIS_HEIGHT))
+        self._beneath.setStyle(showValues=self._has_times)
         self._zero.setPen(pg.mkPen(c.control, width=1))
         self._cursor.setPen(pg.mkPen(c.ink, width=1))
         for item in self._items.values():
             item.update()
-
-
-class AngleAxis(pg.AxisItem):  # type: ignore[misc]  # pyqtgraph has no types
-    def tickStrings(self, values: list[float], _scale: float, _spacing: float) -> list[str]:
-        return [f"{value:.0f}".replace("-", MINUS) for value in values]
 
 
 class _TimeAxis(pg.AxisItem):  # type: ignore[misc]  # pyqtgraph has no types

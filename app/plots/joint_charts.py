@@ -5,7 +5,7 @@ from collections.abc import Mapping
 import numpy as np
 from PySide6.QtCore import QPointF, Qt, Signal
 from PySide6.QtGui import QAccessible, QAccessibleAnnouncementEvent, QKeyEvent
-from PySide6.QtWidgets import QGridLayout, QHBoxLayout, QSizePolicy, QVBoxLayout
+from PySide6.QtWidgets import QGridLayout, QHBoxLayout, QSizePolicy, QVBoxLayout, QWidget
 
 from app.charts.axes import (
     USUAL_DEG,
@@ -18,13 +18,13 @@ from app.charts.axes import (
 )
 from app.plots.angle_chart import AngleChart, Curve
 from app.plots.phase_lanes import PhaseFrame
-from app.theme.current import px
+from app.theme.current import on_theme, scaled
 from app.theme.icons import Icon
 from app.widgets.card import Card
 from app.widgets.chip import SideKey
 from app.widgets.icons import IconMark
+from app.widgets.lay_out import lay_out
 from app.widgets.text import MEDIUM, SEMIBOLD, Text
-from app.widgets.themed import Themed
 from app.wording.body import name_of
 from app.wording.numbers import MINUS
 from app.wording.translation import figure_text, later, tr
@@ -37,7 +37,7 @@ NO_VALUE = later("no value")
 NO_GAIT: Mapping[Side, SideGait] = {}
 
 
-class JointCharts(Themed):
+class JointCharts(QWidget):
     """Charts that act as one control: the mouse or the keys read, move along and zoom in time.
 
     The hip's is there where a hip was measured. `view_changed` gives whether the whole recording is in sight, and which
@@ -74,7 +74,7 @@ class JointCharts(Themed):
         for frame in (self.hip, self.ankle):
             frame.chart.link_time(self.knee.chart)
         self.knee.chart.view_moved.connect(self._on_view_moved)
-        self._apply_theme()
+        scaled(self._column.setSpacing, 12)
 
     @property
     def visible_s(self) -> tuple[float, float]:
@@ -118,7 +118,7 @@ class JointCharts(Themed):
         self.hip.setVisible(has_hips)
         for frame in self.frames:
             frame.set_of_three(has_hips)
-        self._apply_theme()
+        scaled(self._column.setSpacing, 6 if has_hips else 12)
         self.hip.set_moment_shown(has_hips)  # once is enough, on top
         self.knee.set_moment_shown(not has_hips)
         what = (
@@ -240,17 +240,15 @@ class JointCharts(Themed):
         times = {name: figure_text(time_s, ".1f").replace("-", MINUS) for name, time_s in shown.items()}
         self.view_changed.emit(self.is_whole, stated.format_map(times))
 
-    def _apply_theme(self) -> None:
-        self._column.setSpacing(px(12 if self.hip.isHidden() else 6))
-
 
 class ChartFrame(Card):
     """A chart with its title, its sign in words, and what is at the reading line."""
 
     def __init__(self, chart: AngleChart, kind: JointKind) -> None:
+        super().__init__(spacing=4)
         self.kind = kind
         self.chart = chart
-        self._is_narrow = self._is_wide = self._is_of_three = False
+        self._is_narrow = self._is_wide = False
         self._title = Text(title_in_words(kind), size=16, weight=SEMIBOLD)
         self._sign = Text(sign_in_words(kind), size=12, tone="ink2")
         self._simulated = Text(tr("SIMULATED"), size=12, weight=SEMIBOLD)
@@ -259,31 +257,24 @@ class ChartFrame(Card):
         self._values = {side: Text(size=15, weight=SEMIBOLD, tone=f"{side}_text") for side in Side}
         self._wide_mark = IconMark(Icon.DIFFERENCE, size=18)
         self._wide = Text(size=12, weight=MEDIUM)
-        super().__init__(spacing=4)
         self.setSizePolicy(QSizePolicy.Policy.Expanding, QSizePolicy.Policy.Expanding)
         head = QGridLayout()
         head.setHorizontalSpacing(8)
         head.setVerticalSpacing(4)
-        names, readings = QHBoxLayout(), QHBoxLayout()
+        names = lay_out(QHBoxLayout(), self._title, self._sign, self._wide_mark, self._wide, self._simulated, 1)
+        readings = lay_out(QHBoxLayout(), 1, self._moment)
         names.setSpacing(8)
         readings.setSpacing(8)
-        for widget in (self._title, self._sign, self._wide_mark, self._wide, self._simulated):
-            names.addWidget(widget)
-        names.addStretch(1)
-        readings.addStretch(1)
-        readings.addWidget(self._moment)
         for side in Side:
             readings.addSpacing(12)
-            readings.addWidget(self._keys[side])
-            readings.addWidget(self._values[side])
+            lay_out(readings, self._keys[side], self._values[side])
         self._head = (names, readings)
         self._grid = head
         self._place()
-        self.column.addLayout(head)
-        self.column.addWidget(chart, 1)
+        lay_out(self.column, head, (chart, 1))
         self.set_moment_shown(kind is JointKind.KNEE)
         self._set_widened()
-        self._apply_theme()
+        on_theme(self._reserve_room)
 
     def set_room(self, *, is_narrow: bool, is_wide: bool) -> None:
         """Put the readings under the title where they do not fit beside it and the words of a widened axis."""
@@ -292,9 +283,10 @@ class ChartFrame(Card):
 
     def set_of_three(self, is_of_three: bool) -> None:
         """Let it be lower, where three charts share the room of two."""
-        self._is_of_three = is_of_three
         self.chart.set_of_three(is_of_three)
-        self._apply_theme()
+        above = 6 if is_of_three else 12
+        scaled(self.column.setContentsMargins, 16, above, 16, above)
+        scaled(self.column.setSpacing, 2 if is_of_three else 4)
 
     def set_moment_shown(self, is_shown: bool) -> None:
         self._moment.setVisible(is_shown)
@@ -360,14 +352,6 @@ class ChartFrame(Card):
         self._wide.setVisible(self.chart.is_widened)
         self._wide_mark.setVisible(self.chart.is_widened)
         self._place()
-
-    def _apply_theme(self) -> None:
-        super()._apply_theme()
-        if self._is_of_three:
-            side, narrow = px(16), px(6)
-            self.column.setContentsMargins(side, narrow, side, narrow)
-            self.column.setSpacing(px(2))
-        self._reserve_room()
 
 
 def _reading(curve: Curve, row: int) -> str:

@@ -8,7 +8,7 @@ from app.summary.goals import goal_mark
 from app.summary.interval_words import interval_in_figures
 from app.summary.numbers_in_words import NOTHING, fixed, judged_in_words, signed
 from app.summary.what_differs import LegsRow, half_of_strip, what_differs, without_family
-from app.theme.current import current_theme
+from app.theme.current import scaled
 from app.theme.icons import Icon
 from app.widgets.card import Card
 from app.widgets.figures_table import CARE_MARK
@@ -33,8 +33,8 @@ class DiffersCard(Card):
     """As many rows as there is room for, but at least three; those beyond healthy people's difference first."""
 
     def __init__(self) -> None:
-        self._side = SIDE
-        super().__init__(padding=SIDE)
+        super().__init__()
+        self._space(SIDE)
         self._columns: Sequence[TableColumn] = ()
         self.rows: Sequence[TableRow] = ()
         self._most = LEAST
@@ -53,8 +53,7 @@ class DiffersCard(Card):
 
     def set_room(self, height: float, *, is_compact: bool) -> None:
         """Show what fits into so many px of the design; nearer to the edge where the page is narrow."""
-        self._side = COMPACT_SIDE if is_compact else SIDE
-        self._apply_theme()
+        self._space(COMPACT_SIDE if is_compact else SIDE)
         most = min(max(int((height - HEAD - EDGES) // ROW), LEAST), MOST)
         if most != self._most:
             self._most = most
@@ -64,9 +63,8 @@ class DiffersCard(Card):
         if self._columns:
             self.table.show_rows(self._columns, self.rows[: self._most])
 
-    def _apply_theme(self) -> None:
-        px = current_theme().px
-        self.column.setContentsMargins(px(self._side), px(EDGES / 3), px(self._side), px(EDGES * 2 / 3))
+    def _space(self, side: float) -> None:
+        scaled(self.column.setContentsMargins, side, EDGES / 3, side, EDGES * 2 / 3)
 
 
 def _columns(facts: Facts) -> list[TableColumn]:

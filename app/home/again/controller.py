@@ -23,6 +23,7 @@ from app.wording.patients import when
 from app.wording.recordings import name_in_words
 from app.wording.translation import tr, tr_n
 from app.workers.library_controller import LibraryController
+from app.workers.long_work import LongWork
 
 if TYPE_CHECKING:
     from app.cohort.batch.run import BatchResult
@@ -31,17 +32,13 @@ if TYPE_CHECKING:
 TABLE = "parameters.parquet"  # as app.cohort.batch.table has it
 
 
-class AnalysingAgain(QObject):
+class AnalysingAgain(LongWork):
     """One selection at a time.
 
     Signals
     -------
     changed
         The bar shows something else.
-    working
-        Something takes a while: its title.
-    progressed
-        The share that is done, and how many sessions.
     done
         It ended: what came of it, and what to do.
     table_made
@@ -49,19 +46,15 @@ class AnalysingAgain(QObject):
     """
 
     changed = Signal()
-    working = Signal(str)
-    progressed = Signal(float, str)
     done = Signal(str, str)
     table_made = Signal(object)
 
     def __init__(self, controller: LibraryController, parent: QObject) -> None:
-        super().__init__(parent)
-        self._controller = controller
+        super().__init__(controller, parent)
         self._dialog: QFileDialog | None = None
         self._failures: dict[UUID, str] = {}
         self._required: UUID | None = None
         self._out = Path()
-        self.is_working = False
         self.is_of_library = False  # what was asked for last: a table over all sessions, from the page that asks it
         self.page = AnalyseAgainPage()
         self.page.changed.connect(self.changed)
@@ -124,10 +117,6 @@ class AnalysingAgain(QObject):
         if not self.is_of_library:
             self._read()
 
-    def _begin(self, title: str) -> None:
-        self.is_working = True
-        self.working.emit(title)
-
     def _end(self, what: str, then: str) -> None:
         self.is_working = False
         self.done.emit(what, then)
@@ -156,9 +145,6 @@ class AnalysingAgain(QObject):
     def _on_read(self, found: tuple[Sequence[AgainLine], Sequence[UUID]]) -> None:
         self.page.show_lines(*found)
         self.page.focus()
-
-    def _on_progressed(self, share: float, what: str) -> None:
-        self.progressed.emit(share, what)
 
     def _on_analysed(self, result: SelectionResult[UUID]) -> None:
         self._failures, self._required = dict(result.failures), None

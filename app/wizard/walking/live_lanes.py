@@ -16,7 +16,7 @@ from PySide6.QtWidgets import QSizePolicy
 
 from app.charts.axes import AXIS_WIDTH, RIGHT_MARGIN
 from app.plots.phase_lanes import BETWEEN, GAP_PX, LANE, paint_phase
-from app.theme.current import current_theme
+from app.theme.current import current_theme, px
 from app.theme.leg_chip import CHIP, paint_chip
 from app.theme.theme import CHIP_RADIUS
 from app.widgets.text import MEDIUM
@@ -47,17 +47,14 @@ class LiveLanes(Themed):
         self.setAttribute(Qt.WidgetAttribute.WA_OpaquePaintEvent)
         self.setSizePolicy(QSizePolicy.Policy.Expanding, QSizePolicy.Policy.Fixed)
 
-    def sizeHint(self) -> QSize:
-        px = current_theme().px
-        return QSize(px(LEAST_WIDTH), 2 * px(LANE) + px(self._between) + px(self._axis_height))
-
     def minimumSizeHint(self) -> QSize:
-        return self.sizeHint()
+        return QSize(px(LEAST_WIDTH), 2 * px(LANE) + px(self._between) + px(self._axis_height))
 
     def set_compact(self, is_compact: bool) -> None:
         self._between = BETWEEN_COMPACT if is_compact else BETWEEN
         self._axis_height = AXIS_HEIGHT_COMPACT if is_compact else AXIS_HEIGHT
-        self._apply_theme()
+        self.updateGeometry()
+        self.redraw()
 
     def set_seconds(self, seconds: float) -> None:
         """Set how much time is in sight."""
@@ -100,12 +97,10 @@ class LiveLanes(Themed):
     @property
     def _place(self) -> QRectF:
         """Of the lanes, in px of the widget."""
-        px = current_theme().px
         width = max(self.width() - px(AXIS_WIDTH) - px(RIGHT_MARGIN), 1)
         return QRectF(px(AXIS_WIDTH), 0, width, 2 * px(LANE) + px(self._between))
 
     def _top(self, side: Side) -> int:
-        px = current_theme().px
         return 0 if side is Side.LEFT else px(LANE) + px(self._between)
 
     def _up_to_date(self, place: QRectF, ratio: float) -> ScrollingPicture:
@@ -172,7 +167,7 @@ class LiveLanes(Themed):
     def _paint_frame(self, painter: QPainter) -> None:
         """Chips and time axis, which stand still."""
         theme, place = current_theme(), self._place
-        c, px = theme.colours, theme.px
+        c = theme.colours
         painter.fillRect(self.rect(), QColor(c.surface))
         chip = px(CHIP)
         for side in self._lanes or Side:
@@ -191,7 +186,6 @@ class LiveLanes(Themed):
             painter.drawText(label, Qt.AlignmentFlag.AlignCenter, stated)
 
     def _apply_theme(self) -> None:
-        self.updateGeometry()
         self.redraw()
 
 

@@ -11,12 +11,12 @@ from itertools import pairwise
 
 import numpy as np
 import pyqtgraph as pg
-from PySide6.QtCore import QEvent, QRectF, QSize, Qt
+from PySide6.QtCore import QRectF, QSize, Qt
 from PySide6.QtGui import QColor, QPainter, QPaintEvent, QPen, QResizeEvent, QShowEvent
 from PySide6.QtWidgets import QWidget
 
-from app.charts.axes import AXIS_WIDTH, RIGHT_MARGIN, range_for
-from app.plots.angle_chart import AngleAxis
+from app.charts.axes import range_for
+from app.plots.angle_chart import FOOT, AngleAxes
 from app.theme.current import current_theme, px
 from app.widgets.text import MEDIUM
 from app.wizard.walking.readout import LiveTrace
@@ -26,7 +26,6 @@ from core.body import Side
 from core.samples import FloatArray
 
 LEAST_SIZE = (320, 40)  # what can just be read; the page gives more where it has more
-FOOT = 6  # under the axis' lowest tick, whose figure is half below it
 CURVE_PX, THIN_PX = 2.5, 1.25
 SHOWN_S = 8.0
 KEPT_S = 15.0  # more than any width shows
@@ -47,30 +46,17 @@ class MissingSpan:
     end_s: float | None
 
 
-class LiveStrip(pg.GraphicsView):  # type: ignore[misc]  # pyqtgraph has no types
+class LiveStrip(AngleAxes):
     """Axes that stay `fixed_deg`, widened by tens where a walk leaves them, and kept so until the next one.
 
     `tick_deg` is what two figures of the axis lie apart.
     """
 
     def __init__(self, fixed_deg: tuple[float, float], tick_deg: float) -> None:
-        super().__init__(useOpenGL=False)
+        super().__init__(pg.AxisItem("bottom"), has_mouse=False)
         self._tick_deg = tick_deg
-        for part in (self, self.viewport()):
-            part.setFocusPolicy(Qt.FocusPolicy.NoFocus)
-        self._view = pg.ViewBox(enableMenu=False, enableMouse=False)
-        self._axis, self._base = AngleAxis("left"), pg.AxisItem("bottom")
-        self._layout = pg.GraphicsLayout()
-        self._layout.setSpacing(0)
-        self._layout.addItem(self._axis, 0, 0)
-        self._layout.addItem(self._view, 0, 1)
-        self._layout.addItem(self._base, 1, 1)
-        self._axis.linkToView(self._view)
-        self._view.setDefaultPadding(0.0)
-        self._view.disableAutoRange()
-        self._base.setStyle(showValues=False)
-        self._base.setTicks([])  # only its line
-        self.setCentralItem(self._layout)
+        self._beneath.setStyle(showValues=False)
+        self._beneath.setTicks([])  # only its line
         self._history = _History(fixed_deg, self.viewport())
         self._view.sigResized.connect(self._on_view_resized)
         self._set_range()
@@ -85,12 +71,8 @@ class LiveStrip(pg.GraphicsView):  # type: ignore[misc]  # pyqtgraph has no type
         """Where a leg that is shown has had no angle for longer than a moment."""
         return self._history.missing
 
-    def sizeHint(self) -> QSize:
-        px = current_theme().px
-        return QSize(px(LEAST_SIZE[0]), px(LEAST_SIZE[1]))
-
     def minimumSizeHint(self) -> QSize:
-        return self.sizeHint()
+        return QSize(*map(px, LEAST_SIZE))
 
     def set_seconds(self, seconds: float) -> None:
         """Set how much time is in sight."""
@@ -121,28 +103,15 @@ class LiveStrip(pg.GraphicsView):  # type: ignore[misc]  # pyqtgraph has no type
         step = self._tick_deg
         while step < highest - lowest and (highest - lowest) / step > room:
             step *= 2
-        self._axis.setTickSpacing(levels=[(step, 0)])
+        self._angle_axis.setTickSpacing(levels=[(step, 0)])
 
     def showEvent(self, event: QShowEvent) -> None:
         super().showEvent(event)
         self._history.update()
 
-    def changeEvent(self, event: QEvent) -> None:
-        super().changeEvent(event)
-        if event.type() is QEvent.Type.StyleChange:
-            self._apply_theme()
-
     def _apply_theme(self) -> None:
-        theme = current_theme()
-        c = theme.colours
-        self.setBackground(c.surface)
-        self._axis.setWidth(theme.px(AXIS_WIDTH))
-        self._base.setHeight(theme.px(FOOT))
-        for axis in (self._axis, self._base):
-            axis.setPen(theme.pen(c.control, 1))
-        self._axis.setTextPen(QColor(c.ink2))
-        self._axis.setStyle(tickFont=theme.font(12), tickLength=theme.px(4), maxTickLevel=0)
-        self._layout.setContentsMargins(0, theme.px(FOOT), theme.px(RIGHT_MARGIN), 0)
+        super()._apply_theme()
+        self._beneath.setHeight(px(FOOT))
         self._set_range()
         self._history.redraw()
         self.updateGeometry()
@@ -344,7 +313,6 @@ class _History(QWidget):
     def _paint_words(self, painter: QPainter, picture: ScrollingPicture, ratio: float) -> None:
         """Say in each box who is missing, as far as the words have room; while it lasts they take it."""
         theme = current_theme()
-        px = theme.px
         painter.setFont(theme.font(12, MEDIUM))
         metrics = painter.fontMetrics()
         taken: list[tuple[float, float]] = []

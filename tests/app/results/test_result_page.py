@@ -13,7 +13,8 @@ from PySide6.QtWidgets import QApplication, QLineEdit
 from pytestqt.qtbot import QtBot
 
 from app.results.cycle_page import NO_SIDE, NO_SPEED
-from app.results.result_page import ANSWER, COMPARE, STRIDES, WHOLE, ResultPage
+from app.results.result_page import ResultPage
+from app.results.tools_row import ANSWER, COMPARE, STRIDES, WHOLE
 from app.summary.reference_bands import NOBODY, OTHER_AGES, WHY_NO_BAND
 from app.widgets.table import CellTable
 from app.widgets.table_cells import TextCell

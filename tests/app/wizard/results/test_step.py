@@ -13,8 +13,8 @@ from PySide6.QtTest import QTest
 from PySide6.QtWidgets import QApplication, QFileDialog
 from pytestqt.qtbot import QtBot
 
-from app.results.result_page import STRIDES
 from app.results.thin_line import ThinLine
+from app.results.tools_row import STRIDES
 from app.storage.exchange import import_session
 from app.storage.opened import OpenedLibrary
 from app.summary.comparison import Contrast
