@@ -7,7 +7,7 @@ import math
 from collections.abc import Sequence
 
 import numpy as np
-from PySide6.QtCore import Qt, Signal
+from PySide6.QtCore import Qt
 from PySide6.QtWidgets import (
     QBoxLayout,
     QGridLayout,
@@ -52,21 +52,7 @@ MIN_APART = 0.2  # of how alike the curves are; less apart, this second distingu
 
 
 class FoundPage(QWidget):
-    """One joint at a time; it is computed elsewhere.
-
-    Signals
-    -------
-    closed
-        Back to the results.
-    joint_chosen
-        Another joint is asked for.
-    save_requested
-        The numbers behind the pictures, as files.
-    """
-
-    closed = Signal()
-    joint_chosen = Signal(str)
-    save_requested = Signal()
+    """One joint at a time; it is computed elsewhere."""
 
     def __init__(self) -> None:
         super().__init__()
@@ -84,9 +70,6 @@ class FoundPage(QWidget):
         self.noticed = Card()
         self._stack = QStackedWidget()
         self._build()
-        self.back.clicked.connect(self.closed)
-        self.joints.chosen.connect(self.joint_chosen)
-        self.save.clicked.connect(self.save_requested)
 
     @property
     def tab_order(self) -> list[QWidget]:
