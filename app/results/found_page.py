@@ -178,15 +178,14 @@ class _Head(QHBoxLayout):
 
     def __init__(self, title: str, figure: str) -> None:
         super().__init__()
-        self._chips = {side: Chip(side) for side in Side}
+        self._chip = Chip(Side.LEFT)  # until a joint is shown
         self._simulated = Text(tr(SIMULATED), size=12, weight=SEMIBOLD)
         self.setSpacing(8)
         words = Text(title, size=16, weight=SEMIBOLD, wraps=True)
-        lay_out(self, *self._chips.values(), (words, 1), Text(figure, size=12, tone="ink2"), self._simulated)
+        lay_out(self, self._chip, (words, 1), Text(figure, size=12, tone="ink2"), self._simulated)
 
     def show_joint(self, side: Side, is_simulated: bool) -> None:
-        for one, chip in self._chips.items():
-            chip.setVisible(one is side)
+        self._chip.set_side(side)
         self._simulated.setVisible(is_simulated)
 
 
