@@ -57,7 +57,7 @@ class LiveStrip(AngleAxes):
         self._beneath.setStyle(showValues=False)
         self._beneath.setTicks([])  # only its line
         self._history = _History(fixed_deg, self.viewport())
-        self._view.sigResized.connect(self._on_view_resized)
+        self.view_box.sigResized.connect(self._on_view_resized)
         self._set_range()
         self._apply_theme()
 
@@ -91,14 +91,14 @@ class LiveStrip(AngleAxes):
 
     def _on_view_resized(self) -> None:
         self._history.setGeometry(
-            self._view.mapRectToScene(self._view.rect()).toRect()
+            self.view_box.mapRectToScene(self.view_box.rect()).toRect()
         )  # a scene's units are our pixels
         self._set_range()
 
     def _set_range(self) -> None:
         lowest, highest = self.range_deg
-        self._view.setYRange(lowest, highest, padding=0)
-        room = self._view.height() / px(LEAST_BETWEEN_TICKS)
+        self.view_box.setYRange(lowest, highest, padding=0)
+        room = self.view_box.height() / px(LEAST_BETWEEN_TICKS)
         step = self._tick_deg
         while step < highest - lowest and (highest - lowest) / step > room:
             step *= 2

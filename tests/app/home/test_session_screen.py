@@ -336,11 +336,11 @@ def test_simulated_is_stated_in_header_and_charts_and_only_then(
     qtbot: QtBot, window: SessionScreen, results: ResultPage, open_work: OpenWork
 ) -> None:
     assert not window.header.simulated.isVisible()
-    assert not results.whole.charts.knee._simulated.isVisible()
+    assert not results.whole.charts.knee.simulated.isVisible()
     open_work(lambda _report: opened(is_simulated=True))
     qtbot.waitUntil(lambda: not window.is_working)
     assert window.header.simulated.isVisible()
-    assert results.whole.charts.knee._simulated.isVisible()
+    assert results.whole.charts.knee.simulated.isVisible()
 
 
 def test_the_table_states_how_each_joint_was_found(results: ResultPage) -> None:
