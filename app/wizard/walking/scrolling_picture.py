@@ -68,7 +68,7 @@ class ScrollingPicture:
 
 
 class Scrolling(Themed):
-    """Has the last seconds up to `_now_s` in a picture, which is made anew for another size, time in sight or look."""
+    """Has the last seconds up to `_now_s` in a picture: another one for another size, time in sight or look."""
 
     def __init__(self, parent: QWidget | None = None) -> None:
         super().__init__(parent)
