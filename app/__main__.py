@@ -15,7 +15,7 @@ def begin() -> int:
     """Be what the arguments say, and give the exit code."""
     if getattr(sys, "frozen", False):
         begin_frozen()
-    from app.cli.main import main
+    from app.cli.main import main  # a child is none of it
 
     return main()
 
@@ -23,9 +23,9 @@ def begin() -> int:
 def begin_frozen() -> None:
     """Do a child's work and end, if this process was started for it; else return at once."""
     _keep_own_libraries()
-    from multiprocessing import freeze_support
+    from multiprocessing import freeze_support  # for a frozen program only
 
-    from devices.files import child
+    from devices.files import child  # as above
 
     freeze_support()
     if sys.argv[1:2] == [child.WORD]:

@@ -24,11 +24,12 @@ from PySide6.QtGui import (
 )
 from PySide6.QtWidgets import QApplication, QStackedWidget, QVBoxLayout, QWidget
 
+from app.help.help_topics import Topic
 from app.home.login.controller import Entry
 from app.home.session_screen import SessionScreen
 from app.storage.idle_lock import IdleLock
 from app.storage.layout import default_folder
-from app.system.logs import log_qt_messages
+from app.system.qt_messages import log_qt_messages
 from app.system.settings import Scheme, Settings
 from app.theme.colours import DARK, LIGHT
 from app.theme.current import current_theme, grow, load_fonts, set_theme
@@ -262,8 +263,7 @@ class MainWindow(QWidget):
 
     def _show_help(self, topic: str) -> None:
         """Open the manual at a topic; Back leads to where it was opened, and what is recorded there goes on."""
-        from app.help.help_page import HelpPage
-        from app.help.help_topics import Topic
+        from app.help.help_page import HelpPage  # most never open it
 
         if self._help is None:
             self._help = HelpPage()
@@ -294,7 +294,7 @@ class MainWindow(QWidget):
 
     def _made_home(self) -> "Home":
         if self._home is None:
-            from app.home.home import Home
+            from app.home.home import Home  # numpy, SciPy, SQLAlchemy
 
             self._home = Home(self.controller, self._settings)
             self.screens.addWidget(self._home)
@@ -336,7 +336,7 @@ class MainWindow(QWidget):
 
     def _made_wizard(self) -> "Wizard":
         if self._wizard is None:
-            from app.wizard.wizard import Wizard
+            from app.wizard.wizard import Wizard  # pyqtgraph, and all steps
 
             self._wizard = Wizard(self.controller, self._settings)
             self.screens.addWidget(self._wizard)

@@ -73,6 +73,29 @@ def test_a_library_of_one_purpose_is_imported_by_one_file(library: str, only: st
     assert found == []
 
 
+MOST_LATE_IMPORTS = (
+    59  # each costs a reader a second place to look; what is left buys a start, or does without an extra
+)
+
+
+def late_imports(node: ast.AST, is_in_function: bool = False) -> Iterator[ast.stmt]:
+    """The imports inside functions; what a type checker alone reads is none."""
+    for child in ast.iter_child_nodes(node):
+        if isinstance(child, ast.If) and "TYPE_CHECKING" in ast.unparse(child.test):
+            continue
+        if is_in_function and isinstance(child, ast.Import | ast.ImportFrom):
+            yield child
+        is_function = isinstance(child, ast.FunctionDef | ast.AsyncFunctionDef)
+        yield from late_imports(child, is_in_function or is_function)
+
+
+def test_imports_inside_functions_are_few_and_each_states_what_it_buys() -> None:
+    found = [(file, one.lineno) for file in python_files(*PACKAGES) for one in late_imports(parse(file))]
+    assert len(found) <= MOST_LATE_IMPORTS
+    lines = {file: file.read_text(encoding="utf-8").splitlines() for file, _ in found}
+    assert [place(file, line) for file, line in found if "  # " not in lines[file][line - 1]] == []
+
+
 def test_the_opening_of_a_package_states_what_belongs_there_and_does_nothing() -> None:
     # core and devices offer their public names, the test below; app sets one switch of PySide6 and states why
     tops = {ROOT / package / "__init__.py" for package in PACKAGES}
@@ -273,7 +296,7 @@ NETWORKS = re.compile(
 CALLERS = {
     *("bluetooth.py", "channels.py", "dot.py", "lsl.py", "networks.py", "search.py", "transports.py"),  # sensors
     *("engine.py", "journal_store.py", "logins.py"),  # the clinic's server and shared place
-    *("executors.py", "task.py"),  # a batch's workers, by --dask
+    *("cluster.py", "task.py"),  # a batch's workers, by --dask
 }
 
 

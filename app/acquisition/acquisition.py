@@ -16,6 +16,7 @@ import numpy as np
 from app.acquisition.heartbeat import Heartbeat, ProcessStall
 from app.acquisition.preview import LiveEstimator, Preview
 from app.acquisition.reader import Reader
+from app.acquisition.sensor_memory import MemoryRecording
 from app.acquisition.sensor_stream import SensorStatus
 from app.storage.journal.writer import JournalSummary, JournalWriter
 from core.alignment import NetChange
@@ -26,7 +27,6 @@ from devices.live import LiveSource, SourceRefusedError
 from devices.simulation.prosthesis_user import ProsthesisUser
 
 if TYPE_CHECKING:
-    from app.acquisition.sensor_memory import MemoryRecording
     from devices.dot.source import DotGroup
 
 __all__ = ["Acquisition", "LiveEstimator", "SensorStatus"]
@@ -144,7 +144,7 @@ class Acquisition:
         """Whether the sensors are ready to record in their memories, and send nothing."""
         return self.dots is not None and self.dots.is_recording_use
 
-    def record_in_memory(self, started_s: int) -> "MemoryRecording":
+    def record_in_memory(self, started_s: int) -> MemoryRecording:
         """Let the sensors record in their memories, from now on until it is ended; `started_s` (UTC) names it.
 
         Raises
@@ -152,8 +152,6 @@ class Acquisition:
         SourceRefusedError
             One of them does not begin, so that none does.
         """
-        from app.acquisition.sensor_memory import MemoryRecording  # with bleak's part of the sensors
-
         assert self.dots is not None  # checked by `is_in_memory`
         recording = MemoryRecording(self.dots)
         recording.begin(started_s)

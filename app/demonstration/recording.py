@@ -20,16 +20,15 @@ BETWEEN_WALKS = datetime.timedelta(minutes=2)
 
 def record_visit(visit: SimulatedVisit) -> Session:
     """Let the patient move, and give what the sensors send, with what was stated about it."""
-    from devices.simulation.replay import labelled  # scipy takes a second that home is not to wait for
-    from devices.simulation.walker import simulate
+    from devices.simulation.replay import moved  # scipy, which home is not to wait for
 
-    moved = labelled(simulate(visit.settings).session)
+    session = moved(visit.settings)
     recordings = tuple(
         _reported(recording, visit.reported.get(recording.name), visit.started + number * BETWEEN_WALKS)
-        for number, recording in enumerate(moved.recordings)
+        for number, recording in enumerate(session.recordings)
     )
     return replace(
-        moved,
+        session,
         recordings=recordings,
         started=visit.started.isoformat(timespec="seconds"),
         operator=BY,

@@ -14,7 +14,7 @@ from app.theme.current import on_theme, px
 from app.theme.ground import Ground, set_ground
 from app.widgets.button import Button, ButtonKind
 from app.widgets.lay_out import lay_out
-from app.widgets.page_scroll import PageScroll
+from app.widgets.reading_area import scrolled
 from app.widgets.text import MEDIUM, SEMIBOLD, Text
 from app.widgets.version_cell import VersionCell
 from app.wording.translation import tr
@@ -56,7 +56,7 @@ class EditDialog(QDialog):
             wraps=True,
         )
         self._table = QWidget()
-        self._scroll = PageScroll(self._table, is_upright=True)
+        self._scroll = scrolled(self._table)
         self._note = Text(tr("Choose a value in each line with the arrow keys."), tone="ink2", wraps=True)
         self.save = Button(tr("Save choice"), ButtonKind.PRIMARY, key=tr("Enter"))
         self.leave = Button(tr("Keep theirs"), ButtonKind.SECONDARY, key=tr("Esc"))

@@ -10,7 +10,10 @@ from importlib.util import find_spec
 from pathlib import Path
 from uuid import UUID
 
+from app.exports.bids_motion import FOLDER, write_bids
+from app.exports.fhir_bundle import write_bundle
 from app.exports.folder_pseudonyms import pseudonyms_of_folder
+from app.exports.opensim_motion import write_motion
 from app.exports.pseudonymised import Row, pseudonymised, what_leaves
 from app.storage.audit import about
 from app.storage.exchange import READ_BACK, session_with_samples
@@ -187,25 +190,20 @@ def _write(session: Session, analysis: Analysis, formats: Sequence[Format], fold
 
 def _write_format(session: Session, analysis: Analysis, required: Format, folder: Path) -> list[str]:
     """Write one format, and give a line for each file that is not written."""
-    # here, not above: two of them need libraries that may be missing
     if required is Format.XLSX:
-        from app.exports.spreadsheet import write_spreadsheet
+        from app.exports.spreadsheet import write_spreadsheet  # openpyxl, which may be missing
 
         write_spreadsheet(session, analysis, folder / SPREADSHEET)
     elif required is Format.FHIR:
-        from app.exports.fhir_bundle import write_bundle
-
         write_bundle(session, analysis, folder / BUNDLE)
     elif required is Format.BIDS:
-        from app.exports.bids_motion import FOLDER, write_bids
-
         why = write_bids(session, folder / FOLDER)
         return [f"{required}: {why}"] if why else []
     else:
         if required is Format.C3D:
-            from app.exports.c3d_angles import write_c3d as write
+            from app.exports.c3d_angles import write_c3d as write  # ezc3d, which may be missing
         else:
-            from app.exports.opensim_motion import write_motion as write
+            write = write_motion
 
         found = {
             one.name: write(one, analysis.is_simulated, _place(one, folder, f"angles.{required}"))

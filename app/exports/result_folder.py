@@ -151,6 +151,22 @@ def check_demonstration_place(out: Path) -> None:
     _refuse_recordings(out, out / OWN_SESSION)
 
 
+def session_of(place: Path) -> Path:
+    """Give the session folder of a place: itself, or the recordings inside the results that it holds.
+
+    Raises
+    ------
+    FileRefusedError
+        Results without their recordings: there are no angles in them to draw from.
+    """
+    if (place / SUMMARY).is_file() and not (place / SESSION_FILE).is_file():
+        if (place / OWN_SESSION / SESSION_FILE).is_file():
+            return place / OWN_SESSION
+        what = "this holds results without the recordings they were made from"
+        raise FileRefusedError(str(place), what, "Give the session folder instead")
+    return place
+
+
 @contextmanager
 def written_beside(out: Path, *, keeps_session: bool = False, within: Path | None = None) -> Iterator[Path]:
     """Give a folder to write into, and put it in the place of `out` when all is written.

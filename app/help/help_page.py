@@ -29,7 +29,7 @@ from app.widgets.card import Card
 from app.widgets.choice import Choice
 from app.widgets.field import Field
 from app.widgets.lay_out import lay_out
-from app.widgets.page_scroll import PageScroll
+from app.widgets.reading_area import scrolled
 from app.widgets.text import MEDIUM, REGULAR, SEMIBOLD, Text
 from app.wording.translation import tr, tr_n
 
@@ -114,7 +114,7 @@ class HelpPage(QWidget):
                 super().keyPressEvent(event)
 
     def _build(self) -> None:
-        self._scroll = PageScroll(self.topics, is_upright=True)
+        self._scroll = scrolled(self.topics)
         self._beside = QWidget()
         self._side = QBoxLayout(QBoxLayout.Direction.TopToBottom, self._beside)
         searching = lay_out(QVBoxLayout(), self.search, self.found)

@@ -14,6 +14,7 @@ from app.home.goals.controller import GoalsOfPatient
 from app.home.goals.goals_page import GoalsPage
 from app.home.importing.controller import Importing
 from app.home.importing.import_page import ImportPage
+from app.home.long_work import LongWork
 from app.home.patients.controller import PatientsAtHome
 from app.home.patients.courses import ComputingCourses
 from app.home.patients.deleting import Deleting
@@ -27,14 +28,14 @@ from app.home.settings.controller import SettingsController
 from app.home.settings.settings_page import SettingsPage
 from app.summary.course_words import NextKind, NextStep
 from app.system.settings import Scheme, Settings
-from app.theme.current import current_theme, on_theme, scaled
+from app.theme.current import current_theme, on_theme, px, scaled
 from app.theme.icons import Icon
 from app.widgets.action_bar import ActionBar, BarAction, BarState
 from app.widgets.banner import Banner
 from app.widgets.grid import COMPACT_BELOW
 from app.widgets.lay_out import lay_out
-from app.widgets.page_scroll import PageScroll
 from app.widgets.rail_row import RailForm, RailRow, StepState
+from app.widgets.reading_area import scrolled
 from app.widgets.start_pages import WorkingPage
 from app.widgets.step_rail import StepRail, home_below
 from app.widgets.toast import Toast
@@ -102,8 +103,7 @@ class Home(QWidget):
             made = self._again = AnalysingAgain(self._controller, self)
             self._add_page(made.page)
             made.changed.connect(self._show)
-            made.working.connect(self._work)
-            made.progressed.connect(self._on_progressed)
+            self._follow(made)
             made.done.connect(self._on_analysed_again)
             made.table_made.connect(self._on_table_made)
         return self._again
@@ -126,8 +126,7 @@ class Home(QWidget):
             made = self._repeatability = Repeatability(self._controller, self)
             self._add_page(made.page)
             made.changed.connect(self._show)
-            made.working.connect(self._work)
-            made.progressed.connect(self._on_progressed)
+            self._follow(made)
             made.done.connect(self._show_repeatability)
             made.chosen.connect(self.patients.read)
         return self._repeatability
@@ -246,7 +245,7 @@ class Home(QWidget):
         lay_out(QHBoxLayout(self), self.rail, (column, 1), margins=0, spacing=0)
 
     def _add_page(self, page: QWidget) -> None:
-        self._pages.addWidget(PageScroll(page))
+        self._pages.addWidget(scrolled(page, is_upright=False))
 
     def _connect(self) -> None:
         page = self.page
@@ -254,12 +253,12 @@ class Home(QWidget):
         self.patients.refused.connect(self.banner.show_message)
         page.session_opened.connect(self.session_opened)
         page.new_session_requested.connect(self._begin_session)
-        page.new_patient_requested.connect(self._on_new_patient)
+        page.empty.new_patient.clicked.connect(self._on_new_patient)
         page.demonstration_requested.connect(self.demonstration_requested)
-        page.import_requested.connect(self._begin_import)
-        page.computing_requested.connect(self._on_computing_requested)
-        page.panel.analysing_requested.connect(self._begin_again)
-        page.panel.goals_requested.connect(self._begin_goals)
+        page.empty.importing.clicked.connect(self.importing.begin)
+        page.panel.course.computing_requested.connect(self._on_computing_requested)
+        page.panel.analyse_again.triggered.connect(self._begin_again)
+        page.panel.goals.clicked.connect(self._begin_goals)
         page.panel.next_requested.connect(self._take_next)
         page.patient_deleted.connect(self.deleting.patient)
         page.session_deleted.connect(self.deleting.session)
@@ -267,20 +266,18 @@ class Home(QWidget):
         self.rail.below_pressed.connect(self._on_below_pressed)
         self.bar.pressed.connect(self._on_bar_pressed)
         self.bar.back_pressed.connect(self._on_back)
-        self.importing.page.code_changed.connect(self._show)
+        self.importing.page.code.edited.connect(self._show)
         self.importing.page.changed.connect(self._show)
-        self.importing.working.connect(self._work)
-        self.importing.progressed.connect(self._on_progressed)
+        self._follow(self.importing)
         self.importing.asked.connect(self._on_import_asked)
         self.importing.left.connect(self._on_import_left)
         self.importing.imported.connect(self.patients.read)
         self.importing.reported.connect(self.banner.show_message)
-        self.working.stop_pressed.connect(self._on_stop)
+        self.working.stop.clicked.connect(self._on_stop)
         self.recovering.recovered.connect(self.patients.read)
-        self.notices.log_in_requested.connect(self.own_library_requested)
+        self.notices.away.acted.connect(self.own_library_requested)
         self.notices.refused.connect(self.banner.show_message)
-        self.computing.working.connect(self._work)
-        self.computing.progressed.connect(self._on_progressed)
+        self._follow(self.computing)
         self.computing.left.connect(self._on_computing_left)
         self.computing.reported.connect(self.banner.show_message)
         self.filling.changed.connect(self.patients.read)
@@ -335,7 +332,6 @@ class Home(QWidget):
         if self._goals is not None:
             self._goals.page.set_room(width - form.value)
         self.bar.show_state(self._bar())
-        px = current_theme().px
         self.toast.move(px(form.value + 24), self.height() - self.bar.height() - self.toast.height() - px(16))
 
     def _show(self) -> None:
@@ -370,7 +366,7 @@ class Home(QWidget):
             return self.importing.bar
         if self._is_asking:
             return self.questions.bar
-        if self._is_again:
+        if self._again is not None and self.current is self._again.page:
             return self.again.bar
         if self._has_goals:
             return self.goals.bar
@@ -387,10 +383,6 @@ class Home(QWidget):
         words = tr("New session for {code}").format(code=patient.details.code)
         begin = BarAction(words, self._begin_session, tr("Enter"), Icon.PLAY)
         return BarState(begin, quiet=(new,), has_back=False)
-
-    @property
-    def _is_again(self) -> bool:
-        return self._again is not None and self.current is self._again.page
 
     @property
     def _has_goals(self) -> bool:
@@ -497,7 +489,7 @@ class Home(QWidget):
         if number == PATIENTS:
             self._on_back()
         elif number == IMPORT:
-            self._begin_import()
+            self.importing.begin()
         elif number == QUESTIONS:
             self._go_to(self.questions.page)
             self.questions.begin()
@@ -525,14 +517,15 @@ class Home(QWidget):
 
     # what comes in
 
-    def _begin_import(self) -> None:
-        self.importing.begin()
-
     def _on_import_asked(self) -> None:
         self._go_to(self.importing.page)
 
     def _on_import_left(self) -> None:
         self._go_to(self.page)
+
+    def _follow(self, work: LongWork) -> None:
+        work.working.connect(self._work)
+        work.progressed.connect(self._on_progressed)
 
     def _work(self, title: str) -> None:
         self.banner.hide()
@@ -545,11 +538,5 @@ class Home(QWidget):
         self.working.show_progress(share, words[:1].upper() + words[1:])
 
     def _on_stop(self) -> None:
-        if self.computing.is_working:
-            self.computing.stop()
-        elif self._again is not None and self._again.is_working:
-            self._again.stop()
-        elif self._repeatability is not None and self._repeatability.is_working:
-            self._repeatability.stop()
-        else:
-            self.importing.stop()
+        works = (self.computing, self._again, self._repeatability)
+        next((work for work in works if work is not None and work.is_working), self.importing).stop()

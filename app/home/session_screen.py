@@ -16,7 +16,7 @@ from PySide6.QtWidgets import (
     QWidget,
 )
 
-from app.results.detail_pages import DetailPages
+from app.results.detail_pages import DetailPages, cannot_write
 from app.theme.current import current_theme, on_theme, px, scaled
 from app.theme.ground import set_ground
 from app.theme.icons import Icon
@@ -26,8 +26,8 @@ from app.widgets.button import Button, ButtonKind
 from app.widgets.folder_dialog import ask_for_folder
 from app.widgets.header import Header
 from app.widgets.lay_out import lay_out
-from app.widgets.page_scroll import PageScroll
 from app.widgets.page_stack import PageStack
+from app.widgets.reading_area import scrolled
 from app.widgets.start_pages import EmptyPage, WorkingPage
 from app.widgets.text import Text
 from app.wording.body import side_name
@@ -40,7 +40,7 @@ from devices.files.refusal import FileRefusedError
 
 if TYPE_CHECKING:  # their imports take a second; the window must not wait for them
     from app.results.result_page import ResultPage
-    from app.workers.opening import Opened
+    from app.summary.request import AnalysedVisit
     from core.session import Patient
 
 _log = logging.getLogger(__name__)
@@ -70,7 +70,7 @@ class SessionScreen(QWidget):
         self._background, self._looking, self._comparing, self._saving = (Background(self) for _ in range(4))
         self._has_way_back = False
         self._results: ResultPage | None = None
-        self._opened: Opened | None = None
+        self._opened: AnalysedVisit | None = None
         self._saved_in = Path()
         self._dialog: QFileDialog | None = None
         self.header = Header()
@@ -155,7 +155,7 @@ class SessionScreen(QWidget):
         for page in (self.empty, self.working):
             self.pages.addWidget(page)
         banner_row = lay_out(QVBoxLayout(), self.banner, margins=(24, 0, 24, 0))
-        pages = PageScroll(self.pages)
+        pages = scrolled(self.pages, is_upright=False)
         lay_out(QVBoxLayout(self), self.header, banner_row, (pages, 1), self.bar, margins=0, spacing=0)
 
     def _connect(self) -> None:
@@ -164,7 +164,7 @@ class SessionScreen(QWidget):
             page.open_demonstration.clicked.connect(self.demonstration_requested)
         self.bar.back.clicked.connect(self.leave)
         self.bar.how_found.clicked.connect(self._on_how_found)
-        self.working.stop_pressed.connect(self.stop)
+        self.working.stop.clicked.connect(self.stop)
         self._background.progressed.connect(self._on_progressed)
         self._background.done.connect(self._on_done)
         self._background.failed.connect(self._on_failed)
@@ -209,11 +209,9 @@ class SessionScreen(QWidget):
         words = place(what)
         self.working.show_progress(share, words[:1].upper() + words[1:])
 
-    def _on_done(self, opened: "Opened") -> None:
-        from app.summary.request import AnalysedVisit
-
+    def _on_done(self, opened: "AnalysedVisit") -> None:
         if self._results is None:
-            from app.results.result_page import ResultPage
+            from app.results.result_page import ResultPage  # numpy, pyqtgraph
 
             self._results = ResultPage()
             self.pages.addWidget(self._results)
@@ -225,7 +223,7 @@ class SessionScreen(QWidget):
             for before, after in pairwise(order):
                 self.setTabOrder(before, after)
         self._opened, session = opened, opened.session
-        self._results.show_visit(AnalysedVisit(session, opened.analysis))
+        self._results.show_visit(opened)
         self.header.show_session(
             session.patient.code or tr("No code"), _in_words(session.patient), session.is_simulated
         )
@@ -260,8 +258,6 @@ class SessionScreen(QWidget):
         self.behind.show_saved(self._saved_in)
 
     def _on_figures_not_saved(self, error: Exception) -> None:
-        from app.results.diagnostics_controller import cannot_write
-
         if not isinstance(error, OSError):
             _log.error("the figures were not saved", exc_info=error)
         self.banner.show_message(*(f"{stated}." for stated in cannot_write(self._saved_in)))

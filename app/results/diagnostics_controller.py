@@ -1,20 +1,17 @@
 """Controller of "How was this found". One joint at a time, computed beside the screen, shown, and saved as files."""
 
 import logging
-from collections.abc import Callable, Mapping
+from collections.abc import Mapping
 from dataclasses import replace
 from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING
-from uuid import UUID
 
 from PySide6.QtCore import QObject, Signal
 from PySide6.QtWidgets import QFileDialog
 
 from app.exports.proposed_names import free_name, session_name
 from app.results.found_page import FoundPage
-from app.storage.audit import about
-from app.storage.stored import Action, LibraryError
 from app.summary.diagnostics import write_diagnostics
 from app.widgets.folder_dialog import ask_for_new_folder
 from app.wording.recordings import ShownName, shown_names, with_shown_names
@@ -25,7 +22,6 @@ from core.results import Analysis, JointCalibration, RecordingAnalysis
 from core.verdicts.diagnostics import JointDiagnostics, diagnostics_of
 
 if TYPE_CHECKING:
-    from app.storage.opened import OpenedLibrary
     from core.findings import Finding
     from core.session import Session
 
@@ -141,28 +137,3 @@ class DiagnosticsController(QObject):
         if self._found is not None and self._session is not None:
             out = Path(folder)
             self.writing.emit(out, partial(write_diagnostics, self._found, self._session.is_simulated, out))
-
-
-def saved_from_library(
-    opened: "OpenedLibrary", session_id: UUID, what: str, folder: Path, write: Callable[[], None]
-) -> Path:
-    """Note an export of figures of a session and make it, on the library's thread; `what` is one of the WHATs.
-
-    Raises
-    ------
-    LibraryError
-        It cannot be noted, or the folder cannot be written.
-    """
-    opened.library.audit.note(Action.EXPORT, about("session", session_id), format=what)
-    try:
-        write()
-    except OSError as problem:
-        raise LibraryError(*cannot_write(folder)) from problem
-    return folder
-
-
-def cannot_write(folder: Path) -> tuple[str, str]:
-    """The message about a folder that takes no files."""
-    return tr("{folder} is not writable").format(folder=folder.name), tr(
-        "Choose another folder; the recordings are unchanged"
-    )

@@ -6,6 +6,11 @@ from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
 
+if sys.platform == "win32":
+    import msvcrt
+else:
+    import fcntl
+
 BEYOND_ALL_BYTES = 1 << 40
 
 
@@ -72,8 +77,6 @@ def hold(descriptor: int) -> None:
     """
     try:
         if sys.platform == "win32":
-            import msvcrt
-
             place = os.lseek(descriptor, 0, os.SEEK_CUR)
             os.lseek(descriptor, BEYOND_ALL_BYTES, os.SEEK_SET)  # what is locked there nobody can read
             try:
@@ -81,8 +84,6 @@ def hold(descriptor: int) -> None:
             finally:
                 os.lseek(descriptor, place, os.SEEK_SET)
         else:
-            import fcntl
-
             fcntl.flock(descriptor, fcntl.LOCK_EX | fcntl.LOCK_NB)
     except OSError as error:
         raise BlockingIOError(error.errno, "somebody else holds this file") from error

@@ -80,7 +80,7 @@ def forget(slots: KeySlots, code: str) -> None:
 def _keyring() -> Any:
     """The system's keyring, None without a safe one."""
     try:
-        import keyring
+        import keyring  # an extra
 
         found = keyring.get_keyring()
         return found if found.priority >= SAFE_PRIORITY else None

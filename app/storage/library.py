@@ -2,7 +2,6 @@
 
 This is what the application calls. Plain values go in and out (`app.storage.stored`), trouble is a `LibraryError` that
 can be shown as it is. Every call may come from any thread and may wait for the disk, so the screen's thread makes none.
-The database is loaded when a library is opened, not when this module is.
 """
 
 import datetime
@@ -12,16 +11,33 @@ from contextlib import contextmanager
 from dataclasses import replace
 from pathlib import Path
 from types import TracebackType
-from typing import TYPE_CHECKING, Self
+from typing import Self
 
+from sqlalchemy import select
+
+from app.storage.audit import Audit, about, append
+from app.storage.clinic.server_state import refuse_closed
+from app.storage.clinic.station import Station, station_of
+from app.storage.corrections import Corrections
+from app.storage.courses import Courses
 from app.storage.data_key import KeyMaterial
+from app.storage.database.engine import Database, sqlite_engine
+from app.storage.database.models import OperatorRow, folded
+from app.storage.database.schema import bring_up_to_date
+from app.storage.database.values import operator_of
+from app.storage.database.write_ahead_log import is_end_lost
+from app.storage.derived_keys import derived_keys
+from app.storage.journal_headers import write_headers
 from app.storage.layout import DATABASE, MOVING
+from app.storage.operators import Operators, OperatorSettings, add_operator
+from app.storage.patients import Patients
+from app.storage.recordings import Recordings
+from app.storage.results import Results
+from app.storage.root import LibraryRoot, root_of
+from app.storage.sessions import Sessions
+from app.storage.shared_edits import SharedEdits
 from app.storage.stored import Action, LibraryError, NotAllowedError, Operator, Role
-
-if TYPE_CHECKING:
-    from app.storage.clinic.station import Station
-    from app.storage.database.engine import Database
-    from app.storage.root import LibraryRoot
+from app.storage.unit_of_work import UnitOfWork
 
 DEMONSTRATOR = Operator("demo", "Demonstration", Role.ADMINISTRATOR)
 
@@ -40,25 +56,12 @@ class Library:
 
     def __init__(
         self,
-        database: "Database",
+        database: Database,
         data_key: KeyMaterial | None,
         now: Callable[[], datetime.datetime] = now_utc,
         is_end_lost: bool = False,
-        station: "Station | None" = None,
+        station: Station | None = None,
     ) -> None:
-        from app.storage.audit import Audit
-        from app.storage.corrections import Corrections
-        from app.storage.courses import Courses
-        from app.storage.database.schema import bring_up_to_date
-        from app.storage.derived_keys import derived_keys
-        from app.storage.operators import Operators, OperatorSettings
-        from app.storage.patients import Patients
-        from app.storage.recordings import Recordings
-        from app.storage.results import Results
-        from app.storage.sessions import Sessions
-        from app.storage.shared_edits import SharedEdits
-        from app.storage.unit_of_work import UnitOfWork
-
         self.is_end_lost, self.station = is_end_lost, station
         self.root: LibraryRoot | None = None  # of a library in a folder
         self.is_to_be_moved = False
@@ -129,10 +132,6 @@ class Library:
         LibraryError
             There is none, it does not open with this key, it is damaged, or a later version has written it.
         """
-        from app.storage.clinic.server_state import refuse_closed
-        from app.storage.clinic.station import station_of
-        from app.storage.database.write_ahead_log import is_end_lost
-
         try:
             station = station_of(folder)
             if station is None and not (folder / DATABASE).exists():
@@ -186,11 +185,6 @@ class Library:
         NotAllowedError
             It has operators already.
         """
-        from sqlalchemy import select
-
-        from app.storage.database.models import OperatorRow, folded
-        from app.storage.operators import add_operator
-
         first = replace(operator, code=folded(operator.code), role=Role.ADMINISTRATOR, is_active=True)
         with self.database.writing() as session:
             if session.scalars(select(OperatorRow.code).limit(1)).first() is not None:
@@ -207,11 +201,6 @@ class Library:
         NotAllowedError
             This library does not know the operator, or no longer.
         """
-        from app.storage.audit import about, append
-        from app.storage.clinic.server_state import refuse_closed
-        from app.storage.database.models import OperatorRow, folded
-        from app.storage.database.values import operator_of
-
         with self.database.writing() as session:
             if self.station is not None and not self.is_to_be_moved:
                 refuse_closed(session)
@@ -255,8 +244,6 @@ class Library:
         LibraryError
             It cannot be written.
         """
-        from app.storage.root import root_of
-
         try:
             self.root = root_of(folder, self.database)
         except OSError as error:
@@ -275,8 +262,6 @@ class Library:
         OSError
             A file cannot be written.
         """
-        from app.storage.journal_headers import write_headers
-
         write_headers(self.database, recordings)
 
     def close(self) -> None:
@@ -292,7 +277,5 @@ class Library:
         self.close()
 
 
-def _database(folder: Path, data_key: KeyMaterial | None, creates: bool) -> "Database":
-    from app.storage.database.engine import Database, sqlite_engine
-
+def _database(folder: Path, data_key: KeyMaterial | None, creates: bool) -> Database:
     return Database(sqlite_engine(folder / DATABASE, data_key, creates=creates))

@@ -46,6 +46,11 @@ class OpenedLibrary:
         return self.folder / RECORDINGS
 
     @property
+    def slots(self) -> KeySlots:
+        """What opens it, as `slots_of` gives it."""
+        return slots_of(self.folder)
+
+    @property
     def keys_folder(self) -> Path:
         """Where the slots are that open it: what a station works with without its server has the station's."""
         return self.folder if self.away_from is None else self.folder.parent

@@ -112,7 +112,7 @@ def root_of(folder: Path, database: "Database") -> LibraryRoot:
     OSError
         The folder cannot be read or written.
     """
-    from app.storage.database.models import SettingRow
+    from app.storage.database.models import SettingRow  # the page of a missing library opens none
 
     with database.reading() as session:
         row = session.get(SettingRow, ID_SETTING)

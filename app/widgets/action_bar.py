@@ -14,7 +14,6 @@ from PySide6.QtGui import (
     QFontMetrics,
     QMouseEvent,
     QPainter,
-    QPaintEvent,
     QResizeEvent,
 )
 from PySide6.QtWidgets import QSizePolicy, QWidget
@@ -24,6 +23,7 @@ from app.theme.ground import Ground, set_ground
 from app.theme.icons import Icon, paint_icon
 from app.widgets.button import HEIGHT, Button, ButtonKind
 from app.widgets.grid import LEAST, NARROW_BELOW, side_margin
+from app.widgets.painted import Painted
 from app.widgets.painted_text import PaintedText
 from app.widgets.text import SEMIBOLD, Text
 from app.wording.numbers import clock
@@ -225,7 +225,6 @@ class ActionBar(QWidget):
 
     def _arrange(self) -> None:
         """Put all in one row, or the words above the verbs, or the verbs in as many rows as they need."""
-        px = current_theme().px
         margin = side_margin(self.width(), current_theme())
         gap = px(16 if self.width() >= px(NARROW_BELOW) else 8)
         room = max(self.width(), px(LEAST)) - 2 * margin
@@ -263,7 +262,6 @@ class ActionBar(QWidget):
 
     def _fits(self, width: int) -> bool:
         """Return whether the words may stand beside the verbs: not squeezed, and no higher than the bar."""
-        px = current_theme().px
         texts = [text for text in (self._title, self._note) if text.text()]
         widest = max((text.fontMetrics().horizontalAdvance(text.text()) for text in texts), default=0)
         return width >= min(widest, px(NOTE_AT_LEAST)) and self._words_height(width) <= px(BAR - 8)
@@ -274,7 +272,6 @@ class ActionBar(QWidget):
 
     def _narrowed(self, box: QRect) -> QRect:
         """Give lines of a length that is read at a glance: two short ones rather than a long one."""
-        px = current_theme().px
         if self._state.recording is not None:
             return box
         for widest in (NOTE_WIDTH, 2 * NOTE_WIDTH):
@@ -355,7 +352,7 @@ class VerbButton(Button):
         return size
 
 
-class _Clock(QWidget):
+class _Clock(Painted):
     """The dot of a recording and its time. The dot does not blink."""
 
     def __init__(self, parent: QWidget) -> None:
@@ -380,14 +377,11 @@ class _Clock(QWidget):
         widest = QFontMetrics(theme.font(40, SEMIBOLD)).horizontalAdvance("000:00")
         return QSize(self._text_left() + widest, theme.px(HEIGHT))
 
-    def paintEvent(self, _event: QPaintEvent) -> None:
+    def draw(self, painter: QPainter) -> None:
         theme = current_theme()
-        painter = QPainter(self)
         side = theme.px(DOT * 24 / 14)  # the icon's dot is 14 of its 24
         dot = QRectF(theme.px(12) - side / 2, (self.height() - side) / 2, side, side)
         paint_icon(painter, Icon.RECORDING, dot, theme.colours.inv_ink)
-        for text in self.painted_texts():
-            text.paint(painter, theme.colours)
 
     def _text_left(self) -> int:
         return px(36)

@@ -1,13 +1,14 @@
 """What happened and what to do, in the page and never in a dialog. It stays until it is dismissed or made good."""
 
 from PySide6.QtCore import QPointF, QRectF, Signal
-from PySide6.QtGui import QAccessible, QAccessibleAnnouncementEvent, QColor, QPainter, QPaintEvent
-from PySide6.QtWidgets import QHBoxLayout, QSizePolicy, QVBoxLayout, QWidget
+from PySide6.QtGui import QAccessible, QAccessibleAnnouncementEvent, QColor, QPainter
+from PySide6.QtWidgets import QHBoxLayout, QSizePolicy, QVBoxLayout
 
 from app.theme.current import current_theme, scaled
 from app.theme.icons import Icon, paint_icon
 from app.widgets.button import Button, ButtonKind
 from app.widgets.lay_out import lay_out
+from app.widgets.painted import Painted
 from app.widgets.text import SEMIBOLD, Text
 from app.wording.translation import tr
 
@@ -16,7 +17,7 @@ MARK = 36
 ABOVE = 12  # clear of the header; gone together with the banner
 
 
-class Banner(QWidget):
+class Banner(Painted):
     """Hidden until it is given something to show."""
 
     accessible_role = QAccessible.Role.AlertMessage
@@ -54,10 +55,9 @@ class Banner(QWidget):
         self.show()
         QAccessible.updateAccessibility(QAccessibleAnnouncementEvent(self, self.text))
 
-    def paintEvent(self, _event: QPaintEvent) -> None:
+    def draw(self, painter: QPainter) -> None:
         theme = current_theme()
         c, px = theme.colours, theme.px
-        painter = QPainter(self)
         box = QRectF(self.rect()).adjusted(0.5, px(ABOVE) + 0.5, -0.5, -0.5)
         theme.paint_box(painter, box, c.caution, c.caution_edge, 1)
         centre = QPointF(px(16 + MARK / 2), (self.height() + px(ABOVE)) / 2)

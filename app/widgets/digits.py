@@ -1,16 +1,17 @@
 """A figure that is read from across the room: every digit in a cell of its own, so that nothing trembles."""
 
 from PySide6.QtCore import QRectF, QSize, Qt
-from PySide6.QtGui import QColor, QFontMetricsF, QPainter, QPaintEvent
+from PySide6.QtGui import QColor, QFontMetricsF, QPainter
 from PySide6.QtWidgets import QSizePolicy, QWidget
 
-from app.theme.current import current_theme, scaled
+from app.theme.current import current_theme, px, scaled
+from app.widgets.painted import Painted
 from app.widgets.text import SEMIBOLD
 
 UNIT_SHARE = 0.3  # of the figure's size
 
 
-class Digits(QWidget):
+class Digits(Painted):
     """`widest` is the longest text that is to come, for which the size is made to fit; `size` in px is the most."""
 
     def __init__(self, size: float, widest: str, unit: str = "", parent: QWidget | None = None):
@@ -31,7 +32,6 @@ class Digits(QWidget):
             self.update()
 
     def sizeHint(self) -> QSize:
-        px = current_theme().px
         return QSize(px(self._most * 2), px(self._most))
 
     def cells(self) -> list[tuple[str, QRectF]]:
@@ -46,9 +46,8 @@ class Digits(QWidget):
             x += width
         return found
 
-    def paintEvent(self, _event: QPaintEvent) -> None:
+    def draw(self, painter: QPainter) -> None:
         theme, size = current_theme(), self._size()
-        painter = QPainter(self)
         painter.setPen(QColor(theme.colours.ink))
         painter.setFont(theme.font(size, SEMIBOLD))
         end = 0.0

@@ -179,7 +179,6 @@ class Gauge(QWidget):
         """Whether it is compact, or too low for all of its words under each other, as below a banner."""
         if self._is_compact:
             return True
-        px = current_theme().px
         if self.height() < px(BLOCK + 2 * LEAST_ROUND):
             return True
         width = self._words_box(self._ring()).width()
@@ -211,7 +210,6 @@ class Gauge(QWidget):
 
     def _ring(self) -> QRectF:
         """The square of the ring on a full card."""
-        px = current_theme().px
         grow = min(self.width() / px(CARD.width()), self.height() / px(CARD.height()))
         middle = px(MIDDLE) * min(max(grow, 0.8), 1.3)
         room = min(self.height() - 2 * px(MARGIN), 2 * middle - 2 * px(MARGIN))
@@ -221,7 +219,6 @@ class Gauge(QWidget):
 
     def _words_box(self, ring: QRectF) -> QRectF:
         """Where the words of a full card are, beside its ring."""
-        px = current_theme().px
         words = QRectF(px(PADDING), (self.height() - px(BLOCK - 4)) / 2, self.width() - 2 * px(PADDING), px(BLOCK))
         if self._joint.side is Side.RIGHT:
             words.setRight(min(ring.left() - px(16), words.left() + px(WIDEST)))

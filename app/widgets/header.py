@@ -1,13 +1,14 @@
 """Header line at the top of every page: whose session is on the screen, and whether it is real."""
 
 from PySide6.QtCore import QPoint, QPointF, QRect, QSize, Qt
-from PySide6.QtGui import QPainter, QPaintEvent, QResizeEvent
+from PySide6.QtGui import QPainter, QResizeEvent
 from PySide6.QtWidgets import QSizePolicy, QWidget
 
-from app.theme.current import current_theme, on_theme, scaled
+from app.theme.current import current_theme, on_theme, px, scaled
 from app.theme.ground import Ground, set_ground
 from app.theme.theme import CHIP_RADIUS
 from app.widgets.grid import LEAST, side_margin
+from app.widgets.painted import Painted
 from app.widgets.stopwatch import Stopwatch
 from app.widgets.strip_button import StripButton
 from app.widgets.text import SEMIBOLD, Text
@@ -86,7 +87,6 @@ class Header(QWidget):
             self._arrange()
 
     def _arrange(self) -> None:
-        px = current_theme().px
         margin, gap = side_margin(self.width(), current_theme()), px(16)
         line = px(COMPACT_HEIGHT if self._is_compact else HEIGHT)
         room = max(self.width(), px(LEAST)) - 2 * margin
@@ -134,17 +134,15 @@ def _size(widget: QWidget) -> QSize:
     return widget.sizeHint().expandedTo(widget.minimumSize())
 
 
-class ProductMark(QWidget):
+class ProductMark(Painted):
     """The program's mark: two legs, left solid, right dashed."""
 
     def __init__(self) -> None:
         super().__init__()
         scaled(self.setFixedSize, 28, 28)
 
-    def paintEvent(self, _event: QPaintEvent) -> None:
+    def draw(self, painter: QPainter) -> None:
         theme = current_theme()
-        painter = QPainter(self)
-        painter.setRenderHint(QPainter.RenderHint.Antialiasing)
         unit = self.width() / 24
         hip = QPointF(12.5 * unit, 2.5 * unit)
         for side, foot in ((Side.RIGHT, 3.5), (Side.LEFT, 20.5)):  # it faces you: the right leg is at your left

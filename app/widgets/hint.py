@@ -3,12 +3,13 @@
 from dataclasses import dataclass
 
 from PySide6.QtCore import QRectF, QSize, Qt
-from PySide6.QtGui import QAccessible, QAccessibleAnnouncementEvent, QColor, QFontMetrics, QPainter, QPaintEvent
-from PySide6.QtWidgets import QSizePolicy, QWidget
+from PySide6.QtGui import QAccessible, QAccessibleAnnouncementEvent, QColor, QFontMetrics, QPainter
+from PySide6.QtWidgets import QSizePolicy
 
 from app.theme.current import current_theme, px
 from app.theme.icons import Icon, paint_icon
 from app.theme.theme import CARD_RADIUS
+from app.widgets.painted import Painted
 from app.widgets.text import MEDIUM, SEMIBOLD
 from app.wording.numbers import clock
 from app.wording.translation import tr
@@ -32,7 +33,7 @@ class Hint:
     phrase: str = ""
 
 
-class HintBand(QWidget):
+class HintBand(Painted):
     accessible_role = QAccessible.Role.Note
 
     def __init__(self) -> None:
@@ -71,14 +72,12 @@ class HintBand(QWidget):
         self.update()
 
     def sizeHint(self) -> QSize:
-        px = current_theme().px
         height = COMPACT_HEIGHT if self._is_compact else LARGE_HEIGHT if self._is_large else HEIGHT
         return QSize(px(480), px(height))
 
-    def paintEvent(self, _event: QPaintEvent) -> None:
+    def draw(self, painter: QPainter) -> None:
         theme, hint = current_theme(), self._hint
         c, px = theme.colours, theme.px
-        painter = QPainter(self)
         theme.paint_box(painter, QRectF(self.rect()), c.inv, radius=CARD_RADIUS)
         painter.setBrush(Qt.BrushStyle.NoBrush)
         middle = self.height() / 2
@@ -132,7 +131,6 @@ class HintBand(QWidget):
         return not self._is_compact and self.width() >= px(LARGE_FROM)
 
     def _clock(self) -> QRectF:
-        px = current_theme().px
         small = current_theme().font(14 if self._is_compact else 16, MEDIUM)
         width = max(px(128), QFontMetrics(small).horizontalAdvance(self._usual) + px(4))
         height = px(64 if self._is_compact else 88)

@@ -1,20 +1,21 @@
 """What is so and what follows, beside what it is about, after an icon. Yellow where it needs a look."""
 
 from PySide6.QtCore import QRectF, Qt
-from PySide6.QtGui import QAccessible, QAccessibleAnnouncementEvent, QPainter, QPaintEvent
-from PySide6.QtWidgets import QHBoxLayout, QSizePolicy, QVBoxLayout, QWidget
+from PySide6.QtGui import QAccessible, QAccessibleAnnouncementEvent, QPainter
+from PySide6.QtWidgets import QHBoxLayout, QSizePolicy, QVBoxLayout
 
 from app.theme.current import current_theme
 from app.theme.ground import Ground, set_ground
 from app.theme.icons import Icon, paint_icon
 from app.widgets.lay_out import lay_out
+from app.widgets.painted import Painted
 from app.widgets.text import SEMIBOLD, Text
 
 ICON = 22
 PADDING = 10
 
 
-class Notice(QWidget):
+class Notice(Painted):
     """Keeps its place while it has nothing to say, unless it is hidden. `padding`: above and below, px."""
 
     accessible_role = QAccessible.Role.Note
@@ -53,10 +54,9 @@ class Notice(QWidget):
             QAccessible.updateAccessibility(QAccessibleAnnouncementEvent(self, self.text))
         self.update()
 
-    def paintEvent(self, _event: QPaintEvent) -> None:
+    def draw(self, painter: QPainter) -> None:
         theme = current_theme()
         c, px = theme.colours, theme.px
-        painter = QPainter(self)
         if self._icon is not None:
             first = self._what if self._what.text() else self._then
             wraps = Qt.TextFlag.TextWordWrap

@@ -9,7 +9,7 @@ from PySide6.QtCore import QElapsedTimer, QRect, QRectF, Qt, QTimer, Signal
 from PySide6.QtGui import QAccessible, QColor, QPainter, QPaintEvent, QResizeEvent
 from PySide6.QtWidgets import QSizePolicy, QWidget
 
-from app.theme.current import current_theme, on_theme
+from app.theme.current import current_theme, on_theme, px
 from app.widgets.body_figure import paint_legs
 from app.widgets.grid import LEAST, side_margin
 from app.widgets.painted_text import CENTRE, PaintedText
@@ -164,7 +164,6 @@ class SensorStrip(QWidget):
 
     def _arrange_seven(self) -> None:
         """In one row about the pelvis; in two with the pelvis at the end of the first; else the sides side by side."""
-        px = current_theme().px
         margin = side_margin(self.width(), current_theme())
         gap, height = px(GAP), px(COMPACT_TILE if self._is_compact else TILE)
         room = max(self.width(), px(LEAST)) - 2 * margin
@@ -188,7 +187,6 @@ class SensorStrip(QWidget):
         self.update()
 
     def _arrange_six(self) -> None:
-        px = current_theme().px
         margin = side_margin(self.width(), current_theme())
         gap, height = px(GAP), px(COMPACT_TILE if self._is_compact else TILE)
         room = max(self.width(), px(LEAST)) - 2 * margin

@@ -7,6 +7,7 @@ from PySide6.QtGui import QAccessible, QColor, QImage, QImageReader, QKeyEvent, 
 from PySide6.QtWidgets import QSizePolicy, QVBoxLayout, QWidget
 
 from app.theme.current import current_theme, px
+from app.widgets.painted import Painted
 from app.wording.translation import tr, tr_n
 
 PAGE_WIDTH = 560  # a page of A4 that can be read
@@ -106,7 +107,7 @@ class Sheets(QWidget):
         self.setMinimumHeight(round(self.top_of(self.count)))
 
 
-class SmallSheets(QWidget):
+class SmallSheets(Painted):
     """A column of small pages. A click, or the arrow keys, go to one; the page that is read has a bar beside it.
 
     Signals
@@ -151,7 +152,6 @@ class SmallSheets(QWidget):
         return max(min(px(SMALL_WIDTH), room / max(heights, 1.0)), px(LEAST_WIDTH))
 
     def sizeHint(self) -> QSize:
-        px = current_theme().px
         return QSize(px(SMALL_WIDTH + 16), px(SMALL_WIDTH))
 
     def keyPressEvent(self, event: QKeyEvent) -> None:
@@ -172,11 +172,9 @@ class SmallSheets(QWidget):
             if self.place_of(number).contains(event.position()):
                 self._go_to(number)
 
-    def paintEvent(self, _event: QPaintEvent) -> None:
+    def draw(self, painter: QPainter) -> None:
         theme = current_theme()
-        painter = QPainter(self)
         painter.setRenderHint(QPainter.RenderHint.SmoothPixmapTransform)
-        painter.setRenderHint(QPainter.RenderHint.Antialiasing)
         painter.setFont(theme.font(12))
         for number, page in enumerate(self._pages):
             place = self.place_of(number)

@@ -2,16 +2,16 @@
 
 import numpy as np
 from PySide6.QtCore import QPointF
-from PySide6.QtGui import QAccessible, QPainter, QPaintEvent, QPolygonF
-from PySide6.QtWidgets import QWidget
+from PySide6.QtGui import QAccessible, QPainter, QPolygonF
 
 from app.theme.current import current_theme, scaled
+from app.widgets.painted import Painted
 from core.samples import FloatArray
 
 SIZE = (120, 28)
 
 
-class SmallCurve(QWidget):
+class SmallCurve(Painted):
     """`name` is what readers of screens say of it. A gap in the values is one in the line."""
 
     accessible_role = QAccessible.Role.Graphic
@@ -28,7 +28,7 @@ class SmallCurve(QWidget):
         self._time_s, self._values = time_s, values
         self.update()
 
-    def paintEvent(self, _event: QPaintEvent) -> None:
+    def draw(self, painter: QPainter) -> None:
         known = np.isfinite(self._values)
         if known.sum() < 2:
             return
@@ -37,8 +37,6 @@ class SmallCurve(QWidget):
         span_s, height = float(time_s[-1] - time_s[0]) or 1.0, (most - least) or 1.0
         x = 1 + (time_s - time_s[0]) / span_s * (self.width() - 2)
         y = self.height() - 1 - (values - least) / height * (self.height() - 2)
-        painter = QPainter(self)
-        painter.setRenderHint(QPainter.RenderHint.Antialiasing)
         painter.setPen(current_theme().pen(current_theme().colours.ink2, 1))
         ends = np.flatnonzero(np.diff(known.astype(np.int8), prepend=0, append=0))
         for start, end in zip(ends[::2], ends[1::2], strict=True):

@@ -1,6 +1,6 @@
 """What is shown in place of a result before there is one: an empty page, and a page that works."""
 
-from PySide6.QtCore import Qt, Signal
+from PySide6.QtCore import Qt
 from PySide6.QtWidgets import QHBoxLayout, QProgressBar, QVBoxLayout, QWidget
 
 from app.theme.current import scaled
@@ -36,8 +36,6 @@ class EmptyPage(QWidget):
 class WorkingPage(QWidget):
     """What is being done, how far it is, and the way out."""
 
-    stop_pressed = Signal()
-
     def __init__(self) -> None:
         super().__init__()
         self._title = Text(size=26, weight=SEMIBOLD, wraps=True)
@@ -50,7 +48,6 @@ class WorkingPage(QWidget):
         self.stop = Button(tr("Stop"), ButtonKind.SECONDARY, Icon.STOP, tr("Esc"))
         parts = (1, self._title, (self._line, 0, MIDDLE), (self._what, 0, MIDDLE), (self.stop, 0, MIDDLE), 1)
         lay_out(QVBoxLayout(self), *parts, margins=24, spacing=16)
-        self.stop.clicked.connect(self.stop_pressed)
         scaled(self._line.setFixedSize, 400, 8)
 
     def begin(self, title: str) -> None:

@@ -11,14 +11,14 @@ from PySide6.QtGui import (
 )
 from PySide6.QtWidgets import QSizePolicy, QVBoxLayout, QWidget
 
-from app.theme.current import current_theme, on_theme, scaled
+from app.theme.current import on_theme, px, scaled
 from app.theme.ground import Ground, set_ground
 from app.theme.icons import Icon
 from app.widgets.header import ProductMark
 from app.widgets.heard_order import hear_as_laid_out
 from app.widgets.lay_out import lay_out
-from app.widgets.page_scroll import PageScroll
 from app.widgets.rail_row import BelowRow, RailButton, RailForm, RailRow
+from app.widgets.reading_area import scrolled
 from app.widgets.text import REGULAR, SEMIBOLD, Text
 from app.wording.translation import tr
 
@@ -110,7 +110,7 @@ class StepRail(QWidget):
             layout.setSpacing(0)
         self._note_row = lay_out(QVBoxLayout(), self._note)
         lay_out(self._column, self._head, self._steps, 1, self._note_row, self._foot, spacing=0)
-        self._scroll = PageScroll(self._inside, is_upright=True)
+        self._scroll = scrolled(self._inside)
         self._scroll.setVerticalScrollBarPolicy(Qt.ScrollBarPolicy.ScrollBarAlwaysOff)  # wheel and arrows scroll
         lay_out(QVBoxLayout(self), self._scroll, margins=0)
 
@@ -167,7 +167,6 @@ class StepRail(QWidget):
         self._note.setVisible(has_words and bool(self._note.text()))
 
     def _apply_theme(self) -> None:
-        px = current_theme().px
         is_compact = self._form is RailForm.COMPACT
         self.setFixedWidth(px(self._form.value))
         self._head.setFixedHeight(px(53 if is_compact else 72))
@@ -196,7 +195,6 @@ class _NameTag(Text):
         self.hide()
 
     def name(self, row: RailButton) -> None:
-        px = current_theme().px
         window = self._rail.window()
         if self.parentWidget() is not window:
             self.setParent(window)

@@ -9,7 +9,7 @@ from PySide6.QtGui import (
 )
 from PySide6.QtWidgets import QHBoxLayout, QSizePolicy, QWidget
 
-from app.theme.current import current_theme, on_theme
+from app.theme.current import on_theme, px
 from app.theme.ground import Ground, set_ground
 from app.widgets.action_bar import BarAction, VerbButton
 from app.widgets.button import ButtonKind
@@ -94,7 +94,6 @@ class Toast(QWidget):
             self.hide()
 
     def _fit(self) -> None:
-        px = current_theme().px
         width = min(max(px(WIDTH), self.button.sizeHint().width() + px(180 + 32)), self._room)
         room = width - self.button.sizeHint().width() - px(16 + 12 + 4)
         self.setFixedSize(width, max(px(HEIGHT), self._text.heightForWidth(room) + px(16)))

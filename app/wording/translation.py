@@ -12,6 +12,8 @@ from pathlib import Path
 from string import Formatter
 from typing import Any
 
+from app.wording.pseudo_language import PseudoLanguage
+
 DOMAIN = "gaitwright"
 LOCALE = Path(str(files("resources") / "locale"))
 _catalogue = gettext.NullTranslations()
@@ -56,8 +58,6 @@ def use_language(language: str) -> None:
     global _catalogue, _language
     _language = language if gettext.find(DOMAIN, LOCALE, languages=[language]) else "en"
     if language == "pseudo":
-        from app.wording.pseudo_language import PseudoLanguage
-
         _catalogue = PseudoLanguage()
     else:
         _catalogue = gettext.translation(DOMAIN, LOCALE, languages=[language], fallback=True)

@@ -93,7 +93,7 @@ class LibraryController(QObject):
     @cached_property
     def _holder(self) -> "LibraryHolder":
         """Made by the first call: storage is imported by the thread, for that takes longer than the window may."""
-        from app.workers.library_holder import LibraryHolder
+        from app.workers.library_holder import LibraryHolder  # the thread waits, not the window
 
         return LibraryHolder(self._seen)
 

@@ -2,8 +2,8 @@
 
 The window, log in and what they import bring neither numpy nor the library's storage; so main_window, entry and the
 controller of the library import what does inside functions. Home and the wizard import at their top whatever they need,
-apart from what brings pyqtgraph (walking, result and findings), Typst or the formats of exports: a page that nobody has
-come to is not waited for.
+apart from the pages of results, and what brings Typst, Arrow or the formats of exports: a page that nobody has come to
+is not waited for. What stays inside functions states there what that buys (`tests/test_house_rules.py`).
 """
 
 import gc

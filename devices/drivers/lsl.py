@@ -368,7 +368,7 @@ def _library() -> ModuleType:
 
 def _imported() -> ModuleType:
     try:
-        import pylsl.util
+        import pylsl.util  # an extra
     except (ImportError, RuntimeError, OSError) as problem:  # RuntimeError: its own library is not there
         raise SourceRefusedError("Lab Streaming Layer is not installed", "Install gaitwright[lsl]") from problem
     library: ModuleType = pylsl

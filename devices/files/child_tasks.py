@@ -33,6 +33,7 @@ from devices.files.refusal import FileRefusedError
 from devices.files.session_folder import IN_THIS_PROCESS
 from devices.files.site_files import read_site
 from devices.files.system_calls import refuse_system_calls
+from devices.files.trial import BESIDE_INERTIAL
 
 REFERENCE_S, REFERENCE_BYTES_A_SECOND = 10.0, 1_000_000.0  # of processor time; ten times what a text takes
 IS_LINUX: bool = sys.platform == "linux"
@@ -99,10 +100,8 @@ def _files_of(asked: Details) -> tuple[list[Path], list[Path]]:
     """The files that a task may open, and the folders whose names it may list."""
     if asked["task"] not in (TRIAL, GATHER):
         return [Path(asked["path"])], []
-    from devices.files.ximu3_files import QUATERNION  # with SciPy, which is there by now
-
     named = list(map(Path, asked["files"]))
-    beside = [other for path in named for other in (path.with_name(QUATERNION), *tables_beside(path))]
+    beside = [other for path in named for other in (path.with_name(BESIDE_INERTIAL), *tables_beside(path))]
     return [*named, *beside], [folder for path in named for folder in folders_of_scans(path)]
 
 
@@ -144,7 +143,7 @@ def _read(asked: Details, arrays: list[Array]) -> object:
         return details_of_reference(read_reference(path), arrays)
     files = list(map(Path, asked["files"]))
     if task == GATHER:
-        from devices.files.gathering import gather
+        from devices.files.gathering import gather  # as below
 
         return details_of_gathered(gather(files))
     from devices.files.formats import read_trial  # here: SciPy takes longer to import than most files

@@ -331,7 +331,7 @@ class LimitedReading:
 
 
 def _found_rows(details: Any, arrays: Sequence[Array]) -> tuple[tuple[str, ...], list[Columns]]:
-    import pyarrow as pa
+    import pyarrow as pa  # home starts without it
 
     try:
         columns = tuple(map(str, details["columns"]))

@@ -72,7 +72,7 @@ def read_xlsx(path: Path, where: str, numeric: Collection[str], header_names: st
             "Install gaitwright[imports]",
             library="openpyxl",
         )
-    import openpyxl
+    import openpyxl  # an extra, and slow to import
 
     try:
         with path.open("rb") as file:

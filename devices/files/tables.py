@@ -268,7 +268,7 @@ def _read_body(
     file: BinaryIO, names: list[str], required: list[str], numeric: Collection[str], delimiter: str, decimal: str
 ) -> Any:
     """The rows after the header as an Arrow table, or the error that Arrow raised."""
-    import pyarrow.csv
+    import pyarrow.csv  # as above
 
     types = {name: pyarrow.float64() if name in numeric else pyarrow.string() for name in names}
     try:
@@ -292,7 +292,7 @@ def _read_body(
 
 def _swallows_lines(arrow: Any, numeric: Collection[str]) -> bool:
     """A quotation mark that is never closed takes the lines after it into one cell."""
-    import pyarrow.compute as pc
+    import pyarrow.compute as pc  # as above
 
     texts = [column for name, column in zip(arrow.column_names, arrow.columns, strict=True) if name not in numeric]
     return any(pc.any(pc.match_substring(column, "\n")).as_py() for column in texts)

@@ -12,6 +12,7 @@ from devices.files.refusal import FileRefusedError
 T = TypeVar("T")
 
 SESSION = "session"  # in place of a format: a session folder
+BESIDE_INERTIAL = "Quaternion.csv"  # of the x-IMU3's converter, with the orientation
 SIMULATED_MARK = "SIMULATED.txt"  # beside tables that belong to no session folder, which would say it
 PROGRAMS: Mapping[str, str] = {  # what writes each of `formats.FORMATS`, whose import takes longer than most files
     "xsens-mtmanager": "Xsens MT Manager",

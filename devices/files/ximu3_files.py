@@ -20,10 +20,10 @@ from devices.files.magnitudes import check_magnitudes
 from devices.files.own_clocks import with_own_clocks
 from devices.files.refusal import FileRefusedError
 from devices.files.tables import read_csv
-from devices.files.trial import ImportedSensor, ImportedTrial, read_each
+from devices.files.trial import BESIDE_INERTIAL, ImportedSensor, ImportedTrial, read_each
 from devices.stream import decoded
 
-INERTIAL, QUATERNION = "Inertial.csv", "Quaternion.csv"
+INERTIAL = "Inertial.csv"
 TIME = "Timestamp (us)"
 GYR = tuple(f"Gyroscope {axis} (deg/s)" for axis in "XYZ")
 ACC = tuple(f"Accelerometer {axis} (g)" for axis in "XYZ")
@@ -115,7 +115,7 @@ def _of_table(path: Path) -> tuple[ImuBlock, list[Finding]]:
         time_s=time_s[is_new],
         gyr_rad_s=np.radians(table.matrix(GYR)[is_new]),
         acc_m_s2=table.matrix(ACC)[is_new] * G,
-        q_earth_from_sensor=_orientation(path.with_name(QUATERNION), time_s[is_new]),
+        q_earth_from_sensor=_orientation(path.with_name(BESIDE_INERTIAL), time_s[is_new]),
     )
     return block, list(clock.findings)
 

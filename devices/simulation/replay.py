@@ -300,7 +300,12 @@ class ReplaySource:
 
 def demonstration(settings: WalkerSettings = DEMONSTRATION_SESSION) -> ReplaySource:
     """The patient that the application shows. Takes a second or two."""
-    return ReplaySource(labelled(simulate(settings).session), finishes=True)
+    return ReplaySource(moved(settings), finishes=True)
+
+
+def moved(settings: WalkerSettings) -> Session:
+    """What the demonstration's sensors send of a walker."""
+    return labelled(simulate(settings).session)
 
 
 def labelled(session: Session) -> Session:

@@ -126,7 +126,7 @@ class Radio:
                 "Bluetooth LE sensors cannot connect: a software library is missing",
                 "Install gaitwright[bluetooth]",
             )
-        import bleak
+        import bleak  # an extra
 
         async with self.connecting:
             try:
@@ -176,7 +176,7 @@ class BluetoothLink:
 
     async def connect(self) -> None:
         """Connect, one at a time with all other links of the adapter."""
-        from bleak import BleakClient
+        from bleak import BleakClient  # an extra
 
         if self.is_up:
             return
@@ -222,7 +222,7 @@ class BluetoothLink:
 
     @asynccontextmanager
     async def _lost_within(self, seconds: float) -> AsyncIterator[None]:
-        from bleak.exc import BleakError
+        from bleak.exc import BleakError  # an extra
 
         try:
             async with asyncio.timeout(seconds):

@@ -14,8 +14,8 @@ from typing import Any
 import numpy as np
 import pytest
 
+from app.cli import agree, import_files, places
 from app.cli.main import main
-from app.importing import untrusted_files as foreign_files
 from core.body import Site
 from core.samples import ImuBlock
 from devices.files.formats import read_trial
@@ -236,12 +236,15 @@ def case(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str], request: pytest.FixtureRequest
 ) -> Case:
     """Files are read in this process, as the limited one reads them."""
-    monkeypatch.setattr(foreign_files, "read_foreign_session", lambda folder, _waiting: read_session(folder))
-    monkeypatch.setattr(foreign_files, "read_foreign_reference", lambda path, _waiting: read_reference(path))
-    monkeypatch.setattr(foreign_files, "write_over_session", write_session)
-    monkeypatch.setattr(
-        foreign_files, "read_foreign_trial", lambda name, files, rate_hz, _waiting: read_trial(name, files, rate_hz)
-    )
+    read_here: dict[str, Any] = {
+        "read_foreign_session": lambda folder, _waiting: read_session(folder),
+        "read_foreign_reference": lambda path, _waiting: read_reference(path),
+        "write_over_session": write_session,
+        "read_foreign_trial": lambda name, files, rate_hz, _waiting: read_trial(name, files, rate_hz),
+    }
+    for module in (agree, import_files, places):
+        for name in read_here.keys() & vars(module).keys():
+            monkeypatch.setattr(module, name, read_here[name])
     return Case(tmp_path / "out", capsys)
 
 

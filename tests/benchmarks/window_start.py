@@ -63,7 +63,7 @@ def started(environment: Mapping[str, str]) -> tuple[float, float]:
 
 def make_library(environment: Mapping[str, str]) -> None:
     code = (
-        "from pathlib import Path; from app.cli.library import default_folder; "
+        "from pathlib import Path; from app.storage.layout import default_folder; "
         "from app.storage.opened import create_library; from app.storage.stored import Operator, Role; "
         "someone = Operator('AB', 'A. B.', Role.ADMINISTRATOR); "
         "create_library(default_folder(), someone, 'long enough a phrase')[0].library.close()"

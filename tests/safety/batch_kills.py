@@ -22,7 +22,8 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
 
-from app.cohort.batch.executors import MOST_TRIES, PRELOADED, ProcessExecutor, of_a_cluster, of_this_computer
+from app.cohort.batch.cluster import of_a_cluster
+from app.cohort.batch.executors import MOST_TRIES, PRELOADED, ProcessExecutor, of_this_computer
 from app.cohort.batch.spread import Workers, finished
 from tests.app.batch_stand_ins import StandIn, digest_of
 

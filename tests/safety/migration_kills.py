@@ -27,7 +27,8 @@ from sqlalchemy import Connection, Engine, event, inspect, text
 
 from app.storage.data_key import DataKey
 from app.storage.database.engine import Database, sqlite_engine
-from app.storage.database.schema import NEWEST, alembic_config, move
+from app.storage.database.schema import NEWEST
+from app.storage.database.steps import alembic_config, move
 from app.storage.exchange import session_with_samples
 from app.storage.layout import DATABASE
 from app.storage.opened import logged_in, slots_of

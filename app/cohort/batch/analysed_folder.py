@@ -40,7 +40,7 @@ def write_analysed(session: Session, folder: Path, choices: AnalysisChoices, rep
 
         write_log(session, analysis, folder / LOG)
     if choices.has_report:
-        from app.reports.patient.report_file import write_report
+        from app.reports.patient.report_file import write_report  # Typst, and the pages
 
         report(1.0, "report")
         write_report(session, analysis, folder, datetime.now().astimezone(), version_of("gaitwright"))

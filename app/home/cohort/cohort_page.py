@@ -10,7 +10,7 @@ from app.cohort.study.measures import in_order, measure_words
 from app.home.cohort.cohort_table import MOST_ROWS, groups_table
 from app.home.cohort.cohort_text import group_name, grouping_word, notes, sentence
 from app.plots.group_plot import GroupLine, GroupPlot
-from app.theme.current import current_theme
+from app.theme.current import px
 from app.theme.icons import Icon
 from app.widgets.button import Button, ButtonKind
 from app.widgets.card import Card
@@ -101,7 +101,6 @@ class QuestionsPage(QWidget):
     def set_room(self, width: float) -> None:
         """Lay out for a page of this width, in px of the design."""
         self._width = width
-        px = current_theme().px
         room = px(width) - 2 * px(MARGIN)
         halves = (self._first_half, self._second_half)
         beside = sum(half.sizeHint().width() for half in halves) + px(GAP)

@@ -15,6 +15,7 @@ from app.home.importing.import_words import (
     origin_words,
     sensor_name,
 )
+from app.importing.import_drafts import DraftRecording, DraftSensor, Origin, SessionDraft, key_of
 from app.theme.current import scaled
 from app.theme.icons import Icon
 from app.widgets.button import Button, ButtonKind
@@ -29,7 +30,6 @@ from core.body import LEG_SITES, Side, Site
 from core.session import RecordingKind
 
 if TYPE_CHECKING:
-    from app.importing.import_drafts import DraftRecording, DraftSensor, Origin, SessionDraft
     from core.placement.chains import Chains
 
 OPEN, ELSEWHERE = "open", "elsewhere"  # what has no site or kind: left open, and worn elsewhere than on a leg
@@ -104,7 +104,7 @@ class DraftCards(QWidget):
         self._of_recordings.hide()
         self._of_sensors.hide()
 
-    def show_draft(self, program: str, draft: "SessionDraft") -> None:
+    def show_draft(self, program: str, draft: SessionDraft) -> None:
         """Show what was read, with what is proposed."""
         self._chains = None
         self._of_recordings.show()
@@ -195,10 +195,6 @@ class DraftCards(QWidget):
         self.placing_requested.emit()
 
     def _on_side(self, side: Side) -> None:
-        from app.importing.import_drafts import (
-            Origin,  # here: the window starts without what reads other programs' files
-        )
-
         assert self._chains is not None
         sites = self._chains.sites(side)
         self._chains = None
@@ -209,7 +205,7 @@ class DraftCards(QWidget):
 
 
 class _RecordingRow:
-    def __init__(self, column: QVBoxLayout, recording: "DraftRecording") -> None:
+    def __init__(self, column: QVBoxLayout, recording: DraftRecording) -> None:
         self._part = QWidget()
         grid = QGridLayout(self._part)
         grid.setContentsMargins(0, 0, 0, 0)
@@ -237,9 +233,7 @@ class _RecordingRow:
 
 
 class _SensorRow:
-    def __init__(self, grid: QGridLayout, sensor: "DraftSensor", shown: "DraftRecording") -> None:
-        from app.importing.import_drafts import key_of
-
+    def __init__(self, grid: QGridLayout, sensor: DraftSensor, shown: DraftRecording) -> None:
         self.sensor = sensor
         self._origin, self._proposed = sensor.origin, sensor.site
         name = sensor_name(sensor)
@@ -264,7 +258,7 @@ class _SensorRow:
     def _parts(self) -> tuple[QWidget, ...]:
         return self._stated, self._curve, self.site
 
-    def choose(self, site: Site, origin: "Origin") -> None:
+    def choose(self, site: Site, origin: Origin) -> None:
         """As something other than the person states."""
         self._origin, self._proposed = origin, site
         self.site.setCurrentIndex(self.site.findData(site))

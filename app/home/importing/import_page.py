@@ -36,10 +36,7 @@ class ImportPage(QWidget):
         What could not be read is to be tried again at a rate, Hz.
     """
 
-    code_changed = Signal(str)
     changed = Signal()
-    files_requested = Signal()
-    folder_requested = Signal()
     reading_requested = Signal(float)
 
     def __init__(self) -> None:
@@ -137,11 +134,8 @@ class ImportPage(QWidget):
         cards = (self._begin, self.draft, self._unread, self.findings)
         column = lay_out(QVBoxLayout(self), self._title, self._folder, *cards, 1)
         lay_out(column, margins=(24, 16, 24, 20), spacing=16)
-        self.code.edited.connect(self.code_changed)
         self.day_field.edited.connect(self._on_day_edited)
         self.draft.changed.connect(self.changed)
-        self.choose_files.clicked.connect(self.files_requested)
-        self.choose_folder.clicked.connect(self.folder_requested)
         self.read_again.clicked.connect(self._on_read_again)
         self._show_parts(self._begin)
         self.show_unread((), can_try_again=False)

@@ -108,7 +108,7 @@ class Entry(QObject):
             self._key = ""
             self.first_start.ask_for_recovery_key()
         if self._delay is None:  # of a library that was just made
-            from app.storage.login_delay import LoginDelay
+            from app.storage.login_delay import LoginDelay  # cryptography
 
             self._delay = LoginDelay(self._folder, time.monotonic)
         self.log_in.show_cover(code, is_recording, is_asked_for=is_asked_for)
@@ -148,14 +148,14 @@ class Entry(QObject):
     def _connect(self) -> None:
         first, log_in, controller = self.first_start, self.log_in, self._controller
         first.made.connect(self._on_made)
-        first.look_requested.connect(self._on_look_requested)
+        first.look_again.clicked.connect(self._on_look_requested)
         first.done.connect(self._on_key_kept)
         first.typed_back.connect(self._confirm)
-        first.renew_requested.connect(self._on_renew_requested)
-        first.put_off.connect(self._enter)
+        first.renew.clicked.connect(self._on_renew_requested)
+        first.later.clicked.connect(self._enter)
         first.print_requested.connect(self._on_print_requested)
         first.save_requested.connect(self._on_save_requested)
-        first.join_requested.connect(self._on_join_requested)
+        first.join.clicked.connect(self._on_join_requested)
         self.join.joined.connect(self._on_server_named)
         self.join.again_requested.connect(self._join_by_itself)
         self.join.left.connect(self.begin)
@@ -289,12 +289,10 @@ class Entry(QObject):
 
     def _on_own_chosen(self, passphrase: str) -> None:
         def change(opened: "OpenedLibrary") -> None:
-            from app.storage.opened import slots_of
-
             operator = opened.library.operator
             assert operator is not None  # whoever opens a library is logged in
             assert opened.data_key is not None  # the demonstration has no passphrase
-            slots_of(opened.folder).set_passphrase(opened.data_key, operator.code, passphrase, (operator.name,))
+            opened.slots.set_passphrase(opened.data_key, operator.code, passphrase, (operator.name,))
 
         self.log_in.show_busy(True)
         self._controller.run(change, self._on_own_set, self._on_own_refused, self)
@@ -353,9 +351,7 @@ class Entry(QObject):
     def _on_renew_requested(self) -> None:
         def renew(opened: "OpenedLibrary") -> str:
             assert opened.data_key is not None  # the demonstration's is not asked for
-            from app.storage.opened import slots_of
-
-            return slots_of(opened.folder).renew_recovery_key(opened.data_key)
+            return opened.slots.renew_recovery_key(opened.data_key)
 
         self._controller.run(renew, self._on_renewed, self._on_confirm_failed, self)
 
@@ -392,9 +388,7 @@ def _confirming(typed: str) -> "Callable[[OpenedLibrary], None]":
     """What keeps that the recovery key was confirmed; then nobody is asked for it any more."""
 
     def confirm(opened: "OpenedLibrary") -> None:
-        from app.storage.opened import slots_of
-
-        slots_of(opened.folder).confirm_recovery_key(typed)
+        opened.slots.confirm_recovery_key(typed)
 
     return confirm
 
@@ -413,6 +407,6 @@ def _too_many() -> str:
 
 
 def _is_end_of_key(typed: str, shown: str) -> bool:
-    from app.storage.keys import is_end_of_recovery_key
+    from app.storage.keys import is_end_of_recovery_key  # cryptography
 
     return is_end_of_recovery_key(typed, shown)

@@ -13,7 +13,7 @@ from PySide6.QtWidgets import QBoxLayout, QHBoxLayout, QWidget
 
 from app.home.login.typed_entry import COLUMN, EntryPage
 from app.system.passphrases import REFUSED, strength_in_words, strength_of
-from app.theme.current import current_theme, on_theme
+from app.theme.current import on_theme, px
 from app.theme.icons import Icon
 from app.widgets.button import Button, ButtonKind
 from app.widgets.card import Card
@@ -34,11 +34,7 @@ class FirstStartPage(EntryPage):
     save_requested = Signal(str)
     done = Signal()  # the end of the recovery key was typed
     typed_back = Signal(str)  # a recovery key that is not shown here, to be compared with the library's
-    renew_requested = Signal()
-    put_off = Signal()
     demonstration_requested = Signal()
-    join_requested = Signal()  # the library that a clinic's stations share
-    look_requested = Signal()  # whether the library that is missing is there now
 
     def __init__(self, shortest: int, is_end_of_key: Callable[[str, str], bool]) -> None:
         super().__init__()
@@ -163,7 +159,6 @@ class FirstStartPage(EntryPage):
 
     def _fit(self) -> None:
         """The other ways stand beside each other where there is the room."""
-        px = current_theme().px
         room = min(px(COLUMN), self.width() - px(48))
         needed = self.join.sizeHint().width() + self.demonstration.sizeHint().width() + px(4)
         way = QBoxLayout.Direction.LeftToRight if needed <= room else QBoxLayout.Direction.TopToBottom
@@ -189,16 +184,12 @@ class FirstStartPage(EntryPage):
         lay_out(self.column, self._key_title, self._key_lead, self._asking_lead, self._second)
 
     def _connect(self) -> None:
-        self.look_again.clicked.connect(self.look_requested)
         self.make_another.clicked.connect(self._on_make_another)
         self.make.clicked.connect(self._on_make)
         self.demonstration.clicked.connect(self.demonstration_requested)
-        self.join.clicked.connect(self.join_requested)
         self.print.clicked.connect(self._on_print)
         self.save.clicked.connect(self._on_save)
         self.go.clicked.connect(self._on_go)
-        self.renew.clicked.connect(self.renew_requested)
-        self.later.clicked.connect(self.put_off)
         self.typed.line_edit.returnPressed.connect(self._on_go)
         self.typed.edited.connect(self._on_typed)
         for field in (self.code, self.name, self.passphrase, self.again):

@@ -7,7 +7,7 @@ from app.theme.current import scaled
 from app.widgets.banner import Banner
 from app.widgets.header import ProductMark
 from app.widgets.lay_out import lay_out
-from app.widgets.page_scroll import PageScroll
+from app.widgets.reading_area import scrolled
 from app.widgets.text import SEMIBOLD, Text
 
 COLUMN = 540  # a whole recovery key fits into a field
@@ -26,4 +26,4 @@ class EntryPage(QWidget):
         self.column = lay_out(QVBoxLayout(inside), self.banner, mark_row, margins=(24, ABOVE, 24, 24), spacing=16)
         middle = QWidget()
         lay_out(QHBoxLayout(middle), 1, (inside, 100, Qt.AlignmentFlag.AlignTop), 1, margins=0)
-        lay_out(QVBoxLayout(self), PageScroll(middle), margins=0)
+        lay_out(QVBoxLayout(self), scrolled(middle, is_upright=False), margins=0)

@@ -1,7 +1,7 @@
 """What is shown in place of patients while there are none: how to begin, what a session needs and how it goes."""
 
 from PySide6.QtCore import QPointF, QRectF, QSize, Qt
-from PySide6.QtGui import QFontMetrics, QPainter, QPaintEvent
+from PySide6.QtGui import QFontMetrics, QPainter
 from PySide6.QtWidgets import QBoxLayout, QGridLayout, QHBoxLayout, QSizePolicy, QVBoxLayout, QWidget
 
 from app.theme.current import current_theme, px, scaled
@@ -11,6 +11,7 @@ from app.widgets.card import Card
 from app.widgets.heard_order import hear_as_laid_out
 from app.widgets.icons import IconMark
 from app.widgets.lay_out import lay_out
+from app.widgets.painted import Painted
 from app.widgets.painted_text import CENTRE, PaintedText
 from app.widgets.text import SEMIBOLD, Text
 from app.wording.translation import tr
@@ -59,7 +60,6 @@ class EmptyLibrary(Card):
 
     def set_room(self, width: float) -> None:
         """Lay out for a page of this width, in px of the design."""
-        px = current_theme().px
         edge = EDGE if width >= WIDE_FROM else NARROW_EDGE
         scaled(self.column.setContentsMargins, edge, 24, edge, 24)
         room = px(width - 2 * PAGE_EDGE) - 2 * px(edge)
@@ -81,7 +81,7 @@ class EmptyLibrary(Card):
         return part
 
 
-class StepsPreview(QWidget):
+class StepsPreview(Painted):
     """The seven steps of a session on a line, and how long each takes."""
 
     def __init__(self) -> None:
@@ -107,7 +107,6 @@ class StepsPreview(QWidget):
         self.update()
 
     def sizeHint(self) -> QSize:
-        px = current_theme().px
         return QSize(self._wide(self._rows), self._rows * px(CIRCLE + 8 + 2 * LINE) + (self._rows - 1) * px(12))
 
     def painted_texts(self) -> list[PaintedText]:
@@ -124,10 +123,8 @@ class StepsPreview(QWidget):
             ]
         return texts
 
-    def paintEvent(self, _event: QPaintEvent) -> None:
+    def draw(self, painter: QPainter) -> None:
         theme, half = current_theme(), px(CIRCLE) / 2
-        painter = QPainter(self)
-        painter.setRenderHint(QPainter.RenderHint.Antialiasing)
         painter.setPen(theme.pen(theme.colours.control, 1.25))
         for number in range(len(self.steps)):
             centre = self._place(number) + QPointF(half, half)
@@ -135,8 +132,6 @@ class StepsPreview(QWidget):
             if number + 1 < len(self.steps) and (number + 1) % self._in_row:
                 following = self._place(number + 1) + QPointF(0, half)
                 painter.drawLine(centre + QPointF(half, 0), following)
-        for text in self.painted_texts():
-            text.paint(painter, theme.colours)
 
     def _wide(self, rows: int) -> int:
         """How wide so many rows are."""
@@ -151,5 +146,4 @@ class StepsPreview(QWidget):
     def _place(self, number: int) -> QPointF:
         """The upper left corner of a step."""
         row, column = divmod(number, self._in_row)
-        px = current_theme().px
         return QPointF(column * self.width() / self._in_row, row * px(CIRCLE + 8 + 2 * LINE + 12))

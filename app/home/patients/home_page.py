@@ -23,7 +23,7 @@ from app.theme.current import current_theme, on_theme, scaled
 from app.theme.icons import Icon, paint_icon
 from app.widgets.lay_out import lay_out
 from app.widgets.line_list import PATIENT_ROW, Line, LineList, PatientLine, SessionLine
-from app.widgets.page_scroll import PageScroll
+from app.widgets.reading_area import scrolled
 from app.widgets.segmented import Segmented
 from app.widgets.text import MEDIUM, SEMIBOLD, Text
 from app.wording.translation import tr, tr_n
@@ -48,10 +48,7 @@ class HomePage(QWidget):
     patient_chosen = Signal(object)  # UUID or None
     session_opened = Signal(object)  # UUID
     new_session_requested = Signal()  # Enter
-    new_patient_requested = Signal()
     demonstration_requested = Signal()
-    import_requested = Signal()
-    computing_requested = Signal()  # of the visits that have no figures yet
     patient_deleted = Signal(object)  # UUID: by key or menu
     session_deleted = Signal(object)
 
@@ -66,7 +63,7 @@ class HomePage(QWidget):
         self.nobody = Text(tr("No patient found. Shorten the search, or add a new patient."), wraps=True)
         self.empty = EmptyLibrary()
         self.panel = PatientPanel()
-        self._panel_room = _PanelRoom(self.panel)
+        self._panel_room = scrolled(self.panel)
         self.view = Segmented(tr("View"), [(PATIENTS, tr("Patients"), ""), (PATIENT, tr("Patient"), "")])
         self._build()
         self._connect()
@@ -213,16 +210,20 @@ class HomePage(QWidget):
         self.patients.clicked.connect(self._on_patient_clicked)
         self.view.chosen.connect(self._show_parts)
         self.sessions.opened.connect(self.session_opened)
-        self.sessions.selectionModel().currentRowChanged.connect(self._panel_room.show_row)
+        self.sessions.selectionModel().currentRowChanged.connect(self._show_row)
         self.panel.course.visit_opened.connect(self.session_opened)
-        self.panel.course.computing_requested.connect(self.computing_requested)
-        self.panel.delete_patient_requested.connect(self._on_delete_patient)
-        self.panel.delete_session_requested.connect(self._on_delete_session)
-        self.empty.new_patient.clicked.connect(self.new_patient_requested)
+        self.panel.delete_patient.triggered.connect(self._on_delete_patient)
+        self.panel.delete_session.triggered.connect(self._on_delete_session)
         self.empty.demonstration.clicked.connect(self.demonstration_requested)
-        self.empty.importing.clicked.connect(self.import_requested)
         for watched in (self.search, self.patients, self.sessions):
             watched.installEventFilter(self)
+
+    def _show_row(self, index: QModelIndex, _before: QModelIndex) -> None:
+        """Have the visit in force in sight, where somebody moves among them."""
+        if index.isValid() and self.sessions.hasFocus():
+            row = self.sessions.visualRect(index)
+            centre = self.sessions.viewport().mapTo(self.panel, row.center())
+            self._panel_room.ensureVisible(centre.x(), centre.y(), 0, row.height())
 
     def _show_parts(self) -> None:
         """The list, the patient, or both; of an empty library neither."""
@@ -273,22 +274,6 @@ class HomePage(QWidget):
         line = self.sessions.line
         if line is not None:
             self.session_deleted.emit(line.id)
-
-
-class _PanelRoom(PageScroll):
-    """The patient, who is scrolled as one."""
-
-    def __init__(self, panel: PatientPanel) -> None:
-        super().__init__(panel, is_upright=True)
-        self._panel = panel
-
-    def show_row(self, index: QModelIndex, _before: QModelIndex) -> None:
-        """Have the visit in force in sight, where somebody moves among them."""
-        table = self._panel.sessions
-        if index.isValid() and table.hasFocus():
-            row = table.visualRect(index)
-            centre = table.viewport().mapTo(self._panel, row.center())
-            self.ensureVisible(centre.x(), centre.y(), 0, row.height())
 
 
 class _Search(QLineEdit):

@@ -61,10 +61,6 @@ class PatientPanel(TallPage):
     """
 
     next_requested = Signal(object)
-    goals_requested = Signal()
-    analysing_requested = Signal()  # again, of this patient's sessions
-    delete_patient_requested = Signal()
-    delete_session_requested = Signal()
 
     def __init__(self) -> None:
         super().__init__()
@@ -200,10 +196,6 @@ class PatientPanel(TallPage):
 
     def _connect(self) -> None:
         self.more.clicked.connect(self._on_more)
-        self.analyse_again.triggered.connect(self.analysing_requested)
-        self.delete_patient.triggered.connect(self.delete_patient_requested)
-        self.delete_session.triggered.connect(self.delete_session_requested)
-        self.goals.clicked.connect(self.goals_requested)
         self.condition.currentIndexChanged.connect(self._show_lanes)
         self.shown.chosen.connect(self._show_lanes)
         self.sessions.chosen.connect(self._on_session_chosen)

@@ -9,6 +9,7 @@ from PySide6.QtWidgets import QFileDialog
 
 from app.cohort.repeatability.people import CONDITION, StudyPeople
 from app.cohort.repeatability.study import FIGURES, StudyResult, read_figures, study
+from app.home.long_work import LongWork
 from app.home.repeatability.repeatability_page import RepeatabilityPage
 from app.storage.error_figures import choose_study, chosen_study, figures_of
 from app.summary.error_figures import error_figures_in_words
@@ -26,17 +27,13 @@ if TYPE_CHECKING:
     from app.storage.opened import OpenedLibrary
 
 
-class Repeatability(QObject):
+class Repeatability(LongWork):
     """One study at a time.
 
     Signals
     -------
     changed
         The bar shows something else.
-    working
-        Something takes a while: its title.
-    progressed
-        The share that is done, and of whom.
     done
         It ended.
     chosen
@@ -44,17 +41,12 @@ class Repeatability(QObject):
     """
 
     changed = Signal()
-    working = Signal(str)
-    progressed = Signal(float, str)
     done = Signal()
     chosen = Signal()
 
     def __init__(self, controller: LibraryController, parent: QObject) -> None:
-        super().__init__(parent)
-        self._controller = controller
-        self._dialog: QFileDialog | None = None
+        super().__init__(controller, parent)
         self._is_demonstration = False
-        self.is_working = False
         self.page = RepeatabilityPage()
 
     @property
@@ -81,8 +73,7 @@ class Repeatability(QObject):
 
     def calculate(self) -> None:
         """Find the figures from the library's sessions."""
-        self.is_working = True
-        self.working.emit(tr("Calculating repeatability"))
+        self._begin(tr("Calculating repeatability"))
         self._controller.run_long(_studied, self._on_studied, self._on_refused, self._on_progressed, self)
 
     def stop(self) -> None:
@@ -123,9 +114,6 @@ class Repeatability(QObject):
         if own is not None and self.page.own is None:
             self.page.show_study(own, ())
         self.changed.emit()
-
-    def _on_progressed(self, share: float, what: str) -> None:
-        self.progressed.emit(share, what)
 
     def _on_studied(self, found: StudyResult) -> None:
         self.page.show_study(found.own, found.notes)

@@ -135,7 +135,6 @@ class MoreStationsCard(SettingsCard):
     """How a library in a folder gets to the server of a clinic."""
 
     move_requested = Signal(str, str, str)  # address, password, place
-    place_requested = Signal()
 
     def __init__(self) -> None:
         super().__init__(tr("Several workstations"))
@@ -158,7 +157,6 @@ class MoreStationsCard(SettingsCard):
         self.add_left(self.choose)
         self.fill(self.stated)
         self.add_left(self.move_there)
-        self.choose.clicked.connect(self.place_requested)
         self.move_there.clicked.connect(self._on_move)
         self.show_move("")
 

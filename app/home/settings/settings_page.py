@@ -44,21 +44,14 @@ class DeletedLine:
 class SettingsPage(TallPage):
     """The parts about a library are hidden where they mean nothing: in the demonstration, and for who may not."""
 
-    language_chosen = Signal(str)
-    scheme_chosen = Signal(str)
     scale_chosen = Signal(float)
     side_chosen = Signal(bool)  # from behind
     motion_chosen = Signal(bool)  # less
-    sound_chosen = Signal(bool)
-    prompts_chosen = Signal(bool)
     passphrase_requested = Signal(str, str)  # old, new
-    recovery_key_requested = Signal()
     print_requested = Signal(str)
     save_requested = Signal(str)
     backup_requested = Signal()
-    backup_folder_requested = Signal()
     stop_requested = Signal()
-    error_report_requested = Signal()
     clinic_named = Signal(str)
     restore_requested = Signal(object, bool)  # id, whether it is a patient's
 
@@ -303,21 +296,14 @@ class SettingsPage(TallPage):
         self._trouble_stated.show()
 
     def _connect(self) -> None:
-        self.language.chosen.connect(self.language_chosen)
-        self.scheme.chosen.connect(self.scheme_chosen)
         self.scale.activated.connect(self._on_scale_chosen)
         self.side.chosen.connect(self._on_side_chosen)
         self.motion.chosen.connect(self._on_motion_chosen)
-        self.sound.toggled.connect(self.sound_chosen)
-        self.prompts.toggled.connect(self.prompts_chosen)
         self.change.clicked.connect(self._on_change)
-        self.renew.clicked.connect(self.recovery_key_requested)
         self.print.clicked.connect(self._on_print)
         self.save.clicked.connect(self._on_save)
         self.back_up.clicked.connect(self._on_back_up)
-        self.choose_folder.clicked.connect(self.backup_folder_requested)
         self.clinic.committed.connect(self._on_clinic_named)
-        self.report_error.clicked.connect(self.error_report_requested)
         for field in self._fields:
             field.edited.connect(self._on_edited)
 

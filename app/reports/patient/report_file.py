@@ -8,7 +8,7 @@ import tempfile
 from datetime import datetime
 from pathlib import Path
 
-from app.exports.result_folder import OWN_SESSION, REPORT, SUMMARY, VISITS, VISITS_CYCLES, describe_tables
+from app.exports.result_folder import REPORT, VISITS, VISITS_CYCLES, describe_tables
 from app.reports.patient.comparison_page import comparison_of
 from app.reports.patient.document import make_report
 from app.summary.comparison import Contrast
@@ -17,7 +17,6 @@ from app.summary.request import AnalysedVisit, ReportRequest, default_walks
 from core.results import Analysis
 from core.session import Session
 from devices.files.refusal import FileRefusedError
-from devices.files.session_toml import FILE_NAME as SESSION_FILE
 
 PDF = b"%PDF-"
 
@@ -71,22 +70,6 @@ def chosen_walks(visit: AnalysedVisit, required: list[str], session: str) -> tup
             session, "this contains no included walk, so there is nothing to report", "Record a walk first"
         )
     return walks
-
-
-def session_of(place: Path) -> Path:
-    """Give the session folder that a report is made from: the place itself, or the recordings inside its results.
-
-    Raises
-    ------
-    FileRefusedError
-        Results without their recordings: there are no angles in them to draw from.
-    """
-    if (place / SUMMARY).is_file() and not (place / SESSION_FILE).is_file():
-        if (place / OWN_SESSION / SESSION_FILE).is_file():
-            return place / OWN_SESSION
-        what = "this holds results without the recordings they were made from"
-        raise FileRefusedError(str(place), what, "Give the session folder instead")
-    return place
 
 
 def check_report_place(out: Path) -> None:

@@ -57,7 +57,7 @@ class JournalStore:
     def __init__(self, place: str) -> None:
         self.place = place
         try:
-            import fsspec
+            import fsspec  # an extra, of clinics
         except ImportError:
             raise LibraryError(
                 "The component for the clinic's shared storage is not installed", "Run: pip install .[clinic]"

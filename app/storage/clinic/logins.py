@@ -37,7 +37,7 @@ def let_in(server: Database, own: Station) -> None:
     LibraryError
         It may not.
     """
-    from psycopg import sql
+    from psycopg import sql  # an extra, of clinics
 
     url = make_url(own.database)
     with server.reading() as session:

@@ -272,7 +272,7 @@ def postgres_engine(url: str, try_s: float = TRY_S, *, is_kept: bool = True) -> 
 @cache
 def _impatient_connection() -> "type[PgConnection[Any]]":
     """A connection that is closed once the server has sent nothing for `PG_SILENT_S`."""
-    import psycopg
+    import psycopg  # an extra, of clinics
 
     class ImpatientConnection(psycopg.Connection[Any]):
         def wait(self, gen: Generator[Any, Any, Any], *args: Any, **options: Any) -> Any:

@@ -6,14 +6,14 @@ from dataclasses import dataclass
 from PySide6.QtCore import Signal
 from PySide6.QtWidgets import QVBoxLayout, QWidget
 
-from app.theme.current import current_theme
+from app.theme.current import scaled
 from app.theme.icons import Icon
 from app.widgets.card import Card
+from app.widgets.lay_out import lay_out
 from app.widgets.notice import Notice
 from app.widgets.table import CellTable, TableColumn, TableRow
 from app.widgets.table_cells import TextCell
 from app.widgets.text import SEMIBOLD, Text
-from app.widgets.themed import Themed
 from app.wording.translation import tr, tr_n
 
 ROW, HEAD, PADDING = 48, 32, 10
@@ -31,7 +31,7 @@ class HeldLine:
     can_fetch: bool = False
 
 
-class MemoriesForm(Themed):
+class MemoriesForm(QWidget):
     """
     Signals
     -------
@@ -49,18 +49,12 @@ class MemoriesForm(Themed):
         self.list = CellTable(tr("Recordings in the sensors"), row=ROW, head=HEAD, padding=PADDING, is_list=True)
         self.notice = Notice(size=16)
         card = Card()
-        card.column.addWidget(self._title)
-        card.column.addWidget(self._lead)
-        card.column.addWidget(self.notice)
-        card.column.addWidget(self.list, 1)
-        card.column.addStretch()  # where there is no list
-        self._column = QVBoxLayout(self)
-        self._column.setContentsMargins(0, 0, 0, 0)
-        self._column.addWidget(card, 1)
+        lay_out(card.column, self._title, self._lead, self.notice, (self.list, 1), 0)  # the 0: where there is no list
+        lay_out(QVBoxLayout(self), (card, 1), margins=0)
+        scaled(self.list.setMinimumHeight, HEAD + AT_LEAST_ROWS * ROW)
         self.list.chosen.connect(self._on_chosen)
         self.show_message("")
         self.show_lines(())
-        self._apply_theme()
 
     @property
     def tab_order(self) -> list[QWidget]:
@@ -114,10 +108,6 @@ class MemoriesForm(Themed):
 
     def _on_chosen(self, _number: object) -> None:
         self.chosen.emit()
-
-    def _apply_theme(self) -> None:
-        px = current_theme().px
-        self.list.setMinimumHeight(px(HEAD + AT_LEAST_ROWS * ROW))
 
 
 def _row(number: int, line: HeldLine) -> TableRow:

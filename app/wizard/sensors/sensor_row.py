@@ -16,7 +16,7 @@ from PySide6.QtGui import (
 )
 from PySide6.QtWidgets import QMenu, QSizePolicy, QWidget
 
-from app.theme.current import current_theme, px
+from app.theme.current import current_theme, px, scaled
 from app.theme.icons import Icon, paint_icon
 from app.theme.leg_chip import paint_chip
 from app.theme.theme import CHIP_RADIUS, CONTROL_RADIUS
@@ -145,6 +145,7 @@ class SensorRowView(DraggedButton):
         self.identify.clicked.connect(self._on_identify_clicked)
         self.clicked.connect(self._on_clicked)
         self.setSizePolicy(QSizePolicy.Policy.Expanding, QSizePolicy.Policy.Maximum)
+        scaled(self.setMinimumHeight, ROW_AT_LEAST)
         self.offer(LEG_SITES)
 
     def offer(self, places: tuple[Site, ...]) -> None:
@@ -215,9 +216,6 @@ class SensorRowView(DraggedButton):
 
     def sizeHint(self) -> QSize:
         return QSize(0, px(ROW))
-
-    def minimumSizeHint(self) -> QSize:
-        return QSize(0, px(ROW_AT_LEAST))
 
     def _places(self) -> dict[str, QRect]:
         """Where the columns lie, as high as the row."""

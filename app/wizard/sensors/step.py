@@ -16,10 +16,10 @@ from app.wizard.sensors.dot_setup import DotSetup
 from app.wizard.sensors.estimator import PlacingEstimator
 from app.wizard.sensors.memories_control import MemoriesControl
 from app.wizard.sensors.page import SensorsPage, Way
+from app.wizard.sensors.replays import StoredReplay
 from app.wizard.sensors.sensor_row import SensorRow
 from app.wizard.sensors.source_pages import SourceOption
 from app.wizard.sensors.sources import SEARCH, WITH_PELVIS
-from app.wizard.sensors.stored_replay import StoredReplay
 from app.wizard.sensors.trace_values import TRACE_S, TraceValues
 from app.wizard.step import Step, StepId
 from app.wizard.worn_sensors import SourceChoice

@@ -18,6 +18,7 @@ from app.wizard.walk_messages import no_foot_message
 from app.wizard.walking.bench_control import Bench
 from app.wizard.walking.live_preview import LivePreview
 from app.wizard.walking.memory_control import MemoryControl
+from app.wizard.walking.page import WalkingPage
 from app.wizard.walking.patient_feedback import PatientFeedback
 from app.wizard.walking.timed_control import TimedControl
 from app.wizard.walking.walk_labels import label_after, labels_for, stored_label
@@ -33,7 +34,6 @@ from core.targets import TargetTally, with_tallies
 if TYPE_CHECKING:
     from app.editing.session_recording import Ongoing, SessionRecording
     from app.wizard.visit import Visit
-    from app.wizard.walking.page import WalkingPage
     from app.wizard.walking.readout import WalkingReadout
 
 WATCH_TICKS = 3  # of 30 a second: sensors are looked at ten times a second
@@ -76,10 +76,8 @@ class WalkingStep(Step):
     # the frame of the wizard
 
     @property
-    def page(self) -> "WalkingPage":
+    def page(self) -> WalkingPage:
         if self._page is None:
-            from app.wizard.walking.page import WalkingPage
-
             page = self._page = WalkingPage(self.bench.entry)
             page.bench.alignments.chosen.connect(self.bench.choose)
             page.bench.alignments.reported.connect(self._on_change_reported)

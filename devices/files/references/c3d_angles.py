@@ -47,7 +47,7 @@ def read_c3d(path: Path) -> ReferenceFile:
             "Install gaitwright[imports], or give a CSV file",
         )
     _refuse_cut(path)
-    import ezc3d
+    import ezc3d  # an extra
 
     try:
         c3d = ezc3d.c3d(str(path))

@@ -8,7 +8,8 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from app.cli.devices import EMULATED, MOVEMENTS, emulate, list_devices
+from app.cli.arguments import EMULATED
+from app.cli.devices import MOVEMENTS, emulate, list_devices
 from app.cli.main import main
 from core.body import Site
 from core.session import RecordingKind

@@ -10,7 +10,7 @@ import pytest
 from PySide6.QtCore import QPoint, Qt
 from PySide6.QtGui import QFontInfo, QPalette
 from PySide6.QtTest import QTest
-from PySide6.QtWidgets import QAbstractButton, QApplication, QComboBox, QLabel, QWidget
+from PySide6.QtWidgets import QAbstractButton, QApplication, QLabel, QWidget
 from pytestqt.qtbot import QtBot
 
 from app.home import session_screen
@@ -20,14 +20,13 @@ from app.results.found_page import FoundPage
 from app.results.result_page import ResultPage
 from app.results.tools_row import ANSWER, COMPARE, STRIDES, WHOLE
 from app.results.whole_page import BOTH, ORIENTATION, PUBLISHED, RESULT
+from app.summary.request import AnalysedVisit
 from app.system.progress import Report
 from app.theme.colours import DARK, LIGHT
 from app.theme.current import current_theme, set_dark, set_scale
 from app.widgets.findings_list import FindingRow
-from app.widgets.table import CellTable
 from app.widgets.table_cells import TextCell
 from app.workers.background import Stopped, Work
-from app.workers.opening import Opened
 from core.analysis import analyse
 from core.body import LEG_JOINTS, Joint, Side
 from core.findings import Finding, Severity
@@ -44,6 +43,7 @@ from core.results import (
 from core.samples import FloatArray
 from core.session import Patient, RecordingKind, Session
 from devices.simulation.walker import DEMONSTRATION, FreeMotion, Standing, Walk, simulate
+from tests.app.room import is_cut
 
 TIME_S = np.arange(600) / 100
 GAP = slice(200, 260)
@@ -101,9 +101,9 @@ def analysis(is_simulated: bool = False, has_orientation: bool = True) -> Analys
     return Analysis(Method.ROBUST, is_simulated, (calibrated,), recordings, SOME_FINDINGS)
 
 
-def opened(is_simulated: bool = False, has_orientation: bool = True) -> Opened:
+def opened(is_simulated: bool = False, has_orientation: bool = True) -> AnalysedVisit:
     patient = Patient(code="P-0147", birth_year=1968, sex="male", prosthetic_side="left")
-    return Opened(Session((), patient, is_simulated=is_simulated), analysis(is_simulated, has_orientation))
+    return AnalysedVisit(Session((), patient, is_simulated=is_simulated), analysis(is_simulated, has_orientation))
 
 
 @pytest.fixture
@@ -413,23 +413,6 @@ def visible(window: QWidget) -> list[QWidget]:
     return [widget for widget in window.findChildren(QWidget) if widget.isVisible()]
 
 
-def is_cut(widget: QWidget) -> bool:
-    """Return whether a widget has less room than its words need."""
-    if isinstance(widget, QLabel):
-        margins = widget.contentsMargins()
-        room = widget.size().shrunkBy(margins)
-        flags = Qt.TextFlag.TextWordWrap if widget.wordWrap() else 0
-        needed = widget.fontMetrics().boundingRect(0, 0, room.width(), 10_000, int(flags), widget.text())
-        return needed.width() > room.width() or needed.height() > room.height()
-    if isinstance(widget, CellTable):
-        is_narrow = any(widget.columnWidth(k) < need for k, need in enumerate(widget.needed_widths))
-        return is_narrow or widget.height() < widget.minimumSizeHint().height()
-    if isinstance(widget, QAbstractButton | QComboBox) and widget.accessibleName():
-        need = widget.minimumSizeHint()
-        return need.width() > widget.width() or need.height() > widget.height()
-    return False
-
-
 def sticks_out(widget: QWidget, window: SessionScreen) -> bool:
     """Return whether a widget can never be seen whole: beside the window, or wider than the page that scrolls."""
     left = widget.mapTo(window, QPoint(0, 0)).x()
@@ -437,11 +420,11 @@ def sticks_out(widget: QWidget, window: SessionScreen) -> bool:
 
 
 @pytest.fixture(scope="module")
-def walked() -> Opened:
+def walked() -> AnalysedVisit:
     """A simulated session whose walk is long enough for a spread."""
     settings = replace(DEMONSTRATION, recordings=(Standing(), FreeMotion(), Walk(strides=13, speed_m_s=0.9)))
     session = simulate(settings).session
-    return Opened(session, analyse(session))
+    return AnalysedVisit(session, analyse(session))
 
 
 @pytest.mark.parametrize(
@@ -462,7 +445,7 @@ def test_every_word_fits(
     qtbot: QtBot,
     window: SessionScreen,
     open_work: OpenWork,
-    walked: Opened,
+    walked: AnalysedVisit,
     qapp: QApplication,
     size: tuple[int, int],
     scale: float,

@@ -89,11 +89,11 @@ def home(
 ) -> Iterator[Home]:
     """In the demonstration's library of two patients, whose processes do nothing by themselves."""
     HELD.clear()
-    monkeypatch.setattr("app.cohort.batch.executors.ProcessExecutor", Held)
-    monkeypatch.setattr("app.cohort.batch.executors.processors", lambda: 2)
+    monkeypatch.setattr("app.home.patients.demonstration.ProcessExecutor", Held)
+    monkeypatch.setattr("app.home.patients.demonstration.processors", lambda: 2)
     monkeypatch.setattr("app.demonstration.patients.simulated_patients", lambda _now: PATIENTS)
     monkeypatch.setattr(
-        "app.demonstration.recording.record_beside",
+        "app.home.patients.demonstration.record_beside",
         lambda required: replace(session, started=required.started.isoformat(timespec="seconds")),
     )
     load_fonts()

@@ -12,8 +12,9 @@ import pytest
 import typst
 
 from app.cli.main import main
+from app.exports.result_folder import session_of
 from app.reports.patient.document import make_report
-from app.reports.patient.report_file import check_report_place, chosen_walks, replace_report, session_of
+from app.reports.patient.report_file import check_report_place, chosen_walks, replace_report
 from app.summary.request import AnalysedVisit, ReportRequest, default_walks
 from devices.files.refusal import FileRefusedError
 from devices.files.session_folder import write_session

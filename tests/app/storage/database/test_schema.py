@@ -13,7 +13,8 @@ from sqlalchemy import Column, Connection, Integer, inspect, text
 
 from app.storage.database.engine import Database, sqlite_engine
 from app.storage.database.models import Base
-from app.storage.database.schema import NEWEST, alembic_config, bring_up_to_date, move
+from app.storage.database.schema import NEWEST, bring_up_to_date
+from app.storage.database.steps import alembic_config, move
 from app.storage.library import Library
 from app.storage.stored import LibraryError
 from core.session import Patient, Session
