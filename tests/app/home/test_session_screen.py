@@ -458,7 +458,7 @@ def test_every_word_fits(
     set_scale(scale)
     window.banner.show_message("left_thigh.csv, line 4: the clock steps back.", "Export the recording again.")
     results.whole.charts.zoom(0.5)
-    results.whole.charts._read_at(4.0)
+    results.whole.charts.read_at(4.0)
     pages: list[tuple[QWidget, str]] = [(results, view) for view in (ANSWER, WHOLE, COMPARE, STRIDES)]
     behind = [(results, ANSWER, button) for button in (results.all_figures, results.door, results.quality.engineering)]
     others = [(page, view, None) for page, view in (*pages, (window.empty, ANSWER), (window.working, ANSWER))]
