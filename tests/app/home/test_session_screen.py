@@ -336,11 +336,11 @@ def test_simulated_is_stated_in_header_and_charts_and_only_then(
     qtbot: QtBot, window: SessionScreen, results: ResultPage, open_work: OpenWork
 ) -> None:
     assert not window.header.simulated.isVisible()
-    assert not results.whole.charts.knee._simulated.isVisible()
+    assert not results.whole.charts.knee.simulated.isVisible()
     open_work(lambda _report: opened(is_simulated=True))
     qtbot.waitUntil(lambda: not window.is_working)
     assert window.header.simulated.isVisible()
-    assert results.whole.charts.knee._simulated.isVisible()
+    assert results.whole.charts.knee.simulated.isVisible()
 
 
 def test_the_table_states_how_each_joint_was_found(results: ResultPage) -> None:
@@ -458,7 +458,7 @@ def test_every_word_fits(
     set_scale(scale)
     window.banner.show_message("left_thigh.csv, line 4: the clock steps back.", "Export the recording again.")
     results.whole.charts.zoom(0.5)
-    results.whole.charts._read_at(4.0)
+    results.whole.charts.read_at(4.0)
     pages: list[tuple[QWidget, str]] = [(results, view) for view in (ANSWER, WHOLE, COMPARE, STRIDES)]
     behind = [(results, ANSWER, button) for button in (results.all_figures, results.door, results.quality.engineering)]
     others = [(page, view, None) for page, view in (*pages, (window.empty, ANSWER), (window.working, ANSWER))]

@@ -164,7 +164,7 @@ def test_a_walk_is_left_out_comes_back_and_changes_its_condition(qtbot: QtBot, v
     assert stated == ["A AFO is excluded.", "A AFO is included."]
     assert step.page.results().recordings.currentText() == "A AFO"
     assert [recording.details.condition for recording in visit.recordings.walks] == ["AFO"]
-    step.page.correct().closed.emit()
+    step.page.correct().back.click()
     assert [part.name for part in step.page.results().compare._conditions] == ["AFO"]
 
 
