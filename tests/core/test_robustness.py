@@ -16,6 +16,7 @@ from core.samples import FloatArray, ImuBlock
 from core.session import Recording, RecordingKind, Session
 from core.signal.rotations import angle_between
 from devices.simulation.walker import FreeMotion, Standing, Walk, WalkerSettings
+from tests.core.cut_blocks import Change, changed
 from tests.simulated import simulation_of
 
 if TYPE_CHECKING:
@@ -24,16 +25,7 @@ if TYPE_CHECKING:
 S, F, W = RecordingKind.STANDING, RecordingKind.FREE_MOTION, RecordingKind.WALKING
 THIGH, SHANK, FOOT = Site.LEFT_THIGH, Site.LEFT_SHANK, Site.LEFT_FOOT
 KNEE = Joint.LEFT_KNEE
-Change = Callable[[ImuBlock], ImuBlock]
 methods = pytest.mark.parametrize("method", list(Method))
-
-
-def changed(session: Session, change: Change, sites: tuple[Site, ...] = LEG_SITES, *names: str) -> Session:
-    recordings = []
-    for r in session.recordings:
-        imu = {s: change(b) if s in sites and (not names or r.name in names) else b for s, b in r.imu.items()}
-        recordings.append(replace(r, imu=imu))
-    return replace(session, recordings=tuple(recordings))
 
 
 def with_value(value: float, signal: str = "gyr_rad_s", at: int = 150) -> Change:

@@ -15,6 +15,7 @@ from core.samples import ImuBlock, RateKind
 from core.session import Recording
 from devices.simulation.replay import DEMONSTRATION_SESSION
 from devices.simulation.walker import FreeMotion, Standing, Walk
+from tests.core.cut_blocks import part_of
 from tests.simulated import analysis_of, session_of
 
 pytestmark = pytest.mark.endurance  # minutes in all: the default run has three
@@ -28,11 +29,6 @@ def after(recording: Recording, from_s: float) -> dict[Site, ImuBlock]:
     """The recording's samples, as if it began at `from_s`."""
     first_s = min(block.time_s[0] for block in recording.imu.values())
     return {site: replace(block, time_s=block.time_s - first_s + from_s) for site, block in recording.imu.items()}
-
-
-def between(block: ImuBlock, from_s: float, to_s: float) -> ImuBlock:
-    rows = slice(*block.time_s.searchsorted((from_s, to_s)))
-    return replace(block, time_s=block.time_s[rows], gyr_rad_s=block.gyr_rad_s[rows], acc_m_s2=block.acc_m_s2[rows])
 
 
 def test_no_strap_of_it_slips_from_walk_to_walk() -> None:
@@ -54,7 +50,7 @@ def test_no_strap_of_it_slips_from_walk_to_walk() -> None:
         imu = after(walk, now_s)
         end_s = max(block.time_s[-1] for block in imu.values())
         for from_s, to_s in pairwise(np.arange(now_s, end_s + PIECE_S, PIECE_S).tolist()):
-            estimator.update({str(site): between(block, from_s, to_s) for site, block in imu.items()})
+            estimator.update({str(site): part_of(block, from_s, to_s) for site, block in imu.items()})
         now_s = end_s + PAUSE_S
     assert sum(estimator.state.strides.values()) > 70
     assert estimator.state.slips == ()

@@ -58,7 +58,7 @@ def controller(qtbot: QtBot, untouched_library: Path, tmp_path: Path) -> Iterato
     controller = LibraryController()
     folder = shutil.copytree(untouched_library, tmp_path / "library")
     with qtbot.waitSignal(controller.opened, timeout=20_000):
-        controller.open(folder, PASSPHRASE)
+        controller.open(lambda holder: holder.open(folder, PASSPHRASE))
     yield controller
     controller.finish()
 

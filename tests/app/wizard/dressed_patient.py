@@ -13,6 +13,7 @@ from core.results import JointCalibration
 from core.samples import ImuBlock
 from core.session import Recording
 from devices.simulation.walker import FreeMotion, Standing, Tissue, Walk, WalkerSettings
+from tests.core.cut_blocks import part_of
 from tests.simulated import analysis_of, session_of
 
 Blocks = Mapping[str, ImuBlock]
@@ -64,13 +65,8 @@ def in_blocks(streams: Blocks, block_s: float) -> Iterator[dict[str, ImuBlock]]:
     first_s = min(float(block.time_s[0]) for block in streams.values())
     last_s = max(float(block.time_s[-1]) for block in streams.values())
     for from_s, to_s in pairwise(np.arange(first_s, last_s + 2 * block_s, block_s).tolist()):
-        parts = {name: between(block, from_s, to_s) for name, block in streams.items()}
+        parts = {name: part_of(block, from_s, to_s) for name, block in streams.items()}
         yield {name: part for name, part in parts.items() if len(part)}
-
-
-def between(block: ImuBlock, from_s: float, to_s: float) -> ImuBlock:
-    part = slice(*np.searchsorted(block.time_s, [from_s, to_s]).tolist())
-    return ImuBlock(block.sensor, block.time_s[part], block.gyr_rad_s[part], block.acc_m_s2[part])
 
 
 def without(block: ImuBlock, from_s: float, to_s: float) -> ImuBlock:

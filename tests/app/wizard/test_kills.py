@@ -82,7 +82,7 @@ def start_again(
             widget.resize(1280, 800)
         home.show()
         with qtbot.waitSignal(controller.opened, timeout=WAIT_MS):
-            controller.open(tmp_path / "library", PASSPHRASE)
+            controller.open(lambda holder: holder.open(tmp_path / "library", PASSPHRASE))
         assert controller.state is not None
         home.show_library(controller.state)
         if controller.state.interrupted:

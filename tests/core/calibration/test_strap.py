@@ -26,6 +26,7 @@ from devices.simulation.walker import (
     Walk,
     WalkerSettings,
 )
+from tests.core.cut_blocks import part_of
 from tests.simulated import session_of, simulation_of
 
 pytestmark = pytest.mark.endurance  # minutes in all: the default run has three
@@ -174,11 +175,6 @@ def test_walking_again_slower_is_no_slip_and_a_slip_between_the_walks_is_reporte
     second = replace(second, imu={**second.imu, site: turned(second.imu[site], turn, 0.0)})
     analysis = analyse(replace(session, recordings=(*session.recordings[:-1], second)))
     assert [one.where for one in analysis.findings if one.key == "strap_slipped"] == ["walk 2, left_thigh"]
-
-
-def part_of(block: ImuBlock, from_s: float, to_s: float) -> ImuBlock:
-    keep = (block.time_s >= from_s) & (block.time_s < to_s)
-    return replace(block, time_s=block.time_s[keep], gyr_rad_s=block.gyr_rad_s[keep], acc_m_s2=block.acc_m_s2[keep])
 
 
 def test_rising_from_a_chair_is_no_slip_and_what_slips_meanwhile_shows_in_the_next_walk() -> None:

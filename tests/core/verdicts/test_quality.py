@@ -1,6 +1,5 @@
 """Bad input ends in a finding, never in a traceback and never in a silent number (FORMATS, section 4)."""
 
-from collections.abc import Callable
 from dataclasses import replace
 from typing import TYPE_CHECKING
 
@@ -8,7 +7,7 @@ import numpy as np
 import pytest
 
 from core.analysis import analyse
-from core.body import LEG_SITES, Joint, Segment, Side, Site
+from core.body import Joint, Segment, Side, Site
 from core.findings import Severity
 from core.results import Analysis, Method
 from core.samples import FloatArray, ImuBlock
@@ -26,6 +25,7 @@ from devices.simulation.walker import (
     Walk,
     WalkerSettings,
 )
+from tests.core.cut_blocks import Change, changed
 from tests.simulated import session_of, simulation_of
 
 if TYPE_CHECKING:
@@ -34,16 +34,6 @@ if TYPE_CHECKING:
 S, F, W = RecordingKind.STANDING, RecordingKind.FREE_MOTION, RecordingKind.WALKING
 THIGH, SHANK, FOOT = Site.LEFT_THIGH, Site.LEFT_SHANK, Site.LEFT_FOOT
 KNEE = Joint.LEFT_KNEE
-Change = Callable[[ImuBlock], ImuBlock]
-
-
-def changed(session: Session, change: Change, sites: tuple[Site, ...] = LEG_SITES, *names: str) -> Session:
-    """The session with the blocks of some sites (and of some recordings only) spoiled."""
-    recordings = []
-    for r in session.recordings:
-        imu = {s: change(b) if s in sites and (not names or r.name in names) else b for s, b in r.imu.items()}
-        recordings.append(replace(r, imu=imu))
-    return replace(session, recordings=tuple(recordings))
 
 
 def first(n: int) -> Change:

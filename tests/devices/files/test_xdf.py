@@ -21,7 +21,7 @@ from devices.files.trial import ImportedSensor
 from devices.files.xdf import straight_times, xdf_trial
 from devices.simulation.walker_body import Walk, WalkerSettings
 from tests.simulated import session_of
-from tests.trials_of_files import import_with
+from tests.trials_of_files import import_with, refused
 
 Numbers = NDArray[np.float64]
 ROWS, RATE_HZ, START_S = 2000, 100.0, 4321.0
@@ -224,9 +224,7 @@ def test_a_clock_that_nobody_measured_is_reported(tmp_path: Path) -> None:
 
 def test_what_senders_do_not_show_is_asked_for(tmp_path: Path) -> None:
     def refusal(*streams: SentStream) -> str:
-        with pytest.raises(FileRefusedError) as caught:
-            xdf_trial([recorded(tmp_path / "a.xdf", *streams)])
-        return str(caught.value)
+        return refused(xdf_trial, [recorded(tmp_path / "a.xdf", *streams)])
 
     parts = [
         SentStream("force", motion()[:, :3], labels=LABELS[:3], units=UNITS[:3]),

@@ -24,6 +24,7 @@ from core.session import Recording, RecordingKind
 from devices.simulation.walker import FreeMotion, Standing, Walk, WalkerSettings
 from tests.app.storage.library.folder_export import write_folder
 from tests.simulated import session_of
+from tests.waiting import silent
 
 PASSPHRASE = "four short words here"
 ANY_ROOM = Room(start_bytes=0, kept_bytes=0)
@@ -37,10 +38,6 @@ def key(tmp_path: Path) -> list[str]:
     file = tmp_path / "passphrase"
     file.write_text(f"{PASSPHRASE}\nanything\n", encoding="utf-8")
     return ["--passphrase-file", str(file)]
-
-
-def silent(_share: float, _what: str) -> None:
-    """Report to nobody."""
 
 
 def test_recover_closes_what_was_interrupted_and_states_so(
