@@ -11,6 +11,8 @@ import shutil
 from collections.abc import Callable, Mapping, Set
 from contextlib import suppress
 from dataclasses import fields, is_dataclass, replace
+from datetime import date
+from enum import Enum
 from importlib.metadata import version
 from pathlib import Path
 from tempfile import NamedTemporaryFile
@@ -111,7 +113,7 @@ def _add(found: hashlib.blake2b, value: Any) -> None:
         case bytes():
             found.update(b"%d:" % len(value) + value)
             return
-        case None | bool() | int() | float() | str() | np.generic():
+        case None | bool() | int() | float() | str() | date() | Enum() | np.generic():
             found.update(f"{type(value).__qualname__}{value!r};".encode())
             return
         case _:
