@@ -124,7 +124,7 @@ def _set_up(one: StationOnScreen, two: StationOnScreen, server: Server, place: P
             (
                 "to Address of the clinic",
                 f"type {server.address}",
-                "to Place of the recordings",
+                "to Shared storage that all workstations",
                 f"type {place}",
                 "to Move to the clinic",
             ),
