@@ -145,7 +145,7 @@ def main() -> None:
     with tempfile.TemporaryDirectory() as folder:
         quick_library(Path(folder), PASSPHRASE).library.close()
         controller = LibraryController()
-        controller.open(Path(folder), PASSPHRASE)
+        controller.open(lambda holder: holder.open(Path(folder), PASSPHRASE))
         wait(lambda: controller.state is not None)
         visit = dressed(controller, patient(required.walks, required.speed))
         calibrate(visit, required.speed)

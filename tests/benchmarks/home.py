@@ -66,7 +66,7 @@ def main() -> None:
         if not (folder / KEYS).exists():
             make_library(folder, asked.patients)
         controller = LibraryController()
-        controller.open(folder, PASSPHRASE)
+        controller.open(lambda holder: holder.open(folder, PASSPHRASE))
         wait_until(application, lambda: controller.state is not None)
         state = controller.state
         assert state is not None

@@ -125,7 +125,7 @@ def main() -> None:
     controller = LibraryController()
     with tempfile.TemporaryDirectory(prefix="gaitwright-") as folder:
         session_id = library_with(three_walks(), Path(folder))
-        controller.open(Path(folder), PASSPHRASE)
+        controller.open(lambda holder: holder.open(Path(folder), PASSPHRASE))
         wait_until(application, lambda: controller.state is not None)
         settings = Settings(QSettings(str(Path(folder) / "settings.ini"), QSettings.Format.IniFormat))
         wizard = Wizard(controller, settings)

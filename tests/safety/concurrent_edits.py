@@ -166,12 +166,11 @@ def judge(url: str, things: list[Thing], logs: Mapping[str, list[dict[str, Any]]
 def _judge_patient(
     library: Library, patient_id: UUID, logs: Mapping[str, list[dict[str, Any]]], verdict: Found
 ) -> None:
-    everything = library.patients.everything(patient_id)
-    visits = everything.sessions
-    rows = {patient_id: everything.patient.version}
+    visits = [library.sessions.get(line.id) for line in library.sessions.list(patient_id)]
+    rows = {patient_id: library.patients.get(patient_id).version}
     rows |= {visit.id: visit.version for visit in visits}
     rows |= {walk.id: walk.version for visit in visits for walk in visit.recordings}
-    history = sorted(everything.corrections, key=lambda one: one.id)
+    history = sorted(library.corrections.of_patient(patient_id), key=lambda one: one.id)
     verdict.count["corrections"] += len(history)
     taken_back = {one.undoes for one in history} | {one.id for one in history if one.undoes}
     reported = {

@@ -129,7 +129,6 @@ def work(folder: Path, key: DataKey, read: Read) -> Generator[None]:
         yield
         for patient in (*library.patients.search(), *library.patients.search(is_deleted=True)):
             library.corrections.of_patient(patient.id)
-            library.patients.everything(patient.id)
             read["patient", patient.id] = patient.details
             if patient.deleted_at is None:
                 library.patients.change(patient, replace(patient.details, mass_kg=71.5))

@@ -50,7 +50,7 @@ def tell(words):
     print(words, flush=True)
     sys.stdin.readline()
 
-controller.open(folder, passphrase, "hk")
+controller.open(lambda holder: holder.open(folder, passphrase, "hk"))
 while controller.state is None:
     app.processEvents()
 controller.run(
@@ -81,7 +81,7 @@ for k in range(int(sys.argv[3])):
         time.sleep(0.01)
     assert len(said) == 4 + 2 * k, "the library answered under the lock"
     tell("locked")
-    controller.unlock("hk", passphrase, None, asker.on_done, asker.on_failed, asker)
+    controller.call(lambda holder: holder.unlock("hk", passphrase, None), asker.on_done, asker.on_failed, asker)
     wait(6 + 2 * k)
     assert 1 in said[-2:], said
 print("written", writer.stop().state, flush=True)

@@ -163,7 +163,9 @@ class WindowSession:
         self._application, self.shots = application, shots
         os.environ["XDG_CONFIG_HOME"] = str(folder)
         self.controller = LibraryController()
-        self.controller.create(folder / "library", "PT", "Port Tester", "seven quiet herons cross")
+        self.controller.open(
+            lambda holder: holder.create(folder / "library", "PT", "Port Tester", "seven quiet herons cross")
+        )
         self.wait(lambda: self.controller.state is not None, "library")
         settings = Settings(QSettings(str(folder / "settings.ini"), QSettings.Format.IniFormat))
         self.wizard = Wizard(self.controller, settings)

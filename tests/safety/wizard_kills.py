@@ -55,7 +55,7 @@ class Guide:
     def begin(self, library: Path, passphrase: str, sites: tuple[Site, ...]) -> None:
         """Open the library, begin a session with its patient, put the sensors on, stand and move."""
         window = self._window
-        window.controller.open(library, passphrase)
+        window.controller.open(lambda holder: holder.open(library, passphrase))
         self._wait(lambda: window.home is not None and window.home.patients.patient is not None)
         self.wizard, self.visit = begun_visit(self._application, window)
         self._wait(lambda: len(self.visit.sensors.status) == len(sites))

@@ -8,15 +8,15 @@ import pytest
 
 from app.wizard.evaluation import calibration_of
 from app.wizard.walking.estimator import WalkingEstimator
-from core.analysis import analyse
 from core.body import LEG_SITES, Joint, Site
 from core.calibration.rest import rest_of
 from core.live.sensors import LiveSensor
 from core.samples import ImuBlock, RateKind
 from core.session import Recording
 from devices.simulation.replay import DEMONSTRATION_SESSION
-from devices.simulation.walker import FreeMotion, Standing, Walk, simulate
+from devices.simulation.walker import FreeMotion, Standing, Walk
 from tests.core.cut_blocks import part_of
+from tests.simulated import analysis_of, session_of
 
 pytestmark = pytest.mark.endurance  # minutes in all: the default run has three
 
@@ -35,9 +35,9 @@ def test_no_strap_of_it_slips_from_walk_to_walk() -> None:
     free = tuple(FreeMotion(f"free motion {number}", duration_s=6.0) for number in range(1, 7))
     walks = tuple(Walk(f"walk {number}", strides=14, standing_before_s=2.0) for number in range(1, 4))
     settings = replace(DEMONSTRATION_SESSION, recordings=(Standing(), *free, *walks))
-    session = simulate(settings).session
+    session = session_of(settings)
     standing, first, walked = session.recordings[0], session.recordings[1], session.recordings[-3:]
-    calibration = calibration_of(analyse(replace(session, recordings=(standing, first))))
+    calibration = calibration_of(analysis_of(replace(session, recordings=(standing, first))))
     rests = {site: rest_of(block) for site, block in standing.imu.items()}
     sensors = {
         str(site): LiveSensor(100.0, rest.gyr_rad_s, RateKind.INSTANTANEOUS)

@@ -17,12 +17,12 @@ from app.exports.result_folder import write_results
 from app.exports.spreadsheet import write_spreadsheet
 from app.storage.exchange import import_session
 from app.storage.journal.disk import Room
-from core.analysis import analyse
 from core.body import Side
 from core.findings import Finding, Severity
 from core.results import Analysis
 from core.session import Patient, Session
 from tests.quick_library import quick_library
+from tests.simulated import analysis_of
 
 TYPED = Patient(
     code="P 17",
@@ -229,7 +229,7 @@ def test_ten_strides_are_final_and_nine_are_not(
         for r in session.recordings
     )
     session = replace(session, recordings=recordings)
-    export_from_folder(session, analyse(session), [Format.FHIR], tmp_path)
+    export_from_folder(session, analysis_of(session), [Format.FHIR], tmp_path)
     reported = [entry["resource"] for entry in json.loads((tmp_path / "fhir_bundle.json").read_text())["entry"]]
     (stance,) = (
         one

@@ -22,14 +22,14 @@ from app.storage.opened import OpenedLibrary, open_library
 from app.storage.stored import Action, StoredPatient
 from app.summary.course_lanes import SPEED_LANE
 from app.system.settings import Settings
-from app.theme.current import load_fonts
 from app.widgets.line_list import PatientLine, SessionLine
 from app.workers.library_controller import LibraryController
 from core.body import Site
 from core.goals import GOAL_COLUMNS, Goal, GoalOf
 from core.session import Patient
-from devices.simulation.walker import DEMONSTRATION, Standing, Walk, simulate
+from devices.simulation.walker import DEMONSTRATION, Standing, Walk
 from tests.app.home.course_library import PASSPHRASE, add_visit, course_of_visit, make_course_library
+from tests.simulated import session_of
 from tests.waiting import silent
 
 WAIT_MS = 20_000
@@ -42,7 +42,6 @@ def untouched(tmp_path_factory: pytest.TempPathFactory) -> Path:
 
 @pytest.fixture
 def home(qtbot: QtBot, qapp: QApplication, controller: LibraryController, untouched: Path, tmp_path: Path) -> Home:
-    load_fonts()
     settings = Settings(QSettings(str(tmp_path / "settings.ini"), QSettings.Format.IniFormat))
     home = Home(controller, settings)
     home.resize(1280, 800)
@@ -50,7 +49,7 @@ def home(qtbot: QtBot, qapp: QApplication, controller: LibraryController, untouc
     home.show()
     folder = shutil.copytree(untouched, tmp_path / "library")
     with qtbot.waitSignal(controller.opened, timeout=WAIT_MS) as known:
-        controller.open(folder, PASSPHRASE)
+        controller.open(lambda holder: holder.open(folder, PASSPHRASE))
     home.show_library((known.args or [])[0])
     qtbot.waitUntil(lambda: bool(home.page.sessions.lines), timeout=WAIT_MS)
     return home
@@ -147,7 +146,7 @@ def reading(opened: OpenedLibrary) -> PatientReading:
 def test_a_visit_is_computed_and_a_change_takes_it_out_of_the_course(opened: OpenedLibrary) -> None:
     sites = (Site.LEFT_THIGH, Site.LEFT_SHANK, Site.LEFT_FOOT)
     played = (Standing(duration_s=2.0), Walk(strides=8))
-    known = simulate(replace(DEMONSTRATION, sites=sites, recordings=played)).session
+    known = session_of(replace(DEMONSTRATION, sites=sites, recordings=played))
     known = replace(known, patient=Patient(code="DEMO-1"), started="2026-06-20T09:00:00")
     session_id = import_session(opened, known, silent).session_id
     now = day_and_time("2026-06-25T09:00:00")

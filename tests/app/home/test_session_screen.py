@@ -33,7 +33,6 @@ from app.widgets.findings_list import FindingRow
 from app.widgets.table import CellTable
 from app.widgets.table_cells import TextCell
 from app.workers.background import Stopped, Work
-from core.analysis import analyse
 from core.body import LEG_JOINTS, Joint, Side
 from core.findings import Finding, Severity
 from core.results import (
@@ -48,7 +47,8 @@ from core.results import (
 )
 from core.samples import FloatArray
 from core.session import Patient, RecordingKind, Session
-from devices.simulation.walker import DEMONSTRATION, FreeMotion, Standing, Walk, simulate
+from devices.simulation.walker import DEMONSTRATION, FreeMotion, Standing, Walk
+from tests.simulated import analysis_of, session_of
 
 TIME_S = np.arange(600) / 100
 GAP = slice(200, 260)
@@ -445,8 +445,8 @@ def sticks_out(widget: QWidget, window: SessionScreen) -> bool:
 def walked() -> AnalysedVisit:
     """A simulated session whose walk is long enough for a spread."""
     settings = replace(DEMONSTRATION, recordings=(Standing(), FreeMotion(), Walk(strides=13, speed_m_s=0.9)))
-    session = simulate(settings).session
-    return AnalysedVisit(session, analyse(session))
+    session = session_of(settings)
+    return AnalysedVisit(session, analysis_of(session))
 
 
 @pytest.mark.parametrize(

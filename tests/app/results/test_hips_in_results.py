@@ -11,7 +11,6 @@ from PySide6.QtWidgets import QApplication
 from pytestqt.qtbot import QtBot
 
 from app.results.result_page import ANSWER, COMPARE, STRIDES, WHOLE, ResultPage
-from app.theme.current import load_fonts, set_dark
 from app.widgets.stride_list import HIP, KNEE
 from app.widgets.table import CellTable
 from core.body import Joint, Side, Site
@@ -49,8 +48,6 @@ def without_pelvis() -> Analysis:
 
 @pytest.fixture
 def page(qtbot: QtBot, qapp: QApplication) -> ResultPage:
-    load_fonts()
-    set_dark(False)
     page = ResultPage()
     qtbot.addWidget(page)
     page.resize(1280, 700)

@@ -17,8 +17,9 @@ from core.gait.events import SOURCES, EventSource, FootEvents, Timing, gait_of, 
 from core.gait.foot import FootMotion
 from core.gait.sole import SoleTravel, travel_of
 from core.samples import BoolArray, FloatArray, ImuBlock
-from devices.simulation.walker import FootTruth, FreeMotion, Manner, Standing, Tissue, Walk, WalkerSettings, simulate
+from devices.simulation.walker import FootTruth, FreeMotion, Manner, Standing, Tissue, Walk, WalkerSettings
 from tests.core.gait.feet import foot_of
+from tests.simulated import simulation_of
 
 FOOT = Site.LEFT_FOOT
 EVENTS = ("heel_rise_s", "toe_off_s", "initial_contact_s", "full_contact_s")
@@ -26,7 +27,7 @@ EVENTS = ("heel_rise_s", "toe_off_s", "initial_contact_s", "full_contact_s")
 
 def walk_of(settings: WalkerSettings, turn: Rotation | None = None) -> tuple[FootEvents, FootTruth]:
     """Events and truth of the left foot in the second recording; `turn` turns the sensor in its mounting."""
-    made = simulate(replace(settings, sites=(FOOT,)))
+    made = simulation_of(replace(settings, sites=(FOOT,)))
     blocks = [recording.imu[FOOT] for recording in made.session.recordings]
     if turn is not None:
         blocks = [replace(b, gyr_rad_s=turn.apply(b.gyr_rad_s), acc_m_s2=turn.apply(b.acc_m_s2)) for b in blocks]
@@ -133,7 +134,7 @@ def test_a_foot_that_rolls_is_timed_by_its_pitch_and_is_surer() -> None:
 @pytest.mark.parametrize("speed_m_s", [0.3, 1.19])
 def test_a_prosthetic_foots_toe_off_is_timed_by_its_sole(speed_m_s: float) -> None:
     settings = replace(walking(speed_m_s), prosthetic_side=Side.LEFT)
-    made = simulate(replace(settings, sites=(FOOT,)))
+    made = simulation_of(replace(settings, sites=(FOOT,)))
     rest = rest_of(made.session.recordings[0].imu[FOOT])
     assert rest is not None
     track = foot_of(made.session.recordings[1].imu[FOOT], rest.gyr_rad_s)
@@ -188,7 +189,9 @@ def test_a_toe_off_where_no_other_is_goes_where_the_others_are() -> None:
 
 
 def test_standing_and_free_motion_hold_no_strides() -> None:
-    made = simulate(WalkerSettings(recordings=(Standing(duration_s=10.0), FreeMotion(duration_s=20.0)), sites=(FOOT,)))
+    made = simulation_of(
+        WalkerSettings(recordings=(Standing(duration_s=10.0), FreeMotion(duration_s=20.0)), sites=(FOOT,))
+    )
     blocks = [recording.imu[FOOT] for recording in made.session.recordings]
     rest = rest_of(blocks[0])
     assert rest is not None

@@ -16,8 +16,9 @@ from core.gait.live import SETTINGS, FootEvent, LiveEvent, LiveEvents
 from core.gait.phases import PHASES, Phase, phases_at
 from core.samples import FloatArray, ImuBlock
 from core.signal.pair import OrientedTrack
-from devices.simulation.walker import FreeMotion, Standing, Tissue, Walk, WalkerSettings, simulate
+from devices.simulation.walker import FreeMotion, Standing, Tissue, Walk, WalkerSettings
 from tests.core.gait.feet import foot_of
+from tests.simulated import session_of
 
 pytestmark = pytest.mark.endurance  # minutes in all: the default run has three
 
@@ -29,7 +30,7 @@ ROLLING = (FootEvent.TOE_OFF, FootEvent.INITIAL_CONTACT)
 def walker_feet(settings: WalkerSettings) -> list[OrientedTrack]:
     """The feet in the second recording; the first one is standing."""
     feet = []
-    recordings = simulate(settings).session.recordings
+    recordings = session_of(settings).recordings
     for site in settings.sites:
         standing, walk = (recording.imu[site] for recording in recordings)
         rest = rest_of(standing)

@@ -10,8 +10,9 @@ from core.live.free_motion import FreeMotionState, LiveFreeMotion
 from core.live.lag import LagVerdict
 from core.live.sensors import LiveSensor
 from devices.simulation.walker import FreeMotion as FreeMotionRecording
-from devices.simulation.walker import Motion, SimulatedSession, Standing, Tissue, WalkerSettings, simulate
+from devices.simulation.walker import Motion, SimulatedSession, Standing, Tissue, WalkerSettings
 from tests.core.cut_blocks import in_blocks
+from tests.simulated import simulation_of
 
 LEFT = tuple(site for site in LEG_SITES if site.side is Side.LEFT)
 
@@ -19,7 +20,9 @@ LEFT = tuple(site for site in LEG_SITES if site.side is Side.LEFT)
 def made(sites: tuple[Site, ...] = LEFT, motion: Motion = Motion.FULL, late_s: float = 0.0) -> SimulatedSession:
     recordings = (Standing(), FreeMotionRecording(duration_s=18.0, motion=motion))
     late = {Site.LEFT_SHANK: late_s} if late_s else {}
-    return simulate(WalkerSettings(seed=3, recordings=recordings, sites=sites, tissue=Tissue.SOFT, clock_late_s=late))
+    return simulation_of(
+        WalkerSettings(seed=3, recordings=recordings, sites=sites, tissue=Tissue.SOFT, clock_late_s=late)
+    )
 
 
 def sensors_of(session: SimulatedSession) -> dict[Site, LiveSensor]:

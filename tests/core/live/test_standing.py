@@ -12,8 +12,9 @@ from core.live.standing import REQUIRED_S, LiveStanding, StandingState
 from core.samples import ImuBlock
 from core.session import Recording, RecordingKind
 from devices.simulation.walker import Standing as StandingRecording
-from devices.simulation.walker import WalkerSettings, simulate
+from devices.simulation.walker import WalkerSettings
 from tests.core.cut_blocks import in_blocks
+from tests.simulated import session_of
 
 BLOCK_S = 0.033
 
@@ -22,7 +23,7 @@ BLOCK_S = 0.033
 def stood() -> Recording:
     """Six simulated sensors at 100 Hz, five seconds of standing."""
     settings = WalkerSettings(seed=4, recordings=(StandingRecording(duration_s=5.0),))
-    recording = simulate(settings).session.recordings[0]
+    recording = session_of(settings).recordings[0]
     assert recording.kind is RecordingKind.STANDING
     return recording
 

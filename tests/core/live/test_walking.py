@@ -16,8 +16,9 @@ from core.live.walking import LiveWalk, WalkingState
 from core.results import Analysis, JointCalibration
 from core.samples import ImuBlock
 from core.session import Recording
-from devices.simulation.walker import FreeMotion, SimulatedSession, Standing, Tissue, Walk, WalkerSettings, simulate
+from devices.simulation.walker import FreeMotion, SimulatedSession, Standing, Tissue, Walk, WalkerSettings
 from tests.core.cut_blocks import in_blocks
+from tests.simulated import simulation_of
 
 pytestmark = pytest.mark.endurance  # minutes in all: the default run has three
 
@@ -35,7 +36,7 @@ def made() -> SimulatedSession:
         site_rates_hz={Site.RIGHT_FOOT: 50.0},
         clock_late_s={Site.LEFT_SHANK: 0.02},
     )
-    return simulate(settings)
+    return simulation_of(settings)
 
 
 @pytest.fixture(scope="module")

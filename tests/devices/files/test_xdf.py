@@ -19,8 +19,8 @@ from devices.files.formats import recognised
 from devices.files.refusal import FileRefusedError
 from devices.files.trial import ImportedSensor
 from devices.files.xdf import straight_times, xdf_trial
-from devices.simulation.walker import simulate
 from devices.simulation.walker_body import Walk, WalkerSettings
+from tests.simulated import session_of
 from tests.trials_of_files import import_with, refused
 
 Numbers = NDArray[np.float64]
@@ -250,7 +250,7 @@ def test_a_simulated_walk_comes_back_as_it_was_sent(tmp_path: Path) -> None:
     """Three sensors of one leg that lose samples, each on the clock of its own sender."""
     sites = (Site.LEFT_THIGH, Site.LEFT_SHANK, Site.LEFT_FOOT)
     settings = WalkerSettings(seed=3, recordings=(Walk(strides=8),), sites=sites, loss_fraction=0.02)
-    walk = simulate(settings).session.recordings[0].imu
+    walk = session_of(settings).recordings[0].imu
     assert max(map(len, walk.values())) <= ROWS
     streams = []
     for number, site in enumerate(sites):

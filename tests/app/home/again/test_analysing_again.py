@@ -20,12 +20,12 @@ from app.storage.kept_analyses import algorithm
 from app.storage.library import DEMONSTRATOR, Library
 from app.storage.opened import OpenedLibrary
 from app.system.settings import Settings
-from app.theme.current import load_fonts
 from app.wizard.resuming import read_analysed, session_to_analyse
 from app.workers.library_controller import LibraryController
 from core.session import Session
-from devices.simulation.walker import FreeMotion, Standing, Walk, WalkerSettings, simulate
+from devices.simulation.walker import FreeMotion, Standing, Walk, WalkerSettings
 from tests.app.home.course_library import PASSPHRASE, make_course_library
+from tests.simulated import session_of
 from tests.waiting import silent
 
 WAIT_MS = 60_000  # on a busy machine
@@ -35,7 +35,7 @@ ANY_ROOM = Room(start_bytes=0, kept_bytes=0)
 @pytest.fixture(scope="module")
 def walked() -> Session:
     recordings = (Standing(), FreeMotion(duration_s=3.0), Walk(strides=4))
-    return simulate(WalkerSettings(seed=5, recordings=recordings)).session
+    return session_of(WalkerSettings(seed=5, recordings=recordings))
 
 
 @pytest.fixture
@@ -137,14 +137,13 @@ def test_home_leads_there_with_the_patients_sessions_ticked_and_shows_what_faile
     qtbot: QtBot, qapp: QApplication, tmp_path: Path
 ) -> None:
     """Of the fixture no samples were recorded: all fail, each for its reason."""
-    load_fonts()
     controller = LibraryController()
     home = Home(controller, Settings(QSettings(str(tmp_path / "s.ini"), QSettings.Format.IniFormat)))
     qtbot.addWidget(home)
     home.show()
     with qtbot.waitSignal(controller.opened, timeout=WAIT_MS) as reported:
         (tmp_path / "library").mkdir()
-        controller.open(make_course_library(tmp_path / "library", visits=2), PASSPHRASE)
+        controller.open(lambda holder: holder.open(make_course_library(tmp_path / "library", visits=2), PASSPHRASE))
     home.show_library((reported.args or [])[0])
     qtbot.waitUntil(lambda: bool(home.page.sessions.lines), timeout=WAIT_MS)
     home.page.panel.analyse_again.trigger()

@@ -21,7 +21,8 @@ from app.storage.opened import OpenedLibrary, logged_in
 from app.storage.slots import Cost
 from app.storage.stored import Operator, Role
 from core.session import Session
-from devices.simulation.walker import FreeMotion, Standing, Walk, WalkerSettings, simulate
+from devices.simulation.walker import FreeMotion, Standing, Walk, WalkerSettings
+from tests.simulated import session_of
 from tests.waiting import silent
 
 PASSPHRASE = "four short words here"
@@ -44,9 +45,7 @@ def database_url(postgres_url: str) -> Iterator[str]:
 @pytest.fixture(scope="session")
 def walked() -> Session:
     """A simulated patient who is, moves and walks."""
-    return simulate(
-        WalkerSettings(seed=5, recordings=(Standing(), FreeMotion(duration_s=4.0), Walk(strides=6)))
-    ).session
+    return session_of(WalkerSettings(seed=5, recordings=(Standing(), FreeMotion(duration_s=4.0), Walk(strides=6))))
 
 
 @pytest.fixture(scope="session")

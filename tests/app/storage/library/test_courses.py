@@ -11,8 +11,9 @@ from app.storage.stored import Limits, StoredSession
 from app.wizard.resuming import current_course_key, read_analysed
 from core.body import Joint, Side, Site
 from core.session import Patient, Session
-from devices.simulation.walker import DEMONSTRATION, Standing, Walk, simulate
+from devices.simulation.walker import DEMONSTRATION, Standing, Walk
 from tests.app.course_material import course, walked
+from tests.simulated import session_of
 from tests.waiting import silent
 
 SHOES = course((walked(), "shoes"))
@@ -24,7 +25,7 @@ def reported() -> Session:
     """A walk of one leg, short, with a condition."""
     sites = (Site.LEFT_THIGH, Site.LEFT_SHANK, Site.LEFT_FOOT)
     played = (Standing(duration_s=2.0), Walk(strides=8))
-    found = simulate(replace(DEMONSTRATION, sites=sites, recordings=played)).session
+    found = session_of(replace(DEMONSTRATION, sites=sites, recordings=played))
     recordings = (found.recordings[0], replace(found.recordings[1], condition="shoes"))
     return replace(found, recordings=recordings, patient=Patient(code="DEMO-1"), started="2026-06-20T09:00:00")
 

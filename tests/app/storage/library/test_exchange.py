@@ -26,8 +26,9 @@ from core.goals import Goal, GoalOf
 from core.samples import ImuBlock, RateKind, SensorInfo
 from core.session import Patient, Recording, RecordingKind, Session
 from devices.files.session_folder import read_session, write_session
-from devices.simulation.walker import FreeMotion, Standing, Walk, WalkerSettings, simulate
+from devices.simulation.walker import FreeMotion, Standing, Walk, WalkerSettings
 from tests.app.storage.library.folder_export import write_folder
+from tests.simulated import session_of
 from tests.waiting import silent
 
 ANY_ROOM = Room(start_bytes=0, kept_bytes=0)
@@ -69,7 +70,7 @@ def in_and_out(opened: OpenedLibrary, session: Session) -> Session:
 def walked() -> Session:
     """The simulated patient: two of six sensors with orientation and magnetic field, gaps, odd keys and columns."""
     recordings = (Standing(), FreeMotion(), Walk(strides=6))
-    session = simulate(WalkerSettings(seed=5, recordings=recordings)).session
+    session = session_of(WalkerSettings(seed=5, recordings=recordings))
     rng = np.random.default_rng(5)
     changed = []
     for recording in session.recordings:
@@ -399,7 +400,7 @@ def test_what_happened_to_a_recordings_file_is_reported(opened: OpenedLibrary, w
 
 def test_a_session_with_a_pelvis_goes_in_and_out(opened: OpenedLibrary) -> None:
     settings = WalkerSettings(sites=(*LEG_SITES, Site.PELVIS), recordings=(Standing(), Walk(strides=2)))
-    session = simulate(settings).session
+    session = session_of(settings)
     again = in_and_out(opened, session)
     assert set(again.sensors) == {*LEG_SITES, Site.PELVIS}
     for one, other in zip(again.recordings, session.recordings, strict=True):

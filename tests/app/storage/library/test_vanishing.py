@@ -249,7 +249,7 @@ def test_opening_makes_no_library(opened: OpenedLibrary, tmp_path: Path) -> None
         for _ in range(8):  # more than there are connections
             with pytest.raises(LibraryGoneError, match="connect its disk"):
                 opened.library.patients.create(Patient(code="P-003"))
-        opened.library.database.reconnect()
+        opened.library.database.close()
         with pytest.raises(LibraryGoneError):
             opened.library.patients.search()
         opened.folder.mkdir()
