@@ -149,10 +149,10 @@ def _session(
     yield lambda: wizard.step_id is StepId.FREE_MOTION
     free = wizard.steps[StepId.FREE_MOTION]
     assert isinstance(free, FreeMotionStep)
-    yield lambda: wizard.step_id is StepId.WALKING or free.labels._side.asked is not None
+    yield lambda: wizard.step_id is StepId.WALKING or free.question.asked is not None
     if wizard.step_id is StepId.FREE_MOTION:
         yield _after(PAUSE_S)
-        free.page.answered.emit(0)
+        free.page.question.answered.emit(0)
     yield lambda: wizard.step_id is StepId.WALKING
     yield lambda: not visit.evaluation.is_busy
     yield _after(PAUSE_S)

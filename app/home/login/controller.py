@@ -148,14 +148,14 @@ class Entry(QObject):
     def _connect(self) -> None:
         first, log_in, controller = self.first_start, self.log_in, self._controller
         first.made.connect(self._on_made)
-        first.look_requested.connect(self._on_look_requested)
+        first.look_again.clicked.connect(self._on_look_requested)
         first.done.connect(self._on_key_kept)
         first.typed_back.connect(self._confirm)
-        first.renew_requested.connect(self._on_renew_requested)
-        first.put_off.connect(self._enter)
+        first.renew.clicked.connect(self._on_renew_requested)
+        first.later.clicked.connect(self._enter)
         first.print_requested.connect(self._on_print_requested)
         first.save_requested.connect(self._on_save_requested)
-        first.join_requested.connect(self._on_join_requested)
+        first.join.clicked.connect(self._on_join_requested)
         self.join.joined.connect(self._on_server_named)
         self.join.again_requested.connect(self._join_by_itself)
         self.join.left.connect(self.begin)

@@ -21,7 +21,6 @@ class LibraryNotices(QObject):
         Why the older state could not be accepted.
     """
 
-    log_in_requested = Signal()
     refused = Signal(str, str)
 
     def __init__(self, controller: LibraryController, parent: QObject) -> None:
@@ -30,7 +29,6 @@ class LibraryNotices(QObject):
         self._state: OpenedState | None = None
         self.rollback, self.away = Banner(), Banner()
         self.rollback.acted.connect(self._on_accepted)
-        self.away.acted.connect(self.log_in_requested)
         controller.server_back.connect(self._on_server_back)
 
     def show(self, state: OpenedState) -> None:

@@ -41,7 +41,7 @@ class ClinicSettings(QObject):
         station.stop_requested.connect(self._on_stop_requested)
         station.back_requested.connect(self._on_back_requested)
         more.move_requested.connect(self._on_move_requested)
-        more.place_requested.connect(self._on_place_requested)
+        more.choose.clicked.connect(self._on_place_requested)
 
     def show_library(self, state: OpenedState) -> None:
         """Show what the operator who is logged in may do with the library that was opened."""

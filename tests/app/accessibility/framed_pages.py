@@ -15,7 +15,8 @@ from app.patient_screen.window import PatientWindow
 from app.results.agreement_page import AgreementPage
 from app.results.correct_page import CorrectPage, JointLine, WalkLine
 from app.results.found_page import FoundPage
-from app.results.result_page import ANSWER, COMPARE, STRIDES, WHOLE, ResultPage
+from app.results.result_page import ResultPage
+from app.results.tools_row import ANSWER, COMPARE, STRIDES, WHOLE
 from app.theme.icons import Icon
 from app.widgets.action_bar import BarState, RecordingNote
 from app.widgets.rail_row import RailRow, StepState

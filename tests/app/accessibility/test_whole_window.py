@@ -77,8 +77,8 @@ def ways(home: Home) -> dict[str, Callable[[], object]]:
         "home": home.focus,
         "settings": home.show_settings,
         "questions": lambda: home.rail.step_pressed.emit(QUESTIONS),
-        "goals": home.page.panel.goals_requested.emit,
-        "analyse again": home.page.panel.analysing_requested.emit,
+        "goals": home.page.panel.goals.clicked.emit,
+        "analyse again": home.page.panel.analyse_again.triggered.emit,
     }
 
 

@@ -26,6 +26,7 @@ from app.storage.journal.disk import Room
 from app.storage.opened import OpenedLibrary
 from app.storage.pseudonyms import Pseudonyms, Typed, age_in_words
 from app.storage.stored import Action, LibraryError
+from app.system.progress import nobody
 from core.alignment import AlignmentChange, PartChange, ProsthesisPart
 from core.goals import Goal, GoalOf
 from core.results import Analysis
@@ -36,10 +37,6 @@ from devices.files.session_folder import write_session
 from tests.quick_library import quick_library
 
 NAME = "Miller"
-
-
-def silent(share: float, what: str) -> None:
-    """Report nobody."""
 
 
 def everything_in(folder: Path) -> str:
@@ -245,12 +242,12 @@ def test_a_library_notes_what_left_it_and_gives_the_same_pseudonym(
     session, analysis = visit
     with opened:
         room = Room(start_bytes=0, kept_bytes=0)
-        session_id = import_session(opened, session, silent, code=f"DEMO-{NAME}", room=room).session_id
+        session_id = import_session(opened, session, nobody, code=f"DEMO-{NAME}", room=room).session_id
         stated = []
         for name in ("one", "other"):
             (tmp_path / name).mkdir()
             formats = [Format.FHIR, Format.MOT]
-            export_from_library(opened, session_id, formats, tmp_path / name, {}, silent, analysed=lambda _: analysis)
+            export_from_library(opened, session_id, formats, tmp_path / name, {}, nobody, analysed=lambda _: analysis)
             stated.append(everything_in(tmp_path / name))
         assert stated[0] == stated[1]
         assert NAME not in stated[0]
@@ -267,14 +264,14 @@ def test_a_library_notes_what_left_it_and_gives_the_same_pseudonym(
             [Format.XLSX],
             tmp_path,
             {},
-            silent,
+            nobody,
             analysed=lambda _: analysis,
             kept=[Typed.CONDITIONS],
         )
         noted = opened.library.audit.entries(about("session", session_id))
         assert json.loads(noted[-1].details)["typed"] == "conditions"
         with pytest.raises(LibraryError):
-            export_from_library(opened, uuid4(), [Format.MOT], tmp_path, {}, silent)
+            export_from_library(opened, uuid4(), [Format.MOT], tmp_path, {}, nobody)
 
 
 def test_files_lie_as_those_of_the_analysis(visit: tuple[Session, Analysis], tmp_path: Path) -> None:

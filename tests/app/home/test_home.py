@@ -179,7 +179,7 @@ def test_a_session_folder_is_imported_for_a_patient(qtbot: QtBot, home: Home, tm
     block = ImuBlock("LT-1", time_s, np.zeros((300, 3)), np.tile([0.0, 0.0, 9.81], (300, 1)))
     recording = Recording("walk 1", RecordingKind.WALKING, "walk_1", {Site.LEFT_THIGH: block})
     write_session(Session((recording,), Patient(code="P-0200"), started="2026-11-02T10:00:00"), tmp_path / "visit")
-    home.page.import_requested.emit()
+    home.page.empty.importing.clicked.emit()
     home.importing.read([tmp_path / "visit"])
     qtbot.waitUntil(lambda: home.current is home.importing.page, timeout=WAIT_MS)
     assert home.importing.page.code.text == "P-0200"
@@ -212,7 +212,7 @@ def test_a_stopped_import_states_what_came_of_it_once_that_is_known(
     home.importing.read([tmp_path / "visit"])
     qtbot.waitUntil(lambda: home.current is home.importing.page, timeout=WAIT_MS)
     home.importing.take_in()
-    home.working.stop_pressed.emit()
+    home.working.stop.click()
     assert "being stopped" in home.banner.text
     assert "added to the library" not in home.banner.text
     go_on.set()

@@ -21,6 +21,7 @@ from app.storage.library import DEMONSTRATOR, Library
 from app.storage.opened import OpenedLibrary, open_library
 from app.storage.stored import Action, StoredPatient
 from app.summary.course_lanes import SPEED_LANE
+from app.system.progress import nobody
 from app.system.settings import Settings
 from app.widgets.line_list import PatientLine, SessionLine
 from app.workers.library_controller import LibraryController
@@ -30,7 +31,6 @@ from core.session import Patient
 from devices.simulation.walker import DEMONSTRATION, Standing, Walk
 from tests.app.home.course_library import PASSPHRASE, add_visit, course_of_visit, make_course_library
 from tests.simulated import session_of
-from tests.waiting import silent
 
 WAIT_MS = 20_000
 
@@ -148,10 +148,10 @@ def test_a_visit_is_computed_and_a_change_takes_it_out_of_the_course(opened: Ope
     played = (Standing(duration_s=2.0), Walk(strides=8))
     known = session_of(replace(DEMONSTRATION, sites=sites, recordings=played))
     known = replace(known, patient=Patient(code="DEMO-1"), started="2026-06-20T09:00:00")
-    session_id = import_session(opened, known, silent).session_id
+    session_id = import_session(opened, known, nobody).session_id
     now = day_and_time("2026-06-25T09:00:00")
     assert [visit.course for visit in reading(opened).visits(now)] == [None]
-    assert compute_courses(opened, [session_id], silent) == 0
+    assert compute_courses(opened, [session_id], nobody) == 0
     (visit,) = reading(opened).visits(now)
     assert visit.course is not None
     assert visit.course.conditions[0].strides > 0
@@ -161,7 +161,7 @@ def test_a_visit_is_computed_and_a_change_takes_it_out_of_the_course(opened: Ope
 
 
 def test_a_session_that_is_gone_is_counted(opened: OpenedLibrary) -> None:
-    assert compute_courses(opened, [uuid7()], silent) == 1
+    assert compute_courses(opened, [uuid7()], nobody) == 1
 
 
 def day_and_time(moment: str) -> datetime.datetime:

@@ -17,7 +17,8 @@ from pytestqt.qtbot import QtBot
 from app.results.compare_page import CURVES, PLOT, TABLE
 from app.results.compared_table import comparison_table, side_table_row
 from app.results.compared_words import conclusion
-from app.results.result_page import ANSWER, COMPARE, STRIDES, WHOLE, ResultPage
+from app.results.result_page import ResultPage
+from app.results.tools_row import ANSWER, COMPARE, STRIDES, WHOLE
 from app.summary.comparison import Comparison, Contrast, compare_sides, first_and_second
 from app.summary.conditions import Part, conditions_of
 from app.summary.differences import (

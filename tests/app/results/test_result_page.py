@@ -13,7 +13,8 @@ from PySide6.QtWidgets import QApplication, QLineEdit
 from pytestqt.qtbot import QtBot
 
 from app.results.cycle_page import NO_SIDE, NO_SPEED
-from app.results.result_page import ANSWER, COMPARE, STRIDES, WHOLE, ResultPage
+from app.results.result_page import ResultPage
+from app.results.tools_row import ANSWER, COMPARE, STRIDES, WHOLE
 from app.summary.reference_bands import NOBODY, OTHER_AGES, WHY_NO_BAND
 from app.widgets.table import CellTable
 from app.widgets.table_cells import TextCell
@@ -122,7 +123,7 @@ def test_free_motion_is_shown_whole_and_the_walk_comes_back_as_it_was_left(page:
 def test_a_walk_without_strides_states_so_and_shows_the_whole(page: ResultPage, analysis: Analysis) -> None:
     show(page, changed(analysis, gait={}))
     assert page.view.choice == WHOLE
-    assert page.view._segments[ANSWER].accessibleName() == "Summary, no strides"
+    assert page.view.segments[0].accessibleName() == "Summary, no strides"
     show(page, analysis)
     assert page.view.choice == ANSWER
 

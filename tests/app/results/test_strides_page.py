@@ -10,7 +10,8 @@ from PySide6.QtTest import QTest
 from PySide6.QtWidgets import QApplication
 from pytestqt.qtbot import QtBot
 
-from app.results.result_page import ANSWER, STRIDES, ResultPage
+from app.results.result_page import ResultPage
+from app.results.tools_row import ANSWER, STRIDES
 from app.summary.request import AnalysedVisit
 from app.widgets.stride_list import ANKLE_SHAPE, KNEE_SHAPE, STATE, STRIDE, StrideLine
 from core.body import Joint, Side

@@ -11,7 +11,8 @@ from PySide6.QtCore import QPoint
 from PySide6.QtWidgets import QWidget
 from pytestqt.qtbot import QtBot
 
-from app.results.result_page import ANSWER, TABLE, ResultPage
+from app.results.result_page import ResultPage
+from app.results.tools_row import ANSWER, TABLE
 from app.summary.course import course_of
 from app.summary.course_lanes import CourseVisit
 from app.summary.request import AnalysedVisit

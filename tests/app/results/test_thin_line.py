@@ -11,8 +11,9 @@ from PySide6.QtTest import QTest
 from PySide6.QtWidgets import QApplication
 from pytestqt.qtbot import QtBot
 
-from app.results.result_page import STRIDES, ResultPage
+from app.results.result_page import ResultPage
 from app.results.thin_line import ThinLine
+from app.results.tools_row import STRIDES
 from app.summary.beside import beside_visit, beside_walk, changes_on_curves, walks_alone
 from app.summary.course import course_of
 from app.summary.course_lanes import CourseVisit

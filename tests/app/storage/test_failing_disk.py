@@ -20,11 +20,12 @@ from app.storage.layout import IN_USE
 from app.storage.opened import OpenedLibrary, logged_in
 from app.storage.recovery import find_interrupted, recover
 from app.storage.stored import LibraryError, StoredJournal
+from app.system.progress import nobody
 from core.session import Patient, Recording, RecordingKind, Session
 from tests.quick_library import quick_library
 from tests.safety.failing_disk import FailingDisk, failing_disk, missing
 from tests.safety.journal_material import LINES, NO_ROOM_ASKED, LineDecoder, line, record_some
-from tests.waiting import silent, wait_for
+from tests.waiting import wait_for
 
 pytestmark = [
     pytest.mark.endurance,
@@ -110,7 +111,7 @@ def test_a_recording_keeps_what_was_written_and_states_what_happened(
         bring_home(later)
         (found,) = find_interrupted(later)
         assert found.problem == ""
-        recover(later, found, silent)
+        recover(later, found, nobody)
         paths = list(find_segments(later.recordings)[recording_id].values())
         block = decode(paths, later.data_key, {"lines": LineDecoder}).sensors["line"].block
     numbers = [round(float(one)) for one in block.time_s * 200.0]

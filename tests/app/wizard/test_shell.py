@@ -158,7 +158,7 @@ def test_a_page_is_reported_its_room_in_px_of_the_design(shell: WizardShell) -> 
 def test_a_question_above_the_gauges_pushes_none_out_of_sight(shell: WizardShell) -> None:
     page = FreeMotionPage()
     shell.show_page(StepId.PATIENT, page)
-    page.ask("Both legs moved at once. Which leg has 0A31 on the shank?", "", ("Left", "Right"))
+    page.question.ask("Both legs moved at once. Which leg has 0A31 on the shank?", "", ("Left", "Right"))
     settle()
     assert page.question.isVisible()
     assert page.height() <= shell._scroll.viewport().height()

@@ -10,8 +10,9 @@ from PySide6.QtTest import QTest
 from PySide6.QtWidgets import QApplication
 from pytestqt.qtbot import QtBot
 
-from app.cohort.batch.again import AgainResult, analyse_again
+from app.cohort.batch.again import analyse_again
 from app.cohort.batch.executors import of_this_computer
+from app.cohort.batch.spread import SelectionResult
 from app.home.again.analyse_again_page import AgainLine, AnalyseAgainPage
 from app.home.home import Home
 from app.storage.exchange import import_session
@@ -19,6 +20,7 @@ from app.storage.journal.disk import Room
 from app.storage.kept_analyses import algorithm
 from app.storage.library import DEMONSTRATOR, Library
 from app.storage.opened import OpenedLibrary
+from app.system.progress import nobody
 from app.system.settings import Settings
 from app.wizard.resuming import read_analysed, session_to_analyse
 from app.workers.library_controller import LibraryController
@@ -26,7 +28,6 @@ from core.session import Session
 from devices.simulation.walker import FreeMotion, Standing, Walk, WalkerSettings
 from tests.app.home.course_library import PASSPHRASE, make_course_library
 from tests.simulated import session_of
-from tests.waiting import silent
 
 WAIT_MS = 60_000  # on a busy machine
 ANY_ROOM = Room(start_bytes=0, kept_bytes=0)
@@ -44,13 +45,13 @@ def opened(tmp_path: Path, walked: Session) -> Iterator[OpenedLibrary]:
     folder = tmp_path / "opened"
     with OpenedLibrary(Library.create(folder, None, DEMONSTRATOR), folder, None) as library:
         for _ in range(2):
-            import_session(library, walked, silent, "DEMO-1", room=ANY_ROOM)
+            import_session(library, walked, nobody, "DEMO-1", room=ANY_ROOM)
         yield library
 
 
-def again(opened: OpenedLibrary, ids: tuple[UUID, ...], workers: int = 1) -> AgainResult:
+def again(opened: OpenedLibrary, ids: tuple[UUID, ...], workers: int = 1) -> SelectionResult[UUID]:
     with of_this_computer(workers) as those:
-        return analyse_again(ids, lambda one: session_to_analyse(opened, one), those, silent)
+        return analyse_again(ids, lambda one: session_to_analyse(opened, one), those, nobody)
 
 
 def ids_of(opened: OpenedLibrary) -> tuple[UUID, ...]:
@@ -72,7 +73,7 @@ def test_what_is_analysed_again_is_what_opening_the_session_would_compute(
         raise AssertionError("it was computed a second time")
 
     monkeypatch.setattr("app.wizard.resuming.analyse", computed)
-    _, analysis = read_analysed(opened, ids[0], silent)
+    _, analysis = read_analysed(opened, ids[0], nobody)
     assert analysis.recordings
 
 

@@ -47,7 +47,7 @@ def alignments() -> AnalysedVisit:
 
 
 @pytest.fixture
-def request_of_demonstration(demonstration: AnalysedVisit) -> ReportRequest:
+def demo(demonstration: AnalysedVisit) -> ReportRequest:
     return ReportRequest(demonstration, ("walk 1",), MADE_AT, "1.2.3")
 
 
@@ -57,5 +57,5 @@ def request_of_one_leg(one_leg: AnalysedVisit) -> ReportRequest:
 
 
 @pytest.fixture
-def request_of_alignments(alignments: AnalysedVisit) -> ReportRequest:
+def aligned(alignments: AnalysedVisit) -> ReportRequest:
     return ReportRequest(alignments, ("walk 1", "walk 2", "walk 3"), MADE_AT, "1.2.3")

@@ -20,10 +20,10 @@ from app.storage.library import Library
 from app.storage.opened import OpenedLibrary, logged_in
 from app.storage.slots import Cost
 from app.storage.stored import Operator, Role
+from app.system.progress import nobody
 from core.session import Session
 from devices.simulation.walker import FreeMotion, Standing, Walk, WalkerSettings
 from tests.simulated import session_of
-from tests.waiting import silent
 
 PASSPHRASE = "four short words here"
 ANY_ROOM = Room(start_bytes=0, kept_bytes=0)
@@ -57,7 +57,7 @@ def untouched(tmp_path_factory: pytest.TempPathFactory, walked: Session) -> Open
     slots.add(data_key, "ab", PASSPHRASE + " too")
     library = Library.create(folder, data_key, Operator("hk", "H. Keller", Role.ADMINISTRATOR))
     library.operators.add(Operator("ab", "A. Bauer", Role.CLINICIAN))
-    import_session(OpenedLibrary(library, folder, data_key), walked, silent, "DEMO-1", room=ANY_ROOM)
+    import_session(OpenedLibrary(library, folder, data_key), walked, nobody, "DEMO-1", room=ANY_ROOM)
     library.close()
     return OpenedLibrary(library, folder, data_key)
 
@@ -97,7 +97,7 @@ def open_at(untouched: OpenedLibrary) -> Iterator[OpenAt]:
 def moved(folder: Path, database_url: str, shared_place: Path, open_at: OpenAt) -> Station:
     """The station that the library's folder has become."""
     station = new_station(database_url, str(shared_place))
-    move_to_server(open_at(folder), station, silent)
+    move_to_server(open_at(folder), station, nobody)
     return station
 
 

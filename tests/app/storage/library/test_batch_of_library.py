@@ -16,10 +16,9 @@ from app.storage.journal.disk import Room
 from app.storage.opened import OpenedLibrary
 from app.storage.pseudonyms import Pseudonyms
 from app.storage.stored import Action, StoredSession
-from app.system.progress import Report
+from app.system.progress import Report, nobody
 from core.session import Patient, Session
 from tests.app.batch_material import results_in, swinging_session
-from tests.waiting import silent
 
 ANY_ROOM = Room(start_bytes=0, kept_bytes=0)
 BARE = ("--no-report", "--no-rrd", "--workers", "1")
@@ -32,7 +31,7 @@ def visits(opened: OpenedLibrary) -> list[UUID]:
     """Two sessions of one patient."""
     patient = Patient(code="MUSTER-7", birth_year=1980)
     reported = [replace(swinging_session(seed, patient), notes="Anna", operator="hk") for seed in (1, 2)]
-    return [import_session(opened, one, silent, room=ANY_ROOM).session_id for one in reported]
+    return [import_session(opened, one, nobody, room=ANY_ROOM).session_id for one in reported]
 
 
 @pytest.fixture

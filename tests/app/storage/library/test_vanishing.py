@@ -30,11 +30,12 @@ from app.storage.opened import OpenedLibrary, create_library, open_library
 from app.storage.recovery import adopt_home, find_interrupted, recover
 from app.storage.root import ID_FILE, LibraryGoneError
 from app.storage.stored import LibraryError, Operator, RecordingState, Role, StoredJournal
+from app.system.progress import nobody
 from core.session import Patient, Recording, RecordingKind, Session
 from tests.app.storage.library.conftest import ANY_ROOM, PASSPHRASE, Record
 from tests.safety.homecoming_kills import bring_home_killed
 from tests.safety.journal_material import LINES, NO_ROOM_ASKED, LineDecoder, line
-from tests.waiting import silent, wait_for
+from tests.waiting import wait_for
 
 DECODERS = {"lines": LineDecoder}
 
@@ -129,7 +130,7 @@ def test_a_folder_that_is_renamed_while_recording_costs_no_byte(opened: OpenedLi
     assert lines.sheltered == []
     (found,) = find_interrupted(opened)
     assert found.problem == ""
-    recovered = recover(opened, found, silent)
+    recovered = recover(opened, found, nobody)
     assert recovered.stored.state is RecordingState.CLOSED  # the operator stopped it
     assert recovered.recorded_s == pytest.approx(found.recorded_s)
     assert recovered.recorded_s < 10.0  # not the two parts' sum since the beginning
@@ -159,7 +160,7 @@ def test_a_disk_that_is_taken_out_costs_no_more_than_a_power_cut(
     assert lines.writer.stop().state is State.CLOSED
     bring_home(opened)
     (found,) = find_interrupted(opened)
-    assert recover(opened, found, silent).stored.state is RecordingState.CLOSED
+    assert recover(opened, found, nobody).stored.state is RecordingState.CLOSED
     assert lines.numbers() == [k for k in range(lines.number - 1) if k != 50]  # it was amid being sent
     assert all(report.missing_records == 0 for report in lines.decoded().reports)
 
@@ -191,7 +192,7 @@ def test_a_recording_that_begins_while_it_is_gone_is_the_librarys_only(opened: O
         assert (path.stat().st_mode & 0o077, opened.shelter.folder.stat().st_mode & 0o077) == (0, 0)
     bring_home(opened)
     (found,) = find_interrupted(opened)
-    assert adopt_home(opened, found, silent).stored.session_id == session_id
+    assert adopt_home(opened, found, nobody).stored.session_id == session_id
     assert lines.numbers() == list(range(50))
 
 
@@ -256,7 +257,7 @@ def test_opening_makes_no_library(opened: OpenedLibrary, tmp_path: Path) -> None
         with pytest.raises(LibraryGoneError):
             opened.library.patients.search()
         with pytest.raises(LibraryGoneError):
-            import_session(opened, Session((), patient=Patient(code="P-009")), silent)
+            import_session(opened, Session((), patient=Patient(code="P-009")), nobody)
         assert list(opened.folder.iterdir()) == []
         opened.folder.rmdir()
     assert {one.details.code for one in opened.library.patients.search()} == {"P-002"}
@@ -317,7 +318,7 @@ def test_moved_to_another_disk_amid_a_recording_nothing_is_lost(
     opened.library.take_back()
     assert bring_home(opened) == {lines.id}
     (found,) = find_interrupted(opened)
-    assert adopt_home(opened, found, silent).stored.state is RecordingState.CLOSED
+    assert adopt_home(opened, found, nobody).stored.state is RecordingState.CLOSED
     assert lines.numbers() == list(range(lines.number - 1))
 
 
@@ -392,7 +393,7 @@ def test_killed_while_bringing_home_it_comes_home_once(opened: OpenedLibrary, se
     assert (opened.recordings / f"{lines.id}.2.journal").read_bytes() == sealed
     assert not shelter.folder.exists()
     (found,) = find_interrupted(opened)
-    adopt_home(opened, found, silent)
+    adopt_home(opened, found, nobody)
     assert lines.numbers() == list(range(lines.number - 1))
     assert find_interrupted(opened) == ()
     assert len(opened.library.sessions.get(session_id).recordings) == 1
@@ -430,7 +431,7 @@ def test_killed_while_recording_in_the_shelter_it_is_recovered(opened: OpenedLib
         file.truncate(path.stat().st_size - 40)  # without its footer
     bring_home(opened)
     (found,) = find_interrupted(opened)
-    assert recover(opened, found, silent).stored.state is RecordingState.RECOVERED
+    assert recover(opened, found, nobody).stored.state is RecordingState.RECOVERED
     (walk,) = opened.library.recordings.undecided()
     assert walk.recording.id == lines.id
 
@@ -442,11 +443,11 @@ def test_a_part_that_comes_home_late_is_added_to_what_was_recovered_without_it(
     lines = recorded_in_two(opened, session_id, has_row=True)
     (found,) = find_interrupted(opened)
     assert found.problem == ""  # no backup ever held what is missing
-    assert len(recover(opened, found, silent).stored.journals) == 1
+    assert len(recover(opened, found, nobody).stored.journals) == 1
     assert find_interrupted(opened) == ()
     bring_home(opened)
     (found,) = find_interrupted(opened)
-    recovered = recover(opened, found, silent)
+    recovered = recover(opened, found, nobody)
     assert [journal.segment for journal in recovered.stored.journals] == [1, 2]
     assert lines.numbers() == list(range(lines.number - 1))
     assert find_interrupted(opened) == ()
@@ -505,7 +506,7 @@ def test_a_disk_that_is_unmounted_and_mounted_again(untouched: OpenedLibrary, tm
             is_mounted = True
             assert bring_home(opened) == {lines.id}
             (found,) = find_interrupted(opened)
-            adopt_home(opened, found, silent)
+            adopt_home(opened, found, nobody)
             assert lines.numbers() == list(range(lines.number - 1))
     finally:
         if is_mounted:

@@ -13,8 +13,8 @@ from PySide6.QtTest import QTest
 from PySide6.QtWidgets import QApplication, QFileDialog
 from pytestqt.qtbot import QtBot
 
-from app.results.result_page import STRIDES
 from app.results.thin_line import ThinLine
+from app.results.tools_row import STRIDES
 from app.storage.exchange import import_session
 from app.storage.opened import OpenedLibrary
 from app.summary.comparison import Contrast
@@ -164,7 +164,7 @@ def test_a_walk_is_left_out_comes_back_and_changes_its_condition(qtbot: QtBot, v
     assert stated == ["A AFO is excluded.", "A AFO is included."]
     assert step.page.results().recordings.currentText() == "A AFO"
     assert [recording.details.condition for recording in visit.recordings.walks] == ["AFO"]
-    step.page.correct().closed.emit()
+    step.page.correct().back.click()
     assert [part.name for part in step.page.results().compare._conditions] == ["AFO"]
 
 

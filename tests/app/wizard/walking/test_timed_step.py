@@ -63,7 +63,7 @@ def is_for_clicker(step: WalkingStep) -> bool:
 @pytest.mark.endurance
 def test_ten_metres_by_the_motion_alone(qtbot: QtBot, step: WalkingStep, visit: Visit) -> None:
     assert step.on_intent(NEXT_TEST)
-    assert step.page.next.test.box.currentText() == "10-metre walk"
+    assert step.page.next.test.currentText() == "10-metre walk"
     with qtbot.waitSignal(visit.recordings.ended, timeout=PATIENCE_MS):  # which stops by itself
         step.on_intent(RUN)
         qtbot.waitUntil(lambda: step.page.timed.isVisible(), timeout=PATIENCE_MS)
@@ -119,7 +119,7 @@ def test_esc_breaks_a_test_off_and_no_test_is_a_walk_as_ever(qtbot: QtBot, step:
     assert "time not measured" in step.page.timed_result.first.text()
     for _ in TimedProtocol:
         step.on_intent(NEXT_TEST)
-    assert step.page.next.test.box.currentIndex() == 0
+    assert step.page.next.test.currentIndex() == 0
     with qtbot.waitSignal(visit.recordings.begun, timeout=PATIENCE_MS):
         step.on_intent(RUN)
     assert not step.takes_clicker
