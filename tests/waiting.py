@@ -1,13 +1,9 @@
-"""What tests wait for, and whom they report to."""
+"""What tests wait for."""
 
 import time
 from collections.abc import Callable
 
 PATIENCE_S = 60.0  # on a busy machine
-
-
-def silent(_share: float, _what: str) -> None:
-    """Report to nobody."""
 
 
 def wait_for(is_so: Callable[[], bool], patience_s: float = PATIENCE_S, every_s: float = 0.002) -> None:

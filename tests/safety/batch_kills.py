@@ -23,9 +23,9 @@ from typing import Any
 from app.cohort.batch.cluster import of_a_cluster
 from app.cohort.batch.executors import MOST_TRIES, PRELOADED, ProcessExecutor, of_this_computer
 from app.cohort.batch.spread import Workers, finished
+from app.system.progress import nobody
 from tests.app.batch_stand_ins import StandIn, digest_of
 from tests.driver import Found, drive
-from tests.waiting import silent
 
 WORKERS = 2
 PRELOADED_OF_BOTH = (*PRELOADED, "distributed.nanny")  # a killed worker of the cluster is back in no time, too
@@ -144,7 +144,7 @@ def sessions(folder: Path, count: int, every_s: float, required: str, found: Fou
         with some as (workers, killer), batch_at(out) as batch:
             began_s = time.perf_counter()
             work = Batch(SessionFolders(folder / "in", out), batch, choices)
-            work.run(workers, silent)
+            work.run(workers, nobody)
             note(found, f"{count} sessions, {name}", began_s, killer)
         if (work.result.analysed, work.result.rows) != (count, 3 * count):
             found.faults.append(f"{name}: {work.result}")

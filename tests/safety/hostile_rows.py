@@ -39,12 +39,12 @@ from app.storage.opened import logged_in, slots_of
 from app.storage.recovery import find_interrupted
 from app.storage.retention import destroy_overdue
 from app.storage.stored import LibraryError, RecordingState, StoredJournal
+from app.system.progress import nobody
 from core.session import Recording, RecordingKind
 from devices.files.refusal import FileRefusedError
 from tests.driver import Found, drive
 from tests.safety.clinic_material import PASSPHRASE, OwnServer, make_clinic, name_of, own_server
 from tests.safety.journal_material import LineDecoder, record_some
-from tests.waiting import silent
 
 SENTENCES = (LibraryError, JournalRefusedError, KeyRefusedError, FileRefusedError)
 WORDS = (
@@ -138,7 +138,7 @@ def work(folder: Path, key: DataKey, read: Read) -> Generator[None]:
         for line in lines:
             visit = library.sessions.view(line.id)
             library.results.analysed_by("x")
-            whole = session_with_samples(opened, visit, {"lines": LineDecoder}, silent)
+            whole = session_with_samples(opened, visit, {"lines": LineDecoder}, nobody)
             stored = [one for one in visit.recordings if one.state in READ_BACK]
             for row, recording in zip(stored, whole.recordings, strict=True):
                 read.samples[row.id] = _digests(recording)

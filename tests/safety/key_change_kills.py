@@ -24,11 +24,11 @@ from app.storage.keys import KeyRefusedError, KeySlots
 from app.storage.layout import DATABASE, KEYS, NEW_DATABASE, NEW_KEYS
 from app.storage.opened import open_library
 from app.storage.stored import RecordingState, StoredJournal
+from app.system.progress import nobody
 from core.session import Patient, Recording, RecordingKind, Session
 from tests.driver import KILLED, Found, drive, end_of_child
 from tests.quick_library import CHEAP, PASSPHRASE, quick_library
 from tests.safety.clinic_material import copy_of
-from tests.waiting import silent
 
 LEAVING = "another four short words"
 EVENTS = ("open", "os.rename", "os.remove", "sqlite3.connect")
@@ -66,7 +66,7 @@ def kill_in_child(folder: Path, at_event: int, after_s: float | None) -> bool:
     def change() -> None:
         opened = open_library(folder, PASSPHRASE, "hk")
         sys.addaudithook(kill)
-        change_data_key(opened, ["hk"], silent)
+        change_data_key(opened, ["hk"], nobody)
 
     return end_of_child(change, after_s) == KILLED
 

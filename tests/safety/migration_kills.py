@@ -31,9 +31,9 @@ from app.storage.database.steps import alembic_config, move
 from app.storage.exchange import session_with_samples
 from app.storage.layout import DATABASE
 from app.storage.opened import logged_in, slots_of
+from app.system.progress import nobody
 from tests.driver import KILLED, Found, drive, end_of_child
 from tests.safety.clinic_material import OPERATORS, PASSPHRASE, make_library
-from tests.waiting import silent
 
 TIMED = ("audit", "alembic_version")  # a login is added to the one, the other reports the version
 Rows = Mapping[str, tuple[tuple[str, ...], list[tuple[object, ...]]]]
@@ -107,7 +107,7 @@ def samples_of(folder: Path, key: DataKey) -> tuple[str, ...]:
     with logged_in(folder, key, OPERATORS[0]) as opened:
         found = [*opened.library.faults(), *(fault.what for fault in opened.library.audit.verify().faults)]
         for line in opened.library.sessions.list():
-            visit = session_with_samples(opened, opened.library.sessions.view(line.id), {}, silent)
+            visit = session_with_samples(opened, opened.library.sessions.view(line.id), {}, nobody)
             found += [
                 f"{recording.name} {site} {sha256(block.gyr_rad_s.tobytes() + block.acc_m_s2.tobytes()).hexdigest()}"
                 for recording in visit.recordings

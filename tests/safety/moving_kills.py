@@ -21,6 +21,7 @@ from app.storage.clinic.joining import new_station, prepare_server
 from app.storage.clinic.moving import bring_back, move_to_server
 from app.storage.layout import DATABASE, MOVING, RECORDINGS, STATION, SUFFIX
 from app.storage.opened import open_library
+from app.system.progress import nobody
 from tests.driver import KILLED, Found, end_of_child
 from tests.safety.clinic_material import (
     OPERATORS,
@@ -32,7 +33,6 @@ from tests.safety.clinic_material import (
     name_of,
     rows_of,
 )
-from tests.waiting import silent
 
 FIRST_S, LONGER = 1.0, 1.1  # in which a move may be done; it is then measured
 TABLES = [
@@ -81,13 +81,13 @@ class _Journey:
                 with open_library(self._library, PASSPHRASE, OPERATORS[0]):
                     return  # killed at its very end
             with open_library(self._library, PASSPHRASE, OPERATORS[0], is_to_be_moved=True) as opened:
-                move_to_server(opened, station, silent)
+                move_to_server(opened, station, nobody)
 
         def back() -> None:
             if self._back.exists():
                 return
             with open_library(self._library, PASSPHRASE, OPERATORS[0], is_to_be_moved=True) as opened:
-                bring_back(opened, self._back, silent)
+                bring_back(opened, self._back, nobody)
 
         self._until_done(there, address)
         self._compare("on the server", rows, server_rows(address))

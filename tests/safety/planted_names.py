@@ -27,12 +27,12 @@ from app.storage.opened import create_library, open_library
 from app.storage.recovery import find_interrupted, recover
 from app.storage.stored import Operator, Role
 from app.system.logs import start_logging
+from app.system.progress import nobody
 from core.body import Site
 from core.samples import ImuBlock, SensorInfo
 from core.session import Patient, Recording, RecordingKind, Session
 from tests.app.storage.library.folder_export import write_folder
 from tests.driver import HIDDEN, Found, drive
-from tests.waiting import silent
 
 ROOT = Path(__file__).parents[2]
 STEM = "Kowalczyk"  # of all names, so that one search finds any of them
@@ -75,7 +75,7 @@ def work(folder: Path) -> None:
     while time.monotonic() < until_s:
         name = NAMES[number % len(NAMES)]
         session = replace(named_session(name), patient=Patient(code=f"{name}-{number}"))
-        imported = import_session(opened, session, silent, room=ANY_ROOM)
+        imported = import_session(opened, session, nobody, room=ANY_ROOM)
         write_folder(opened, imported.session_id, folder / "exports" / str(number), {})
         try:
             (folder / name).read_bytes()
@@ -129,12 +129,12 @@ def search_files(place: Path, secrets: list[str], search: Found) -> None:
 def _reopen(place: Path, search: Found) -> None:
     with open_library(place / "library", PASSPHRASE) as opened:
         for one in find_interrupted(opened):
-            recover(opened, one, silent)
+            recover(opened, one, nobody)
             search.count["recordings recovered"] += 1
         faults = [*opened.library.faults(), *opened.library.audit.verify().faults]
         for line in opened.library.sessions.list():
             visit = opened.library.sessions.get(line.id)
-            read = session_with_samples(opened, visit, {}, silent)
+            read = session_with_samples(opened, visit, {}, nobody)
             if read.recordings and STEM not in read.recordings[0].name:
                 faults.append(f"session {line.id} lost its names")
         search.faults += [f"{place.name}: {fault}" for fault in faults]

@@ -124,7 +124,7 @@ def _set_up(one: StationOnScreen, two: StationOnScreen, server: Server, place: P
             (
                 "to Address of the clinic",
                 f"type {server.address}",
-                "to Place of the recordings",
+                "to Shared storage that all workstations",
                 f"type {place}",
                 "to Move to the clinic",
             ),
@@ -176,7 +176,7 @@ def _review_elsewhere(one: StationOnScreen, two: StationOnScreen, server: Server
     )
     _wait_until(lambda: not _waiting(server), "all recordings are handed over")
     two.lead(
-        Stop("20-appeared", offers("New session for DEMO-7"), ("to Sessions", "press Down", "press Return")),
+        Stop("20-appeared", offers("New session for DEMO-7"), ("to Visits", "press Down", "press Return")),
         Stop("21-reviewed", offers("Legs", "Data"), patience_s=PATIENCE_S, lingers_s=2.0),
     )
     found = server.rows("SELECT kind, state FROM recordings ORDER BY kind")
@@ -189,7 +189,7 @@ def _change_the_same(one: StationOnScreen, two: StationOnScreen, server: Server)
     """Both have the patient's page open before either changes it."""
     before = _patient(server)
     one.lead(
-        Stop("40-home", offers("New session for DEMO-7"), ("to Sessions", "press Down", "press Return")),
+        Stop("40-home", offers("New session for DEMO-7"), ("to Visits", "press Down", "press Return")),
         Stop("41-session", offers("Legs"), ("press ctrl+1",), patience_s=PATIENCE_S),
         Stop("42-patient", at_step("PatientStep"), ("to Body height",)),
     )
@@ -252,7 +252,7 @@ def _lose_the_server(one: StationOnScreen, two: StationOnScreen, server: Server,
     _wait_until(lambda: not _waiting(server), "what was recorded meanwhile is handed over")
     two.lead(
         Stop("61-leave", at_step("PatientStep"), ("click All patients",), patience_s=PATIENCE_S),
-        Stop("62-home", offers("New session for DEMO-7"), ("to Sessions", "press Home", "press Return"), lingers_s=3.0),
+        Stop("62-home", offers("New session for DEMO-7"), ("to Visits", "press Home", "press Return"), lingers_s=3.0),
         Stop("63-reviewed", offers("Legs", "Data"), patience_s=PATIENCE_S, lingers_s=2.0),
     )
     samples, longest_s = _read_walk(server, folder / "third", walked_s)

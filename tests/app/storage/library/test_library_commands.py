@@ -20,11 +20,11 @@ from app.storage.opened import OpenedLibrary, held_alone
 from app.storage.recovery import find_interrupted
 from app.storage.slots import Cost
 from app.storage.stored import Action, StoredRecording
+from app.system.progress import nobody
 from core.session import Recording, RecordingKind
 from devices.simulation.walker import FreeMotion, Standing, Walk, WalkerSettings
 from tests.app.storage.library.folder_export import write_folder
 from tests.simulated import session_of
-from tests.waiting import silent
 
 PASSPHRASE = "four short words here"
 ANY_ROOM = Room(start_bytes=0, kept_bytes=0)
@@ -129,7 +129,7 @@ def test_a_session_of_the_library_gives_the_same_results_as_its_folder(
 ) -> None:
     recordings = (Standing(), FreeMotion(), Walk(strides=6))
     session = session_of(WalkerSettings(seed=3, recordings=recordings))
-    imported = import_session(opened, session, silent, room=Room(start_bytes=0, kept_bytes=0))
+    imported = import_session(opened, session, nobody, room=Room(start_bytes=0, kept_bytes=0))
     write_folder(opened, imported.session_id, tmp_path / "folder", {}, is_identified=True)
     by_folder, by_library = tmp_path / "one", tmp_path / "two"
     assert cli.main(["analyse", str(tmp_path / "folder"), "--out", str(by_folder), "--no-rrd"]) == 0
