@@ -1,16 +1,19 @@
 """Free places in a chart: where a bracket, the value at a peak or the box of a hidden curve cover the curves least."""
 
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, field
 
 import numpy as np
 
+from app.charts.canvas import Canvas
 from app.charts.cycles import PERCENT
 from app.charts.frame import Frame
 from app.charts.marks import BAND_SDS, CurveLabel, Deviation, HiddenCurve
 from app.charts.stride_chart import StrideChart, toe_offs_in_order
+from app.wording.verdicts import verdict_alone
 from core.body import JointKind
 from core.samples import FloatArray
+from core.verdicts.model import Verdict
 
 USUAL_EMPTY_PERCENT = {  # between the stance's curve and the swing's
     JointKind.HIP: 50.0,
@@ -85,19 +88,6 @@ class ChartGround:
 
 
 @dataclass(frozen=True, slots=True)
-class Sizes:
-    """How large a painter's words are: a label's, a bracket's with one line, two lines and so on, a box's.
-
-    `dot` is the radius of the dot at a label's point.
-    """
-
-    label: Callable[[CurveLabel], Size]
-    bracket: Callable[[Deviation], Sequence[Size]]
-    hidden: Callable[[HiddenCurve], Size]
-    dot: float
-
-
-@dataclass(frozen=True, slots=True)
 class MarkPlace:
     """A mark's bar, and the room of its words: None where there is none. `lines` are those that have room."""
 
@@ -121,20 +111,37 @@ class Layout:
     labels: tuple[tuple[CurveLabel, Box | None], ...]
 
 
-def layout_of(ground: ChartGround, chart: StrideChart, sizes: Sizes) -> Layout:
+def layout_of(canvas: Canvas, frame: Frame, chart: StrideChart, taken: Sequence[Box] = ()) -> Layout:
     """Boxes of hidden curves first, then brackets, then labels: what is larger chooses first."""
-    frame = ground.frame
-    hidden = tuple((one, place_hidden(ground, sizes.hidden(one))) for one in chart.hidden)
+    ground, size = ground_of(frame, chart, taken), canvas.lengths
+    hidden = tuple((one, place_hidden(ground, _size_of_hidden(canvas, one))) for one in chart.hidden)
     brackets = []
     for deviation in chart.deviations:
         ends = [_at(frame, point.percent, point.angle_deg) for point in deviation.points]
         kind = USUAL_EMPTY_PERCENT[deviation.kind]
-        brackets.append((deviation, place_mark(ground, ends, sizes.bracket(deviation), kind)))
+        brackets.append((deviation, place_mark(ground, ends, _sizes_of_bracket(canvas, deviation), kind)))
     labels = sorted(chart.shown_labels, key=lambda label: label.side, reverse=True)  # filled dots over outlined ones
     points = [_at(frame, one.point.percent, one.point.angle_deg) for one in labels]
+    sizes = [(canvas.width_of(one.text, is_first=True) + size.halo, size.line) for one in labels]
     are_above = [_is_higher(chart, one) for one in labels]
-    boxes = place_labels(ground, points, [sizes.label(one) for one in labels], are_above, sizes.dot)
+    boxes = place_labels(ground, points, sizes, are_above, size.dot)
     return Layout(hidden, tuple(brackets), tuple(zip(labels, boxes, strict=True)))
+
+
+def _sizes_of_bracket(canvas: Canvas, bracket: Deviation) -> list[Size]:
+    """Of its words with one line, and with both."""
+    first, line = canvas.width_of(bracket.words, is_first=True), canvas.lengths.line
+    more = [(max(first, canvas.width_of(bracket.more, is_first=False)), 2 * line)] if bracket.more else []
+    return [(first, line), *more]
+
+
+def _size_of_hidden(canvas: Canvas, hidden: HiddenCurve) -> Size:
+    words = max(canvas.width_of(line, is_first=row == 0) for row, line in enumerate(lines_of_hidden(hidden)))
+    return canvas.lengths.hidden_margins + words, canvas.lengths.hidden_height
+
+
+def lines_of_hidden(hidden: HiddenCurve) -> list[str]:
+    return list(filter(None, [verdict_alone(Verdict.NOT_REPORTED), hidden.reason]))
 
 
 def _is_higher(chart: StrideChart, label: CurveLabel) -> bool:

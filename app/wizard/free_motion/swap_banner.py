@@ -7,7 +7,6 @@ from PySide6.QtGui import (
     QColor,
     QFontMetrics,
     QPainter,
-    QPaintEvent,
     QResizeEvent,
 )
 from PySide6.QtWidgets import QBoxLayout, QHBoxLayout, QSizePolicy, QVBoxLayout, QWidget
@@ -19,6 +18,7 @@ from app.theme.theme import CARD_RADIUS
 from app.widgets.action_bar import BarAction, VerbButton
 from app.widgets.button import ButtonKind
 from app.widgets.lay_out import lay_out
+from app.widgets.painted import Painted
 from app.widgets.painted_text import height_for
 from app.widgets.text import SEMIBOLD, Text
 
@@ -29,7 +29,7 @@ BUTTONS = 324
 STACKED_BELOW = 620  # px of the design: the buttons stand below the words
 
 
-class SwapBanner(QWidget):
+class SwapBanner(Painted):
     """Hidden until sensors look swapped."""
 
     accessible_role = QAccessible.Role.AlertMessage
@@ -96,11 +96,9 @@ class SwapBanner(QWidget):
         hint = super().minimumSizeHint()
         return QSize(hint.width(), max(hint.height(), px(COMPACT_HEIGHT if self._is_compact else HEIGHT)))
 
-    def paintEvent(self, _event: QPaintEvent) -> None:
+    def draw(self, painter: QPainter) -> None:
         theme = current_theme()
         c, px = theme.colours, theme.px
-        painter = QPainter(self)
-        painter.setRenderHint(QPainter.RenderHint.Antialiasing)
         mark = self._mark * theme.scale
         centre = QPointF(px(self._inset) + mark / 2, self.height() / 2)
         if self._row.direction() is QBoxLayout.Direction.TopToBottom:

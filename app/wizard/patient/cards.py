@@ -3,8 +3,8 @@
 from dataclasses import dataclass
 
 from PySide6.QtCore import QPointF, QRectF, Qt
-from PySide6.QtGui import QColor, QPainter, QPaintEvent, QPolygonF
-from PySide6.QtWidgets import QGridLayout, QHBoxLayout, QWidget
+from PySide6.QtGui import QColor, QPainter, QPolygonF
+from PySide6.QtWidgets import QGridLayout, QHBoxLayout
 
 from app.theme.current import current_theme, scaled
 from app.theme.icons import Icon
@@ -13,6 +13,7 @@ from app.widgets.card import Card
 from app.widgets.heard_order import hear_as_laid_out
 from app.widgets.icons import IconMark
 from app.widgets.lay_out import lay_out
+from app.widgets.painted import Painted
 from app.widgets.text import MEDIUM, SEMIBOLD, Text
 from app.wording.translation import figure_text, tr
 from core.verdicts.norms import ReferenceCurves
@@ -63,7 +64,7 @@ class BandCard(Card):
         self._words.setText(words)
 
 
-class _BandDrawing(QWidget):
+class _BandDrawing(Painted):
     """The knee of the group over one stride: one and two standard deviations in two greys."""
 
     def __init__(self, curves: ReferenceCurves) -> None:
@@ -79,11 +80,9 @@ class _BandDrawing(QWidget):
             )
         )
 
-    def paintEvent(self, _event: QPaintEvent) -> None:
+    def draw(self, painter: QPainter) -> None:
         theme = current_theme()
         c, px = theme.colours, theme.px
-        painter = QPainter(self)
-        painter.setRenderHint(QPainter.RenderHint.Antialiasing)
         mean, sd = self._curves.knee_mean_deg, self._curves.knee_sd_deg
         low, high = float((mean - 2 * sd).min()), float((mean + 2 * sd).max())
         room = QRectF(0, px(4), self.width(), self.height() - px(8))

@@ -3,11 +3,12 @@
 from collections.abc import Mapping, Sequence
 
 from PySide6.QtCore import QRect, QRectF, Qt, Signal
-from PySide6.QtGui import QAccessible, QFont, QFontMetrics, QPainter, QPaintEvent
+from PySide6.QtGui import QAccessible, QFont, QFontMetrics
 from PySide6.QtWidgets import QVBoxLayout, QWidget
 
 from app.theme.current import current_theme, on_theme, px, scaled
 from app.widgets.battery import WIDTH as CELL_WIDTH
+from app.widgets.painted import Painted
 from app.widgets.painted_text import LEFT, RIGHT, PaintedText
 from app.widgets.text import MEDIUM, SEMIBOLD
 from app.wizard.sensors.sensor_row import CHEVRON, CHIP, ROW, SensorRow, SensorRowView
@@ -193,18 +194,13 @@ class SensorList(QWidget):
         self.setMinimumWidth(self._least_width())
 
 
-class _Heading(QWidget):
+class _Heading(Painted):
     """The names of the columns."""
 
     def __init__(self, sensors: SensorList) -> None:
         super().__init__(sensors)
         self._list = sensors
         scaled(self.setFixedHeight, HEADING)
-
-    def paintEvent(self, _event: QPaintEvent) -> None:
-        painter = QPainter(self)
-        for text in self.painted_texts():
-            text.paint(painter, current_theme().colours)
 
     def painted_texts(self) -> list[PaintedText]:
         font = current_theme().font(12)

@@ -15,7 +15,6 @@ from PySide6.QtGui import (
     QDropEvent,
     QFontMetrics,
     QPainter,
-    QPaintEvent,
     QResizeEvent,
 )
 from PySide6.QtWidgets import QSizePolicy, QWidget
@@ -25,6 +24,7 @@ from app.theme.ground import Ground, set_ground
 from app.theme.leg_chip import paint_chip
 from app.theme.theme import CARD_RADIUS, CONTROL_RADIUS
 from app.widgets.body_figure import SENTENCE_ROOM, BodyFigure, SensorMark
+from app.widgets.painted import Painted
 from app.widgets.painted_text import RIGHT, PaintedText
 from app.widgets.text import MEDIUM, SEMIBOLD
 from app.wizard.sensors.sensor_drag import DRAGGED, DraggedButton, sensor_in
@@ -230,7 +230,7 @@ class SensorPlaces(QWidget):
         self.pressed.emit(tile.site)
 
 
-class _Lines(QWidget):
+class _Lines(Painted):
     """From each tile to its place on the figure; lies over both and takes no clicks."""
 
     def __init__(self, places: SensorPlaces) -> None:
@@ -238,10 +238,8 @@ class _Lines(QWidget):
         self._places = places
         self.setAttribute(Qt.WidgetAttribute.WA_TransparentForMouseEvents)
 
-    def paintEvent(self, _event: QPaintEvent) -> None:
+    def draw(self, painter: QPainter) -> None:
         theme = current_theme()
-        painter = QPainter(self)
-        painter.setRenderHint(QPainter.RenderHint.Antialiasing)
         painter.setPen(theme.pen(theme.colours.control, 1))
         figure = self._places.figure
         for site, tile in self._places.shown_tiles.items():
@@ -299,12 +297,10 @@ class _Tile(DraggedButton):
     def _chip_room(self) -> int:
         return CHIP + 6 if self.site.side is not None else 0
 
-    def paintEvent(self, _event: QPaintEvent) -> None:
+    def draw(self, painter: QPainter) -> None:
         theme = current_theme()
         c, px = theme.colours, theme.px
         place = self._place
-        painter = QPainter(self)
-        painter.setRenderHint(QPainter.RenderHint.Antialiasing)
         is_caution = place.mark in (SensorMark.LOOK, SensorMark.SILENT)
         fill, ink, edge = (c.caution, c.caution_ink, c.caution_edge) if is_caution else (c.surface, c.ink, c.control)
         if place.is_flashing:
@@ -329,8 +325,6 @@ class _Tile(DraggedButton):
             painter.drawText(where, Qt.AlignmentFlag.AlignCenter, side.letter)
         elif side is not None:
             paint_chip(painter, where, side, theme)
-        for text in self.painted_texts():
-            text.paint(painter, c)
 
     def painted_texts(self) -> list[PaintedText]:
         theme, place = current_theme(), self._place
