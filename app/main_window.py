@@ -443,7 +443,8 @@ class MainWindow(QWidget):
         state = self.controller.state
         if self.entry is None or state is None or state.is_demonstration:
             if state is not None:
-                self.controller.forget()  # the demonstration goes on; the library behind it asks for its passphrase
+                # the demonstration goes on; the library behind it asks for its passphrase
+                self.controller.call(lambda holder: holder.forget(), None, None, self)
             self.idle.unlock()
             return
         self._covered = self.screens.currentWidget()

@@ -48,6 +48,14 @@ def nodes(file: Path) -> tuple[ast.AST, ...]:
     return tuple(ast.walk(parse(file)))
 
 
+@pytest.fixture(autouse=True, scope="module")
+def _let_go_of_files() -> Iterator[None]:
+    """Millions of parts: looking through them for garbage before the next module takes seconds."""
+    yield
+    parse.cache_clear()
+    nodes.cache_clear()
+
+
 def place(file: Path, line: int) -> str:
     return f"{file.relative_to(ROOT).as_posix()}:{line}"
 

@@ -14,7 +14,6 @@ from app.home.goals.controller import GoalsOfPatient
 from app.home.goals.goals_page import GoalsPage
 from app.home.importing.controller import Importing
 from app.home.importing.import_page import ImportPage
-from app.home.long_work import LongWork
 from app.home.patients.controller import PatientsAtHome
 from app.home.patients.courses import ComputingCourses
 from app.home.patients.deleting import Deleting
@@ -43,6 +42,7 @@ from app.wording.findings import place
 from app.wording.translation import tr
 from app.workers.library_controller import LibraryController
 from app.workers.library_state import OpenedState
+from app.workers.long_work import LongWork
 
 WIDE_FROM = 1800
 PATIENTS, DEMONSTRATION, IMPORT, QUESTIONS = range(4)

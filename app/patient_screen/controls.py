@@ -41,14 +41,10 @@ class ControlsCard(Card):
         Target, or None where nothing that fits is typed.
     metronome_pressed
         Its rate in steps per minute; 0: be silent.
-    full_screen_pressed, close_pressed
-        Of the patient's screen.
     """
 
     target_set = Signal(object)
     metronome_pressed = Signal(int)
-    full_screen_pressed = Signal()
-    close_pressed = Signal()
 
     def __init__(self) -> None:
         super().__init__()
@@ -85,8 +81,6 @@ class ControlsCard(Card):
             field.edited.connect(self._show_wrong)
             field.committed.connect(self._show_wrong)
         self.tick.clicked.connect(self._on_tick_clicked)
-        self.full.clicked.connect(self.full_screen_pressed)
-        self.close_screen.clicked.connect(self.close_pressed)
         self._show()
 
     @property

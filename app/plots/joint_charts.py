@@ -51,7 +51,7 @@ class JointCharts(QWidget):
     def __init__(self) -> None:
         super().__init__()
         self._time_s: FloatArray = np.zeros(0)
-        self._cursor_s: float | None = None
+        self.cursor_s: float | None = None
         self._name = ""
         self.setFocusPolicy(Qt.FocusPolicy.StrongFocus)
         self.hip, self.knee, self.ankle = (
@@ -68,7 +68,7 @@ class JointCharts(QWidget):
             frame.chart.scene().sigMouseMoved.connect(self._on_mouse_moved)
         self._column.addWidget(self.phases)
         self.phases.hide()
-        self.phases.lanes.pointed.connect(self._read_at)
+        self.phases.lanes.pointed.connect(self.read_at)
         self.phases.lanes.zoomed.connect(self.zoom)
         self.phases.lanes.dragged.connect(self.go_on)
         for frame in (self.hip, self.ankle):
@@ -106,7 +106,7 @@ class JointCharts(QWidget):
         for frame in self.frames:
             frame.set_simulated(is_simulated)
             frame.chart.show_curves(time_s, {})
-        self._read_at(None)
+        self.read_at(None)
         self.show_whole()
 
     def show_joints(self, curves: Mapping[Joint, Curve]) -> None:
@@ -127,7 +127,7 @@ class JointCharts(QWidget):
         self.setAccessibleName(what.format(recording=self._name))
         reported = [*(frame.in_words() for frame in self._shown), self.phases.in_words()]
         self.setAccessibleDescription(" ".join(filter(None, reported)))
-        self._read_at(self._cursor_s)
+        self.read_at(self.cursor_s)
 
     @property
     def _shown(self) -> list["ChartFrame"]:
@@ -139,9 +139,7 @@ class JointCharts(QWidget):
     def zoom(self, share: float) -> None:
         """Keep `share` of the time in sight, about the reading line if it is there."""
         first, last = self.visible_s
-        centre = (
-            self._cursor_s if self._cursor_s is not None and first <= self._cursor_s <= last else (first + last) / 2
-        )
+        centre = self.cursor_s if self.cursor_s is not None and first <= self.cursor_s <= last else (first + last) / 2
         self._see(centre - (centre - first) * share, centre + (last - centre) * share)
 
     def go_on(self, share: float) -> None:
@@ -156,7 +154,7 @@ class JointCharts(QWidget):
         if not len(self._event_rows):
             return
         first, last = self.visible_s
-        at = self._cursor_s if self._cursor_s is not None else (first if is_later else last)
+        at = self.cursor_s if self.cursor_s is not None else (first if is_later else last)
         here = int(np.argmin(np.abs(self._time_s - at)))
         passed = int(np.searchsorted(self._event_rows, here, side="right" if is_later else "left"))
         following = passed if is_later else passed - 1
@@ -180,18 +178,18 @@ class JointCharts(QWidget):
                 self.go_on(0.5)
             case Qt.Key.Key_Left | Qt.Key.Key_Right:
                 pixels = 10 if event.modifiers() & Qt.KeyboardModifier.ShiftModifier else 1
-                self._step(pixels if event.key() == Qt.Key.Key_Right else -pixels)
+                self.step(pixels if event.key() == Qt.Key.Key_Right else -pixels)
             case Qt.Key.Key_BracketLeft | Qt.Key.Key_BracketRight:
                 self.go_to_event(is_later=event.key() == Qt.Key.Key_BracketRight)
             case _:
                 super().keyPressEvent(event)
 
-    def _step(self, pixels: int) -> None:
+    def step(self, pixels: int) -> None:
         """Move the reading line by pixels, but at least from sample to sample, and keep it in sight."""
         if len(self._time_s) == 0:
             return
         first, last = self.visible_s
-        at = self._cursor_s if self._cursor_s is not None else (first + last) / 2
+        at = self.cursor_s if self.cursor_s is not None else (first + last) / 2
         here = int(np.searchsorted(self._time_s, at))
         there = int(np.searchsorted(self._time_s, at + pixels * (last - first) / max(self.knee.chart.width(), 1)))
         if there == here:
@@ -201,7 +199,7 @@ class JointCharts(QWidget):
     def _go_to(self, row: int) -> None:
         """Read sample `row`, bring it in sight and say what is there."""
         time_s = float(self._time_s[row])
-        self._read_at(time_s)
+        self.read_at(time_s)
         first, last = self.visible_s
         if not first <= time_s <= last:
             self.go_on((time_s - (first + last) / 2) / (last - first))
@@ -214,13 +212,13 @@ class JointCharts(QWidget):
         first, last = self.knee.chart.whole_s
         self.knee.chart.see(max(first_s, first), min(last_s, last))
 
-    def _read_at(self, time_s: float | None) -> None:
+    def read_at(self, time_s: float | None) -> None:
         """Put the reading line on the sample nearest to `time_s`, None takes it away."""
         row = None
         if time_s is not None and len(self._time_s):
             row = int(np.argmin(np.abs(self._time_s - time_s)))
             time_s = float(self._time_s[row])
-        self._cursor_s = time_s
+        self.cursor_s = time_s
         for frame in (*self.frames, self.phases):
             frame.read(row, time_s)
 
@@ -229,7 +227,7 @@ class JointCharts(QWidget):
             if frame.chart.underMouse():
                 time_s = frame.chart.time_at(position.x(), position.y())
                 if time_s is not None:
-                    self._read_at(time_s)
+                    self.read_at(time_s)
 
     def _on_view_moved(self) -> None:
         first, last = self.visible_s
@@ -251,23 +249,23 @@ class ChartFrame(Card):
         self._is_narrow = self._is_wide = False
         self._title = Text(title_in_words(kind), size=16, weight=SEMIBOLD)
         self._sign = Text(sign_in_words(kind), size=12, tone="ink2")
-        self._simulated = Text(tr("SIMULATED"), size=12, weight=SEMIBOLD)
-        self._moment = Text(size=14, tone="ink2")
-        self._keys = {side: SideKey(side) for side in Side}
-        self._values = {side: Text(size=15, weight=SEMIBOLD, tone=f"{side}_text") for side in Side}
+        self.simulated = Text(tr("SIMULATED"), size=12, weight=SEMIBOLD)
+        self.moment = Text(size=14, tone="ink2")
+        self.keys = {side: SideKey(side) for side in Side}
+        self.values = {side: Text(size=15, weight=SEMIBOLD, tone=f"{side}_text") for side in Side}
         self._wide_mark = IconMark(Icon.DIFFERENCE, size=18)
-        self._wide = Text(size=12, weight=MEDIUM)
+        self.wide = Text(size=12, weight=MEDIUM)
         self.setSizePolicy(QSizePolicy.Policy.Expanding, QSizePolicy.Policy.Expanding)
         head = QGridLayout()
         head.setHorizontalSpacing(8)
         head.setVerticalSpacing(4)
-        names = lay_out(QHBoxLayout(), self._title, self._sign, self._wide_mark, self._wide, self._simulated, 1)
-        readings = lay_out(QHBoxLayout(), 1, self._moment)
+        names = lay_out(QHBoxLayout(), self._title, self._sign, self._wide_mark, self.wide, self.simulated, 1)
+        readings = lay_out(QHBoxLayout(), 1, self.moment)
         names.setSpacing(8)
         readings.setSpacing(8)
         for side in Side:
             readings.addSpacing(12)
-            lay_out(readings, self._keys[side], self._values[side])
+            lay_out(readings, self.keys[side], self.values[side])
         self._head = (names, readings)
         self._grid = head
         self._place()
@@ -289,15 +287,15 @@ class ChartFrame(Card):
         scaled(self.column.setSpacing, 2 if is_of_three else 4)
 
     def set_moment_shown(self, is_shown: bool) -> None:
-        self._moment.setVisible(is_shown)
+        self.moment.setVisible(is_shown)
 
     def set_simulated(self, is_simulated: bool) -> None:
-        self._simulated.setVisible(is_simulated)
+        self.simulated.setVisible(is_simulated)
 
     def show_curves(self, time_s: FloatArray, curves: Mapping[Side, Curve]) -> None:
         self.chart.show_curves(time_s, curves)
         for side in Side:
-            for widget in (self._keys[side], self._values[side]):
+            for widget in (self.keys[side], self.values[side]):
                 widget.setVisible(side in curves)
         self._set_widened()
         self.chart.setAccessibleName(tr("{joint} during the recording").format(joint=title_in_words(self.kind)))
@@ -305,8 +303,8 @@ class ChartFrame(Card):
 
     def read(self, row: int | None, time_s: float | None) -> None:
         """Show the values of sample `row`."""
-        self._moment.setText("" if time_s is None else f"{figure_text(time_s, '.2f')} s".replace("-", MINUS))
-        for side, value in self._values.items():
+        self.moment.setText("" if time_s is None else f"{figure_text(time_s, '.2f')} s".replace("-", MINUS))
+        for side, value in self.values.items():
             curve = self.chart.curves.get(side)
             value.setText("" if row is None or curve is None else _reading(curve, row))
         self._reserve_room()
@@ -314,7 +312,7 @@ class ChartFrame(Card):
 
     def reading_in_words(self) -> str:
         return " ".join(
-            f"{name_of(self.kind.of(side))} {self._values[side].text()}." for side in Side if side in self.chart.curves
+            f"{name_of(self.kind.of(side))} {self.values[side].text()}." for side in Side if side in self.chart.curves
         )
 
     def in_words(self) -> str:
@@ -342,14 +340,14 @@ class ChartFrame(Card):
     def _reserve_room(self) -> None:
         """Make the readings as wide as they ever get, so that nothing jumps while the line moves."""
         for label, widest in (
-            (self._moment, "1000.00 s"),
-            *((value, "\N{MINUS SIGN}100.0° ± 10.0°") for value in self._values.values()),
+            (self.moment, "1000.00 s"),
+            *((value, "\N{MINUS SIGN}100.0° ± 10.0°") for value in self.values.values()),
         ):
             label.setMinimumWidth(label.fontMetrics().horizontalAdvance(widest) if label.text() else 0)
 
     def _set_widened(self) -> None:
-        self._wide.setText(range_in_words(self.chart.range_deg).removesuffix("."))
-        self._wide.setVisible(self.chart.is_widened)
+        self.wide.setText(range_in_words(self.chart.range_deg).removesuffix("."))
+        self.wide.setVisible(self.chart.is_widened)
         self._wide_mark.setVisible(self.chart.is_widened)
         self._place()
 

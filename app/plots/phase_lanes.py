@@ -13,6 +13,7 @@ from PySide6.QtGui import QAccessible, QColor, QMouseEvent, QPainter, QWheelEven
 from PySide6.QtWidgets import QGridLayout, QHBoxLayout, QSizePolicy
 
 from app.charts.axes import AXIS_WIDTH, RIGHT_MARGIN
+from app.charts.marks import stretches
 from app.theme.current import current_theme, on_theme, px, scaled
 from app.theme.leg_chip import CHIP, paint_chip
 from app.theme.theme import Theme
@@ -88,12 +89,12 @@ class PhaseFrame(Card):
     def __init__(self) -> None:
         super().__init__(spacing=6)
         self.lanes = PhaseLanes()
-        self._simulated = Text(tr("SIMULATED"), size=12, weight=SEMIBOLD)
+        self.simulated = Text(tr("SIMULATED"), size=12, weight=SEMIBOLD)
         self._chips = {side: Chip(side) for side in Side}
-        self._readings = {side: Text(size=14, weight=MEDIUM, tone=f"{side}_text") for side in Side}
+        self.readings = {side: Text(size=14, weight=MEDIUM, tone=f"{side}_text") for side in Side}
         legend = (part for phase, word in LEGEND for part in (Swatch(phase), Text(tr(word), size=12, tone="ink2")))
         title = Text(tr("Gait phases"), size=14, weight=SEMIBOLD)
-        self._title = lay_out(QHBoxLayout(), title, self._simulated, spacing=8)
+        self._title = lay_out(QHBoxLayout(), title, self.simulated, spacing=8)
         self._legend = lay_out(QHBoxLayout(), *legend, 1, spacing=8)
         self._reading = lay_out(QHBoxLayout(), 1, spacing=8)
         self._head = QGridLayout()
@@ -102,7 +103,7 @@ class PhaseFrame(Card):
             policy = self._chips[side].sizePolicy()
             policy.setRetainSizeWhenHidden(True)  # nothing may jump when the line comes
             self._chips[side].setSizePolicy(policy)
-            lay_out(self._reading, self._chips[side], self._readings[side])
+            lay_out(self._reading, self._chips[side], self.readings[side])
         lay_out(self.column, self._head, self.lanes)
         scaled(self._head.setHorizontalSpacing, 12)
         scaled(self._head.setVerticalSpacing, 4)
@@ -131,10 +132,10 @@ class PhaseFrame(Card):
 
     def show_gait(self, time_s: FloatArray, gait: Mapping[Side, SideGait], is_simulated: bool) -> None:
         self.lanes.show_lanes({side: Lane.of(time_s, gait[side]) for side in Side if side in gait})
-        self._simulated.setVisible(is_simulated)
+        self.simulated.setVisible(is_simulated)
         for side in Side:
             self._chips[side].hide()
-            self._readings[side].setVisible(side in gait)
+            self.readings[side].setVisible(side in gait)
         self.lanes.setAccessibleName(tr("Gait phases during the recording"))
         self.lanes.setAccessibleDescription(self.in_words())
         self.setVisible(bool(gait))
@@ -143,13 +144,13 @@ class PhaseFrame(Card):
     def read(self, row: int | None, time_s: float | None) -> None:
         """Name what each foot does at sample `row`."""
         for side, lane in self.lanes.lanes.items():
-            self._readings[side].setText("" if row is None else lane.in_words(row))
+            self.readings[side].setText("" if row is None else lane.in_words(row))
             self._chips[side].setVisible(row is not None)
         self._reserve_room()
         self.lanes.set_cursor(time_s)
 
     def reading_in_words(self) -> str:
-        return " ".join(f"{_foot_name(side)}: {self._readings[side].text()}." for side in self.lanes.lanes)
+        return " ".join(f"{_foot_name(side)}: {self.readings[side].text()}." for side in self.lanes.lanes)
 
     def in_words(self) -> str:
         """Say how often each foot landed and left, for who cannot see the lanes."""
@@ -172,7 +173,7 @@ class PhaseFrame(Card):
         return " ".join(stated)
 
     def _reserve_room(self) -> None:
-        for side, label in self._readings.items():
+        for side, label in self.readings.items():
             widest = max(
                 label.fontMetrics().horizontalAdvance(tr(word))
                 for word in (*PHASE_WORDS.values(), *EVENT_WORDS.values())
@@ -193,7 +194,7 @@ class PhaseLanes(Painted):
         super().__init__()
         self.lanes: Mapping[Side, Lane] = {}
         self._visible_s = (0.0, 1.0)
-        self._cursor_s: float | None = None
+        self.cursor_s: float | None = None
         self._held_x: float | None = None
         self.setMouseTracking(True)
         self.setSizePolicy(QSizePolicy.Policy.Expanding, QSizePolicy.Policy.Fixed)
@@ -208,7 +209,7 @@ class PhaseLanes(Painted):
         self.update()
 
     def set_cursor(self, time_s: float | None) -> None:
-        self._cursor_s = time_s
+        self.cursor_s = time_s
         self.update()
 
     def minimumSizeHint(self) -> QSize:
@@ -234,10 +235,10 @@ class PhaseLanes(Painted):
             painter.setClipRect(area.adjusted(-0.5, 0, 0.5, 0))
             self._paint_lane(painter, lane, area, theme.curve(side), theme.soft(side))
             painter.restore()
-        if self._cursor_s is not None and self._visible_s[0] <= self._cursor_s <= self._visible_s[1]:
+        if self.cursor_s is not None and self._visible_s[0] <= self.cursor_s <= self._visible_s[1]:
             painter.setRenderHint(QPainter.RenderHint.Antialiasing, False)
             painter.setPen(QColor(theme.colours.ink))
-            x = float(self.x_of(np.array(self._cursor_s)))
+            x = float(self.x_of(np.array(self.cursor_s)))
             painter.drawLine(QPointF(x, 0), QPointF(x, self.height()))
 
     def mousePressEvent(self, event: QMouseEvent) -> None:
@@ -279,10 +280,9 @@ class PhaseLanes(Painted):
     ) -> None:
         """Where the phases are known, in one piece each, with what to do."""
         theme = current_theme()
-        edges = np.flatnonzero(np.diff(np.concatenate([[False], known, [False]]).astype(np.int8)))
         painter.setFont(theme.font(12))
-        for start, end in edges.reshape(-1, 2).tolist():
-            box = QRectF(left[start], area.top(), right[end - 1] - left[start], area.height())
+        for start, last in stretches(known):
+            box = QRectF(left[start], area.top(), right[last] - left[start], area.height())
             painter.fillRect(box, QColor(theme.colours.sunken))
             seen = box.intersected(area)
             painter.setPen(QColor(theme.colours.ink2))

@@ -19,6 +19,7 @@ from app.widgets.limb import limb_outline
 from app.widgets.painted import Painted
 from app.widgets.painted_text import LEFT, PaintedText
 from app.widgets.text import MEDIUM, SEMIBOLD, Text
+from app.wording.numbers import MINUS
 from app.wording.translation import later, tr
 from core.body import Side
 from core.samples import FloatArray
@@ -164,7 +165,7 @@ class _Picture(Painted):
             if curve is None or not np.isfinite(curve).all():
                 continue
             angle = float(np.interp(self.percent, np.arange(len(curve)), curve))
-            found[side] = tr("knee {angle:.0f}°").format(angle=angle).replace("-", "\N{MINUS SIGN}")
+            found[side] = tr("knee {angle:.0f}°").format(angle=angle).replace("-", MINUS)
         return found
 
     def draw(self, painter: QPainter) -> None:

@@ -72,8 +72,9 @@ class AgreementController(QObject):
         self._dialog: QFileDialog | None = None
         self._background.done.connect(self._on_done)
         self._background.failed.connect(self._on_failed)
-        page.reference_requested.connect(self._on_reference_requested)
-        page.save_requested.connect(self._on_save_requested)
+        for asked in (page.choose.clicked, page.waiting.pressed):
+            asked.connect(self._on_reference_requested)
+        page.save.clicked.connect(self._on_save_requested)
         page.sheets.sharper_required.connect(self._on_sharper_required)
 
     def show(self, session: "Session", analysis: Analysis) -> None:

@@ -2,7 +2,6 @@
 
 from collections.abc import Sequence
 
-from PySide6.QtCore import Signal
 from PySide6.QtWidgets import QHBoxLayout, QStackedWidget, QVBoxLayout, QWidget
 
 from app.theme.icons import Icon
@@ -22,21 +21,7 @@ KINDS = later(
 
 
 class AgreementPage(QWidget):
-    """It is computed elsewhere.
-
-    Signals
-    -------
-    closed
-        Back to the results.
-    reference_requested
-        Files of an optical system are to be chosen.
-    save_requested
-        PDF and tables as files.
-    """
-
-    closed = Signal()
-    reference_requested = Signal()
-    save_requested = Signal()
+    """It is computed elsewhere; `choose` and `waiting` ask for files of an optical system."""
 
     def __init__(self) -> None:
         super().__init__()
@@ -52,10 +37,6 @@ class AgreementPage(QWidget):
             self._stack.addWidget(page)
         head = lay_out(QHBoxLayout(), self.back, (self.note, 1), self.choose, self.save, spacing=12)
         lay_out(QVBoxLayout(self), head, (self._stack, 1), margins=(24, 16, 24, 12), spacing=12)
-        self.back.clicked.connect(self.closed)
-        self.choose.clicked.connect(self.reference_requested)
-        self.waiting.pressed.connect(self.reference_requested)
-        self.save.clicked.connect(self.save_requested)
         self.show_nothing()
 
     @property

@@ -49,17 +49,11 @@ class CorrectPage(QWidget):
     -------
     condition_typed, kept_turned, sign_turned
         A walk's key and its condition or whether it counts; a joint and whether its sign is turned.
-    sides_swapped
-        Left and right were worn the other way round.
-    closed
-        Back to the results.
     """
 
     condition_typed = Signal(str, str)
     kept_turned = Signal(str, bool)
     sign_turned = Signal(str, bool)
-    sides_swapped = Signal()
-    closed = Signal()
 
     def __init__(self) -> None:
         super().__init__()
@@ -76,8 +70,6 @@ class CorrectPage(QWidget):
         self.swap = Button(tr("Swap left and right"), ButtonKind.SECONDARY, Icon.REPEAT)
         self.swap_note = Text(size=14, tone="ink2", wraps=True)
         self._build()
-        self.back.clicked.connect(self.closed)
-        self.swap.clicked.connect(self.sides_swapped)
 
     @property
     def tab_order(self) -> list[QWidget]:

@@ -57,8 +57,8 @@ class DiagnosticsController(QObject):
         self._dialog: QFileDialog | None = None
         self._background.done.connect(self._on_done)
         self._background.failed.connect(self._on_failed)
-        page.joint_chosen.connect(self._on_joint_chosen)
-        page.save_requested.connect(self._on_save_requested)
+        page.joints.chosen.connect(self._on_joint_chosen)
+        page.save.clicked.connect(self._on_save_requested)
 
     def show(self, session: "Session", analysis: Analysis, recording: RecordingAnalysis) -> None:
         """Answer for a recording of a session: for the joint that was looked at last, else the first it holds."""

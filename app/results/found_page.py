@@ -7,7 +7,7 @@ import math
 from collections.abc import Sequence
 
 import numpy as np
-from PySide6.QtCore import Qt, Signal
+from PySide6.QtCore import Qt
 from PySide6.QtWidgets import (
     QBoxLayout,
     QGridLayout,
@@ -52,21 +52,7 @@ MIN_APART = 0.2  # of how alike the curves are; less apart, this second distingu
 
 
 class FoundPage(QWidget):
-    """One joint at a time; it is computed elsewhere.
-
-    Signals
-    -------
-    closed
-        Back to the results.
-    joint_chosen
-        Another joint is asked for.
-    save_requested
-        The numbers behind the pictures, as files.
-    """
-
-    closed = Signal()
-    joint_chosen = Signal(str)
-    save_requested = Signal()
+    """One joint at a time; it is computed elsewhere."""
 
     def __init__(self) -> None:
         super().__init__()
@@ -84,9 +70,6 @@ class FoundPage(QWidget):
         self.noticed = Card()
         self._stack = QStackedWidget()
         self._build()
-        self.back.clicked.connect(self.closed)
-        self.joints.chosen.connect(self.joint_chosen)
-        self.save.clicked.connect(self.save_requested)
 
     @property
     def tab_order(self) -> list[QWidget]:
@@ -195,15 +178,14 @@ class _Head(QHBoxLayout):
 
     def __init__(self, title: str, figure: str) -> None:
         super().__init__()
-        self._chips = {side: Chip(side) for side in Side}
+        self._chip = Chip(Side.LEFT)  # until a joint is shown
         self._simulated = Text(tr(SIMULATED), size=12, weight=SEMIBOLD)
         self.setSpacing(8)
         words = Text(title, size=16, weight=SEMIBOLD, wraps=True)
-        lay_out(self, *self._chips.values(), (words, 1), Text(figure, size=12, tone="ink2"), self._simulated)
+        lay_out(self, self._chip, (words, 1), Text(figure, size=12, tone="ink2"), self._simulated)
 
     def show_joint(self, side: Side, is_simulated: bool) -> None:
-        for one, chip in self._chips.items():
-            chip.setVisible(one is side)
+        self._chip.set_side(side)
         self._simulated.setVisible(is_simulated)
 
 

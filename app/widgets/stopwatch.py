@@ -60,12 +60,9 @@ class Stopwatch(Painted):
     def draw(self, painter: QPainter) -> None:
         theme = current_theme()
         c, px = theme.colours, theme.px
-        texts = self.painted_texts()
-        for text in texts:
-            text.paint(painter, c)
         if self._is_compact:
             return
-        words = texts[0].box
+        words = self.painted_texts()[0].box
         line = QRectF(words.right() - px(LINE), words.bottom() + px(4), px(LINE), px(THICK))
         painter.setPen(Qt.PenStyle.NoPen)
         painter.setBrush(QColor(c.track))

@@ -338,7 +338,7 @@ def _key_of(window: MainWindow) -> DataKey | None:
 
 
 def renewed(qtbot: QtBot, open_window: Open, folder: Path) -> tuple[MainWindow, KeySlots]:
-    """A window that shows a recovery key made anew, since the one before was never typed back."""
+    """A window that shows a recovery key made again, since the one before was never typed back."""
     slots = KeySlots(folder / KEYS, Cost(passes=1, memory_kib=64))
     slots.renew_recovery_key(slots.open("hk", PASSPHRASE))
     window = open_window(folder)

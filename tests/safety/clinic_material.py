@@ -24,6 +24,7 @@ from app.storage.slots import Cost
 from app.storage.stored import Operator, Role
 from devices.simulation.walker import FreeMotion, Standing, Walk, WalkerSettings, simulate
 from tests.safety.journal_material import NO_ROOM_ASKED
+from tests.waiting import silent
 
 if TYPE_CHECKING:
     from pgserver.postgres_server import PostgresServer
@@ -32,10 +33,6 @@ PASSPHRASE = "four short words here"
 OPERATORS = ("hk", "ab")
 CODES = ("DEMO-1", "DEMO-2")
 Row = dict[str, Any]
-
-
-def silent(_share: float, _what: str) -> None:
-    """Report to nobody."""
 
 
 class OwnServer:

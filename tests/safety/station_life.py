@@ -39,9 +39,10 @@ from app.workers.library_watch import LibraryWatch
 from core.session import Recording, RecordingKind
 from devices.decoders import DECODERS
 from devices.simulation.replay import ReplaySource
-from tests.safety.clinic_material import PASSPHRASE, silent
+from tests.safety.clinic_material import PASSPHRASE
 from tests.safety.journal_material import NO_ROOM_ASKED
 from tests.safety.live_material import numbered_session
+from tests.waiting import silent
 
 RECORDING, HANDING_OVER, ADOPTING = range(3)  # where in the file of moments each has its byte
 SHORTEST_S, LONGEST_S = 0.2, 1.0

@@ -7,11 +7,12 @@ from typing import TYPE_CHECKING
 from uuid import UUID
 
 from PySide6.QtCore import QObject, Signal
+from PySide6.QtWidgets import QFileDialog
 
-from app.cohort.batch.again import AgainResult, analyse_again
+from app.cohort.batch.again import analyse_again
 from app.cohort.batch.executors import of_this_computer, processors
+from app.cohort.batch.spread import SelectionResult
 from app.home.again.analyse_again_page import AgainLine, AnalyseAgainPage
-from app.home.long_work import LongWork
 from app.storage.kept_analyses import algorithm
 from app.system.progress import Report
 from app.theme.icons import Icon
@@ -22,6 +23,7 @@ from app.wording.patients import when
 from app.wording.recordings import name_in_words
 from app.wording.translation import tr, tr_n
 from app.workers.library_controller import LibraryController
+from app.workers.long_work import LongWork
 
 if TYPE_CHECKING:
     from app.cohort.batch.run import BatchResult
@@ -49,6 +51,7 @@ class AnalysingAgain(LongWork):
 
     def __init__(self, controller: LibraryController, parent: QObject) -> None:
         super().__init__(controller, parent)
+        self._dialog: QFileDialog | None = None
         self._failures: dict[UUID, str] = {}
         self._required: UUID | None = None
         self._out = Path()
@@ -77,7 +80,7 @@ class AnalysingAgain(LongWork):
         if not ids:
             return
 
-        def work(opened: "OpenedLibrary", report: Report) -> AgainResult:
+        def work(opened: "OpenedLibrary", report: Report) -> SelectionResult[UUID]:
             with of_this_computer(processors()) as workers:
                 return analyse_again(ids, lambda session_id: session_to_analyse(opened, session_id), workers, report)
 
@@ -143,7 +146,7 @@ class AnalysingAgain(LongWork):
         self.page.show_lines(*found)
         self.page.focus()
 
-    def _on_analysed(self, result: AgainResult) -> None:
+    def _on_analysed(self, result: SelectionResult[UUID]) -> None:
         self._failures, self._required = dict(result.failures), None
         stated = tr_n(
             "{count} session was analysed with this version.",

@@ -7,10 +7,10 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from PySide6.QtCore import QObject, Signal
+from PySide6.QtWidgets import QFileDialog
 
 from app.home.importing.import_page import ImportPage
 from app.home.importing.import_words import program_name
-from app.home.long_work import LongWork
 from app.importing.import_drafts import SessionDraft, chains_of_motion, drafts_of, session_of
 from app.importing.untrusted_files import gather_foreign, read_foreign_session, read_foreign_trial
 from app.storage.exchange import import_session
@@ -20,6 +20,7 @@ from app.widgets.action_bar import BarAction, BarState
 from app.widgets.folder_dialog import ask_for_files, ask_for_folder
 from app.wording.translation import tr, tr_n
 from app.workers.library_controller import LibraryController
+from app.workers.long_work import LongWork
 from devices.files.refusal import FileRefusedError
 from devices.files.trial import PROGRAMS, SESSION
 
@@ -73,6 +74,7 @@ class Importing(LongWork):
 
     def __init__(self, controller: LibraryController, parent: QObject) -> None:
         super().__init__(controller, parent)
+        self._dialog: QFileDialog | None = None
         self._waiting: deque[_Found] = deque()
         self._shown: _Found | None = None
         self._number = self._count = 0

@@ -6,10 +6,10 @@ from uuid import UUID
 
 from PySide6.QtCore import Signal
 
-from app.home.long_work import LongWork
 from app.home.patients.reading import compute_courses
 from app.system.progress import Report
 from app.wording.translation import tr, tr_n
+from app.workers.long_work import LongWork
 
 if TYPE_CHECKING:
     from app.storage.opened import OpenedLibrary

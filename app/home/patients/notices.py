@@ -59,8 +59,10 @@ class LibraryNotices(QObject):
         )
 
     def _on_accepted(self) -> None:
-        if self._state is not None and self._state.rollback is not None:
-            self._controller.accept_rollback(self._state.rollback, self._on_noted, self._on_refused, self)
+        if self._state is not None and (rollback := self._state.rollback) is not None:
+            self._controller.call(
+                lambda holder: holder.accept_rollback(rollback), self._on_noted, self._on_refused, self
+            )
 
     def _on_noted(self, _nothing: object) -> None:
         self.rollback.hide()

@@ -9,7 +9,6 @@ from PySide6.QtWidgets import QFileDialog
 
 from app.cohort.repeatability.people import CONDITION, StudyPeople
 from app.cohort.repeatability.study import FIGURES, StudyResult, read_figures, study
-from app.home.long_work import LongWork
 from app.home.repeatability.repeatability_page import RepeatabilityPage
 from app.storage.error_figures import choose_study, chosen_study, figures_of
 from app.summary.error_figures import error_figures_in_words
@@ -19,6 +18,7 @@ from app.widgets.action_bar import BarAction, BarState
 from app.wizard.resuming import sessions_of_condition
 from app.wording.translation import filled, tr
 from app.workers.library_controller import LibraryController
+from app.workers.long_work import LongWork
 from core.verdicts.own_figures import OwnFigures
 from core.verdicts.sigmas import in_use, use
 from devices.files.refusal import FileRefusedError
@@ -46,6 +46,7 @@ class Repeatability(LongWork):
 
     def __init__(self, controller: LibraryController, parent: QObject) -> None:
         super().__init__(controller, parent)
+        self._dialog: QFileDialog | None = None
         self._is_demonstration = False
         self.page = RepeatabilityPage()
 

@@ -310,7 +310,13 @@ class SettingsController(QObject):
 
     def _on_operator_removed(self, code: str) -> None:
         self.page.operators.show_key_change(tr("Changing the library's key"), is_running=True)
-        self._controller.change_key(code, self._on_key_changed, self._on_key_refused, self._on_key_progressed, self)
+        self._controller.reopen(
+            lambda holder, report: holder.change_key(code, report),
+            self._on_key_changed,
+            self._on_key_refused,
+            self._on_key_progressed,
+            self,
+        )
 
     def _on_key_progressed(self, share: float, _what: str) -> None:
         sentence = tr("Changing the library's key, {percent} %").format(percent=round(share * 100))

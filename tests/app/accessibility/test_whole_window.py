@@ -49,7 +49,7 @@ def home(qtbot: QtBot, controller: LibraryController, untouched: Path, tmp_path:
         home.show()
         home.activateWindow()
     with qtbot.waitSignal(controller.opened, timeout=WAIT_MS) as reported:
-        controller.open(Path(shutil.copytree(untouched, tmp_path / "library")), PASSPHRASE)
+        controller.open(lambda holder: holder.open(Path(shutil.copytree(untouched, tmp_path / "library")), PASSPHRASE))
     home.show_library((reported.args or [])[0])
     qtbot.waitUntil(lambda: bool(home.page.sessions.lines), timeout=WAIT_MS)
     yield home

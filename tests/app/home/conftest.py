@@ -15,7 +15,6 @@ from app.storage.library import Library
 from app.storage.slots import Cost
 from app.storage.stored import Operator, Role
 from app.system.settings import Settings
-from app.theme.current import load_fonts
 from app.workers.library_controller import LibraryController
 from core.session import Patient, Session
 from tests.app.home.home_library import PASSPHRASE, open_library
@@ -48,7 +47,6 @@ def folder(untouched: Path, tmp_path: Path) -> Path:
 
 @pytest.fixture
 def home(qtbot: QtBot, qapp: QApplication, controller: LibraryController, settings: Settings, folder: Path) -> Home:
-    load_fonts()
     home = Home(controller, settings)
     home.resize(1280, 800)
     qtbot.addWidget(home)

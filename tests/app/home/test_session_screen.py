@@ -27,7 +27,6 @@ from app.theme.current import current_theme, set_dark, set_scale
 from app.widgets.findings_list import FindingRow
 from app.widgets.table_cells import TextCell
 from app.workers.background import Stopped, Work
-from core.analysis import analyse
 from core.body import LEG_JOINTS, Joint, Side
 from core.findings import Finding, Severity
 from core.results import (
@@ -42,8 +41,9 @@ from core.results import (
 )
 from core.samples import FloatArray
 from core.session import Patient, RecordingKind, Session
-from devices.simulation.walker import DEMONSTRATION, FreeMotion, Standing, Walk, simulate
+from devices.simulation.walker import DEMONSTRATION, FreeMotion, Standing, Walk
 from tests.app.room import is_cut
+from tests.simulated import analysis_of, session_of
 
 TIME_S = np.arange(600) / 100
 GAP = slice(200, 260)
@@ -336,11 +336,11 @@ def test_simulated_is_stated_in_header_and_charts_and_only_then(
     qtbot: QtBot, window: SessionScreen, results: ResultPage, open_work: OpenWork
 ) -> None:
     assert not window.header.simulated.isVisible()
-    assert not results.whole.charts.knee._simulated.isVisible()
+    assert not results.whole.charts.knee.simulated.isVisible()
     open_work(lambda _report: opened(is_simulated=True))
     qtbot.waitUntil(lambda: not window.is_working)
     assert window.header.simulated.isVisible()
-    assert results.whole.charts.knee._simulated.isVisible()
+    assert results.whole.charts.knee.simulated.isVisible()
 
 
 def test_the_table_states_how_each_joint_was_found(results: ResultPage) -> None:
@@ -423,8 +423,8 @@ def sticks_out(widget: QWidget, window: SessionScreen) -> bool:
 def walked() -> AnalysedVisit:
     """A simulated session whose walk is long enough for a spread."""
     settings = replace(DEMONSTRATION, recordings=(Standing(), FreeMotion(), Walk(strides=13, speed_m_s=0.9)))
-    session = simulate(settings).session
-    return AnalysedVisit(session, analyse(session))
+    session = session_of(settings)
+    return AnalysedVisit(session, analysis_of(session))
 
 
 @pytest.mark.parametrize(
@@ -458,7 +458,7 @@ def test_every_word_fits(
     set_scale(scale)
     window.banner.show_message("left_thigh.csv, line 4: the clock steps back.", "Export the recording again.")
     results.whole.charts.zoom(0.5)
-    results.whole.charts._read_at(4.0)
+    results.whole.charts.read_at(4.0)
     pages: list[tuple[QWidget, str]] = [(results, view) for view in (ANSWER, WHOLE, COMPARE, STRIDES)]
     behind = [(results, ANSWER, button) for button in (results.all_figures, results.door, results.quality.engineering)]
     others = [(page, view, None) for page, view in (*pages, (window.empty, ANSWER), (window.working, ANSWER))]

@@ -12,7 +12,6 @@ from pytestqt.qtbot import QtBot
 
 from app.results.result_page import ResultPage
 from app.results.tools_row import ANSWER, COMPARE, STRIDES, WHOLE
-from app.theme.current import load_fonts, set_dark
 from app.widgets.stride_list import HIP, KNEE
 from app.widgets.table import CellTable
 from core.body import Joint, Side, Site
@@ -50,8 +49,6 @@ def without_pelvis() -> Analysis:
 
 @pytest.fixture
 def page(qtbot: QtBot, qapp: QApplication) -> ResultPage:
-    load_fonts()
-    set_dark(False)
     page = ResultPage()
     qtbot.addWidget(page)
     page.resize(1280, 700)

@@ -9,7 +9,7 @@ from PySide6.QtTest import QTest
 from PySide6.QtWidgets import QComboBox, QPushButton, QVBoxLayout, QWidget
 from pytestqt.qtbot import QtBot
 
-from app.theme.current import load_fonts, px, set_scale
+from app.theme.current import px, set_scale
 from app.theme.icons import Icon
 from app.widgets.action_bar import BarState, RecordingNote
 from app.widgets.rail_row import RailForm, RailRow, StepState
@@ -93,8 +93,7 @@ def filled() -> WizardShell:
 
 
 @pytest.fixture(autouse=True)
-def _fonts(qapp: object) -> Iterator[None]:
-    load_fonts()
+def _english_again() -> Iterator[None]:
     yield
     use_language("en")
 

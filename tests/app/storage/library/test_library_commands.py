@@ -21,8 +21,10 @@ from app.storage.recovery import find_interrupted
 from app.storage.slots import Cost
 from app.storage.stored import Action, StoredRecording
 from core.session import Recording, RecordingKind
-from devices.simulation.walker import FreeMotion, Standing, Walk, WalkerSettings, simulate
+from devices.simulation.walker import FreeMotion, Standing, Walk, WalkerSettings
 from tests.app.storage.library.folder_export import write_folder
+from tests.simulated import session_of
+from tests.waiting import silent
 
 PASSPHRASE = "four short words here"
 ANY_ROOM = Room(start_bytes=0, kept_bytes=0)
@@ -36,10 +38,6 @@ def key(tmp_path: Path) -> list[str]:
     file = tmp_path / "passphrase"
     file.write_text(f"{PASSPHRASE}\nanything\n", encoding="utf-8")
     return ["--passphrase-file", str(file)]
-
-
-def silent(_share: float, _what: str) -> None:
-    """Report to nobody."""
 
 
 def test_recover_closes_what_was_interrupted_and_states_so(
@@ -130,7 +128,7 @@ def test_a_session_of_the_library_gives_the_same_results_as_its_folder(
     opened: OpenedLibrary, tmp_path: Path, key: list[str]
 ) -> None:
     recordings = (Standing(), FreeMotion(), Walk(strides=6))
-    session = simulate(WalkerSettings(seed=3, recordings=recordings)).session
+    session = session_of(WalkerSettings(seed=3, recordings=recordings))
     imported = import_session(opened, session, silent, room=Room(start_bytes=0, kept_bytes=0))
     write_folder(opened, imported.session_id, tmp_path / "folder", {}, is_identified=True)
     by_folder, by_library = tmp_path / "one", tmp_path / "two"

@@ -10,7 +10,6 @@ from PySide6.QtGui import QAccessible, QAccessibleAnnouncementEvent, QAccessible
 from PySide6.QtWidgets import QApplication
 from pytestqt.qtbot import QtBot
 
-from app.theme.current import load_fonts, set_dark
 from app.widgets.gauge import Gauge, GaugeFace, GaugeMeasure, GaugeState
 from app.widgets.hint import Hint
 from app.widgets.hip_gauge import hip_face
@@ -35,8 +34,6 @@ def view(**faces: GaugeFace) -> FreeMotionFace:
 
 @pytest.fixture
 def page(qtbot: QtBot, qapp: QApplication) -> Iterator[FreeMotionPage]:
-    load_fonts()
-    set_dark(False)
     page = FreeMotionPage()
     qtbot.addWidget(page)
     page.resize(1064, 600)

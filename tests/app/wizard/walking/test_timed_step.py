@@ -13,9 +13,10 @@ from app.wizard.walking.step import WalkingStep
 from core.body import Site
 from core.session import Patient, RecordingKind, Session
 from core.timed.protocols import PlannedTest, TimedProtocol
-from devices.simulation.walker import DEMONSTRATION, Standing, Walk, simulate
+from devices.simulation.walker import DEMONSTRATION, Standing, Walk
 from tests.app.wizard.begun_visit import begin
 from tests.app.wizard.patient_time import PATIENCE_MS, PatientTime
+from tests.simulated import session_of
 
 RUN, NEXT_TEST = Intent(KeyAction.RUN), Intent(KeyAction.NEXT_TEST)
 
@@ -25,7 +26,7 @@ def simulated_session() -> Session:
     """A patient who is a while before each walk."""
     walk = Walk(strides=14, standing_before_s=3.0)
     played = (Standing(duration_s=10.0), walk, replace(walk, name="walk 2"))
-    return simulate(replace(DEMONSTRATION, recordings=played)).session
+    return session_of(replace(DEMONSTRATION, recordings=played))
 
 
 @pytest.fixture

@@ -1,7 +1,6 @@
 """What takes a while in the library, one at a time: home shows its title and how far it is until it ends."""
 
 from PySide6.QtCore import QObject, Signal
-from PySide6.QtWidgets import QFileDialog
 
 from app.workers.library_controller import LibraryController
 
@@ -22,7 +21,6 @@ class LongWork(QObject):
     def __init__(self, controller: LibraryController, parent: QObject) -> None:
         super().__init__(parent)
         self._controller = controller
-        self._dialog: QFileDialog | None = None
         self.is_working = False
 
     def stop(self) -> None:
