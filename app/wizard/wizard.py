@@ -215,7 +215,7 @@ class Wizard(QWidget):
             step.reported.connect(self._show_message)
             step.offered.connect(self._on_offered)
             step.demonstration_required.connect(self._on_demonstration_required)
-        for signal, slot in self._slots_of(visit):
+        for signal, slot in self._connections_of(visit):
             signal.connect(slot)
         visit.asked.connect(self._on_asked)
         self._current = StepId.PATIENT
@@ -224,8 +224,8 @@ class Wizard(QWidget):
         self._preparing.start()
         return visit
 
-    def _slots_of(self, visit: Visit) -> "list[tuple[SignalInstance, Callable[..., object]]]":
-        """Give the signals of the visit in sight with their slots, in the order of connecting."""
+    def _connections_of(self, visit: Visit) -> "list[tuple[SignalInstance, Callable[..., object]]]":
+        """Signals of a visit that are followed while it is in sight, with their slots, in the order of connecting."""
         changes = (visit.changed, visit.sensors.changed, visit.patient.changed, visit.evaluation.done)
         return [
             (visit.sensors.opened, self._on_source_opened),
@@ -241,7 +241,7 @@ class Wizard(QWidget):
 
     def _listen_no_more(self, visit: Visit) -> None:
         """What comes of a visit that was left is not the next one's; a refusal is shown where one is then."""
-        for signal, slot in self._slots_of(visit):
+        for signal, slot in self._connections_of(visit):
             signal.disconnect(slot)
         for signal in (visit.refused, visit.merged):
             signal.connect(self._controller.refused)
