@@ -174,7 +174,8 @@ class SetCollector:
             self._drop_oldest()
         kept, n = self._kept, self._count
         rates = np.concatenate([g1, g2], axis=1)
-        accelerations = _angular_acceleration(rates)
+        # at the three middle nodes; Seel et al. 2014, doi 10.3390/s140406891, eq 1
+        accelerations = (rates[0:3] - 8 * rates[1:4] + 8 * rates[3:6] - rates[4:7]) / (12 * NODE_S)
         dg1, dg2 = accelerations[:, :3], accelerations[:, 3:]
         kept.g1[n], kept.g2[n], kept.dg2[n] = g1[3], g2[3], dg2[1]
         kept.effort[n] = dg1[1] @ dg1[1], dg2[1] @ dg2[1]
@@ -193,12 +194,6 @@ class SetCollector:
             values[:left] = values[DROPPED_AT_ONCE:].copy()
         self._count = left
         self._same_heading = max(self._same_heading - DROPPED_AT_ONCE, 0)
-
-
-def _angular_acceleration(rate: FloatArray) -> FloatArray:
-    """Derivatives (3, k) at the three middle nodes of rates (7, k); Seel et al. 2014, doi 10.3390/s140406891, eq 1."""
-    slopes: FloatArray = (rate[0:3] - 8 * rate[1:4] + 8 * rate[3:6] - rate[4:7]) / (12 * NODE_S)
-    return slopes
 
 
 @dataclass(frozen=True, slots=True)

@@ -153,7 +153,9 @@ def chains_in_steps(
         return None
     arrangements = Arrangements(USUAL_SITES[len(tracks)], adjacent)
     best = arrangements.best()
-    arrangement = max(arrangements.alike(best), key=lambda one: _total_height_m(one, adjacent))
+    arrangement = max(
+        arrangements.alike(best), key=lambda one: sum(leg.height_m for leg in statures(one, adjacent).values())
+    )
     legs = [
         _chain(side, arrangement, arrangements, adjacent, tracks)
         for side in Side
@@ -164,10 +166,6 @@ def chains_in_steps(
     lead_s = None if len(at_s) < 2 or at_s[0] is None or at_s[1] is None else at_s[1] - at_s[0]
     pelvis = adjacent.names[arrangement[Site.PELVIS]] if Site.PELVIS in arrangement else None
     return Chains(tuple(legs), arrangements.margin(best), lead_s, pelvis)
-
-
-def _total_height_m(arrangement: Arrangement, adjacent: Adjacent) -> float:
-    return sum(stature.height_m for stature in statures(arrangement, adjacent).values())
 
 
 def _chain(

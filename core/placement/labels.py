@@ -121,7 +121,11 @@ def detected_in_steps(tracks: Tracks, standing: Mapping[str, FloatArray]) -> Gen
     best = arrangements.best()
     if arrangements.ratio(labelled, best) < MIN_MARGIN or _has_every_joint(labelled, adjacent):
         best = labelled
-    upright = [one for one in arrangements.alike(best) if not _is_upside_down(one, adjacent)]
+    upright = [
+        one
+        for one in arrangements.alike(best)
+        if all(leg.uprightness >= -MIN_UPRIGHTNESS for leg in statures(one, adjacent).values())
+    ]
     nearest = min(upright, key=lambda one: _changes(one, labelled), default=labelled)
     site_of = {sensor: site for site, sensor in nearest.items()}
     return {site: site_of[sensor] for site, sensor in labelled.items() if site_of[sensor] is not site}
@@ -144,10 +148,6 @@ def groups_of(detected: Mapping[Site, Site]) -> list[tuple[Site, ...]]:
 def _has_every_joint(labelled: Arrangement, adjacent: Adjacent) -> bool:
     ends = [(labelled[joint.proximal], labelled[joint.distal]) for joint in joints_between(tuple(labelled))]
     return all(adjacent.cost[pair] < SHARED_COST for pair in ends)
-
-
-def _is_upside_down(arrangement: Arrangement, adjacent: Adjacent) -> bool:
-    return any(leg.uprightness < -MIN_UPRIGHTNESS for leg in statures(arrangement, adjacent).values())
 
 
 def _changes(one: Arrangement, other: Arrangement) -> int:

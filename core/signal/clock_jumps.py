@@ -77,11 +77,7 @@ def _pauses(spans: Sequence[Span]) -> list[Span]:
 
 
 def _covered_s(spans: Sequence[Span], gap: Span) -> float:
-    return sum(_common_s(one, gap) for one in spans)
-
-
-def _common_s(one: Span, other: Span) -> float:
-    return max(min(one[1], other[1]) - max(one[0], other[0]), 0.0)
+    return sum(max(min(one[1], gap[1]) - max(one[0], gap[0]), 0.0) for one in spans)
 
 
 def _measured_s(spans: Sequence[Span]) -> float:

@@ -182,7 +182,9 @@ def way_of(feet: Mapping[Side, ReceivedFoot], start_s: float, end_s: float) -> B
         silences += _silences(foot, start_s, end_s)
         speeds.append(speed)
         turnings.append(turning)
-    return BodyWay(time_s, _smooth(_total(speeds), steps), _total(turnings), steps, tuple(silences))
+    # without the rise and fall of speed in each step, which the body has less of than the feet
+    way_m = moving_mean(_total(speeds), max(1, round(0.5 * _usual_stride_s(steps) / STEP_S)))
+    return BodyWay(time_s, way_m, _total(turnings), steps, tuple(silences))
 
 
 def moving_pieces(whole: OrientedTrack) -> list[OrientedTrack]:
@@ -243,11 +245,6 @@ def _arcs(chord_m: FloatArray, turn_rad: FloatArray) -> FloatArray:
     """Lengths (k,) of the arcs under a swing's straight way (k,): a foot that turns cuts off the body's bend."""
     half = 0.5 * np.clip(np.abs(turn_rad), 0.0, MAX_ARC_RAD)
     return np.asarray(chord_m / np.sinc(half / np.pi))
-
-
-def _smooth(way_m: FloatArray, feet: Mapping[Side, FootSteps]) -> FloatArray:
-    """The way (n,) without the rise and fall of speed in each step, which the body has less of than the feet."""
-    return moving_mean(way_m, max(1, round(0.5 * _usual_stride_s(feet) / STEP_S)))
 
 
 def _usual_stride_s(feet: Mapping[Side, FootSteps]) -> float:

@@ -4,7 +4,7 @@ from collections.abc import Collection, Iterator
 
 import numpy as np
 
-from core.body import Side, Site
+from core.body import Joint, Side, Site
 from core.results import RecordingAnalysis
 from core.samples import FloatArray
 from core.signal.reception import LEAST_PAUSE_S, is_half
@@ -25,7 +25,7 @@ def lost(recording: RecordingAnalysis, limits: Limits, *sites: Site) -> Iterator
         times_s = _used_s(recording, site) if recording.gait else np.array([found.span_s])
         gaps_s = found.gaps_s[found.gaps_s[:, 1] - found.gaps_s[:, 0] < LEAST_PAUSE_S]
         percent = max(percent, _share_percent(gaps_s, times_s))
-    yield from _closed("loss", percent, limits)
+    yield from closed("loss", percent, limits, "%")
 
 
 def clipped(
@@ -40,14 +40,14 @@ def clipped(
         if len(times_s):
             holds = np.searchsorted(at_s, times_s[:, 1]) > np.searchsorted(at_s, times_s[:, 0])
             percent = max(percent, 100.0 * float(np.mean(holds)))
-    yield from _closed("clipping", percent, limits)
+    yield from closed("clipping", percent, limits, "%")
 
 
 def off_rate(recording: RecordingAnalysis, limits: Limits, *sites: Site) -> Iterator[GateReason]:
     """Whether samples came at the rate that a sensor was set to."""
     known = [recording.received[site].rate_percent for site in sites if site in recording.received]
     percent = max((one for one in known if one is not None), key=lambda one: abs(one - 100.0), default=100.0)
-    for reason in _closed("every_second" if is_half(percent) else "rate", abs(percent - 100.0), limits):
+    for reason in closed("every_second" if is_half(percent) else "rate", abs(percent - 100.0), limits, "%"):
         limit = 100.0 + float(np.copysign(limits[reason.verdict is Verdict.NOT_REPORTED], percent - 100.0))
         yield GateReason(reason.gate, reason.verdict, percent, limit, "%")
 
@@ -71,9 +71,17 @@ def _share_percent(gaps_s: FloatArray, times_s: FloatArray) -> float:
     return 100.0 * float(np.sum(until_last - until_first)) / whole_s
 
 
-def _closed(gate: str, percent: float, limits: Limits) -> Iterator[GateReason]:
+def closed(
+    gate: str, value: float | None, limits: Limits, unit: str, joint: Joint | None = None
+) -> Iterator[GateReason]:
+    """What a value beyond the first or the second limit closes; one that is not known closes the second."""
     care, most = limits
-    if percent > most:
-        yield GateReason(gate, Verdict.NOT_REPORTED, percent, most, "%")
-    elif percent > care:
-        yield GateReason(gate, Verdict.CARE, percent, care, "%")
+    if value is None or not value <= most:
+        yield GateReason(gate, Verdict.NOT_REPORTED, known_or_none(value), most, unit, joint=joint)
+    elif value > care:
+        yield GateReason(gate, Verdict.CARE, value, care, unit, joint=joint)
+
+
+def known_or_none(value: float | None) -> float | None:
+    """None where a value is not known or NaN."""
+    return float(value) if value is not None and np.isfinite(value) else None

@@ -6,7 +6,7 @@ which begin again every 71 minutes; there is no counter, so that loss shows in t
 
 import math
 import struct
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 from devices.clocks.clock import Unwrapping
@@ -94,7 +94,8 @@ class DotFramer:
     def __init__(self, info: SourceInfo) -> None:
         self.received = Received()
         self._frames, self._damaged = NotificationFrames(KNOWN), 0
-        self._mode = _mode_of(info.settings)
+        mode = info.settings.get("mode")
+        self._mode = MODES.get(mode) if isinstance(mode, int) else None
         self._unwrapping, self._before_s = Unwrapping(TIME_BITS, TICK_HZ), 0.0
         self._is_first = True
 
@@ -127,11 +128,6 @@ class DotFramer:
     def _count_damaged(self) -> None:
         self.received.damaged += self._frames.damaged - self._damaged
         self._damaged = self._frames.damaged
-
-
-def _mode_of(settings: Mapping[str, object]) -> StreamMode | None:
-    mode = settings.get("mode")
-    return MODES.get(mode) if isinstance(mode, int) else None
 
 
 class FileFramer:

@@ -128,8 +128,7 @@ class EmulatedDot:
         self._own = replace(self._own, power_on_ns=self._now_ns() - ticks * 1000)
 
     def _clock_us(self, at_ns: float) -> float:
-        clock = self._common or self._own
-        return clock.us(at_ns)
+        return (self._common or self._own).us(at_ns)
 
     def _taken_ns(self, clock_us: float) -> float:
         clock = self._common or self._own

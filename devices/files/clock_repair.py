@@ -62,6 +62,21 @@ class _WrongRun:
     is_placed: bool
 
 
+def whole_clock(stamps: FloatArray, clock: FileClock, remedy: str) -> RepairedClock:
+    """As `repaired`, of stamps (n,) all of which have to be there; `remedy` is for one that is not."""
+    is_there = np.isfinite(stamps)
+    if not is_there.all():
+        place = clock.place(int(np.argmin(is_there)))
+        raise FileRefusedError.stated_elsewhere(f"{clock.where}, {place}", "a sample has no time", remedy, {})
+    return repaired(stamps, clock)
+
+
+def usual_rate(time_s: FloatArray) -> float | None:
+    """Samples per second of stamps (n,), to a tenth; None of fewer than two."""
+    steps_s = np.diff(time_s)
+    return round(1.0 / float(np.median(steps_s)), 1) if len(steps_s) else None
+
+
 def repaired(
     stamps: FloatArray | Numbers, clock: FileClock, *, slack: float = 0.0, step: float | None = None
 ) -> RepairedClock:

@@ -123,7 +123,8 @@ def _groups(path: tuple[str, ...], variables: Mapping[str, Variable], around: _G
 
 def _group(path: tuple[str, ...], variables: Mapping[str, Variable]) -> _Group:
     group = _Group(path)
-    texts: list[list[str]] = [value for value in variables.values() if isinstance(value, list) and _are_texts(value)]
+    lists = [value for value in variables.values() if isinstance(value, list) and len(value) > 1]
+    texts: list[list[str]] = [value for value in lists if all(isinstance(one, str) for one in value)]
     reported: dict[str, str] = {}
     for name, value in variables.items():
         if isinstance(value, str):
@@ -193,10 +194,6 @@ def _is_of_axes(meaning: NamedQuantity | None) -> bool:
 def _is_of_all(name: str) -> bool:
     meaning = meaning_of(name)
     return meaning is not None and meaning.quantity in OF_ALL
-
-
-def _are_texts(value: list[Any]) -> bool:
-    return len(value) > 1 and all(isinstance(one, str) for one in value)
 
 
 def _closed(variables: Mapping[str, Any]) -> Iterator[tuple[str, str]]:

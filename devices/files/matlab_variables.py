@@ -111,7 +111,8 @@ class _Version5(_MatlabFile):
             variables = {}
             for name, value in read.items():
                 if not name.startswith("__"):
-                    called = _own_name(value) if name == "None" else name
+                    # what SciPy calls objects of classes in some versions
+                    called = (_field(value, 0) or "?") if name == "None" else name
                     variables[called] = self._plain(value, 0)
             return variables
         except (*DAMAGES, MatReadError) as error:
@@ -122,7 +123,7 @@ class _Version5(_MatlabFile):
     def _plain(self, value: Any, depth: int) -> Variable:
         self._count(depth)
         if isinstance(value, MatlabOpaque):
-            return ClosedObject(_class_of(value))
+            return ClosedObject(_field(value, 2))
         if isinstance(value, MatlabFunction) or not isinstance(value, np.ndarray):
             return None
         if value.dtype.names:
@@ -199,15 +200,6 @@ def _numbers(values: Any) -> FloatArray | None:
     if not isinstance(values, np.ndarray) or values.dtype.kind not in "fiub" or values.ndim > 2:
         return None
     return np.atleast_2d(values).astype(np.float64)
-
-
-def _own_name(value: Any) -> str:
-    """The name of a variable that SciPy calls "None", as it does with objects of classes in some versions."""
-    return _field(value, 0) or "?"
-
-
-def _class_of(value: Any) -> str:
-    return _field(value, 2)
 
 
 def _field(value: Any, number: int) -> str:

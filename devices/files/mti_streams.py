@@ -38,7 +38,7 @@ from devices.drivers.xsens_mti import (
 )
 from devices.files.clock_repair import FileClock, RepairedClock, repaired
 from devices.files.magnitudes import check_magnitudes
-from devices.files.orientation_rates import Numbers, derive_rates, with_gravity
+from devices.files.orientation_rates import Numbers, derive_rates, rates_of_turns, with_gravity
 from devices.files.own_clocks import with_own_clocks
 from devices.files.refusal import FileRefusedError
 from devices.files.trial import ImportedSensor, ImportedTrial, read_each
@@ -249,9 +249,7 @@ def _rates(
     turn = stream.turn[is_new]
     is_there = np.isfinite(turn).all(axis=1) & (np.abs(np.linalg.norm(turn, axis=1) - 1.0) < 0.05)
     if is_there.any():
-        rate = np.full((len(turn), 3), np.nan)
-        rate[is_there] = Rotation.from_quat(turn[is_there], scalar_first=True).as_rotvec() * rate_hz
-        return rate, False
+        return rates_of_turns(turn, is_there, rate_hz), False
     assert q is not None  # of rows without rate and turn
     return derive_rates(q, counter, rate_hz), True
 

@@ -16,7 +16,7 @@ import numpy as np
 
 from core.findings import Finding, Severity
 from core.samples import FloatArray, ImuBlock, RateKind, SensorInfo
-from devices.files.clock_repair import FileClock, repaired
+from devices.files.clock_repair import FileClock, whole_clock
 from devices.files.orientation_rates import Numbers, derive_rates, with_gravity
 from devices.files.refusal import FileRefusedError, quoted
 from devices.files.trial import ImportedSensor, ImportedTrial
@@ -83,10 +83,7 @@ def read_opensim_orientations(path: Path) -> OrientationTable:
     values = np.array(rows, dtype=np.float64).reshape(len(rows), 1 + 4 * (len(names) - 1))
     values[~np.isfinite(values)] = np.nan
     time_s, q = values[:, 0], values[:, 1:].reshape(len(rows), len(names) - 1, 4)
-    is_empty = np.isnan(time_s)
-    if is_empty.any():
-        raise FileRefusedError(f"{where}, line {lines[int(np.argmax(is_empty))]}", "a sample has no time", EXPORT_AGAIN)
-    clock = repaired(time_s, FileClock(where, lambda row: f"line {lines[row]}", TIME))
+    clock = whole_clock(time_s, FileClock(where, lambda row: f"line {lines[row]}", TIME), EXPORT_AGAIN)
     is_wrong = (np.abs(np.linalg.norm(q, axis=2) - 1.0) > ROTATION_ERROR).any(axis=1)
     if is_wrong.any():
         line = lines[int(np.argmax(is_wrong))]

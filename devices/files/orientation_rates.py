@@ -1,10 +1,12 @@
 """What a device's own orientation shows: angular rates, which of two kinds its gyroscope's are, and gravity."""
 
+from collections.abc import Callable
+
 import numpy as np
 from numpy.typing import NDArray
 from scipy.spatial.transform import Rotation
 
-from core.samples import FloatArray, RateKind
+from core.samples import BoolArray, FloatArray, RateKind
 
 Numbers = NDArray[np.int64]
 GRAVITY_M_S2 = 9.81
@@ -98,6 +100,22 @@ def turn_to(q: FloatArray, counter: Numbers, steps: int) -> FloatArray:
         start, end = (Rotation.from_quat(q[part][is_there], scalar_first=True) for part in (here, there))
         turn[here][is_there] = (start.inv() * end).as_rotvec()
     return turn
+
+
+def rates_of_turns(turns: FloatArray, is_there: BoolArray, rate_hz: float) -> FloatArray:
+    """Angular rates (n, 3), rad/s, of what a sensor turned by since the sample before, quaternions (n, 4)."""
+    rate = np.full((len(turns), 3), np.nan)
+    if is_there.any():
+        rate[is_there] = Rotation.from_quat(turns[is_there], scalar_first=True).as_rotvec() * rate_hz
+    return rate
+
+
+def quaternions(make: Callable[[FloatArray], Rotation], values: FloatArray, is_there: BoolArray) -> FloatArray:
+    """Orientations (n, 4), scalar first, that `make` makes of those values (n, ...) that are there; else NaN."""
+    q = np.full((len(values), 4), np.nan)
+    if is_there.any():
+        q[is_there] = make(values[is_there]).as_quat(scalar_first=True)
+    return q
 
 
 def with_gravity(

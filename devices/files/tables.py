@@ -127,7 +127,7 @@ def read_csv(
         is_open = _is_open(file, start)
         if isinstance(arrow, Exception) or _swallows_lines(arrow, numeric):
             _refuse_line(path, where, start, header_line, names, numeric, delimiter, decimal)
-            if _has_content(path, start):
+            if next(_lines(path, start, 0), None) is not None:
                 raise FileRefusedError(where, "the table cannot be read ({why})", COPY_AGAIN, why=arrow)
             arrow = None
 
@@ -313,10 +313,6 @@ def _lines(path: Path, start: int, header_line: int) -> Iterator[tuple[int, byte
         for number, raw in enumerate(file, header_line + 1):
             if line := raw.rstrip(b"\r\n"):
                 yield number, line
-
-
-def _has_content(path: Path, start: int) -> bool:
-    return next(_lines(path, start, 0), None) is not None
 
 
 def _refuse_line(

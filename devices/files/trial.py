@@ -109,13 +109,8 @@ class Gathered:
     refused: tuple[FileRefusedError, ...]
 
 
-def no_ids(_path: Path) -> Sequence[str]:
-    """No id: only what is in a file shows whose it is."""
-    return ()
-
-
 def read_each(
-    files: Sequence[Path], read: Callable[[Path], T], ids: Callable[[Path], Sequence[str]] = no_ids
+    files: Sequence[Path], read: Callable[[Path], T], ids: Callable[[Path], Sequence[str]] = lambda _path: ()
 ) -> tuple[list[T], list[UnreadFile]]:
     """What was read of each file, and the files that were refused.
 

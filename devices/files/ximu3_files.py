@@ -15,7 +15,7 @@ from core.findings import Finding, Severity
 from core.samples import FloatArray, ImuBlock, SensorInfo
 from devices.clocks.clock import BACK_S
 from devices.drivers.ximu3 import DRIVER, MODEL, G, Ximu3Framer, received_in
-from devices.files.clock_repair import FileClock, repaired
+from devices.files.clock_repair import FileClock, repaired, usual_rate, whole_clock
 from devices.files.magnitudes import check_magnitudes
 from devices.files.own_clocks import with_own_clocks
 from devices.files.refusal import FileRefusedError
@@ -75,9 +75,7 @@ def _sensor(path: Path) -> ImportedSensor:
             "Set the sensor to send inertial messages, and record again",
         )
     check_magnitudes(block.acc_m_s2, block.gyr_rad_s, block.sensor, path.name, gyr_unit="deg/s", is_export=is_table)
-    step_s = np.diff(block.time_s)
-    hz = round(1.0 / float(np.median(step_s)), 1) if len(step_s) else None
-    info = SensorInfo(serial=block.sensor, model=MODEL, rate_hz=hz)
+    info = SensorInfo(serial=block.sensor, model=MODEL, rate_hz=usual_rate(block.time_s))
     return ImportedSensor(block.sensor, (path.stem,), str(path), block, info, tuple(findings))
 
 
@@ -103,11 +101,7 @@ def _of_table(path: Path) -> tuple[ImuBlock, list[Finding]]:
     missing = [name for name in (TIME, *GYR, *ACC) if name not in table.numbers]
     if missing:
         raise FileRefusedError(where, "column {name} is missing", CONVERT_AGAIN, name=missing[0])
-    is_there = np.isfinite(table.numbers[TIME])
-    if not is_there.all():
-        row = int(np.argmin(is_there))
-        raise FileRefusedError(f"{where}, {table.place(row)}", "a sample has no time", CONVERT_AGAIN)
-    clock = repaired(table.numbers[TIME], FileClock(where, table.place, TIME, 1.0 / US_PER_S))
+    clock = whole_clock(table.numbers[TIME], FileClock(where, table.place, TIME, 1.0 / US_PER_S), CONVERT_AGAIN)
     time_s, is_new = clock.stamps / US_PER_S, clock.is_new
     name = path.parent.name if path.name == INERTIAL else path.stem
     block = ImuBlock(

@@ -6,7 +6,7 @@ means over the interval before their stamp, as the orientation in the same file 
 """
 
 import re
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
 
@@ -14,10 +14,10 @@ import numpy as np
 from scipy.spatial.transform import Rotation
 
 from core.findings import Finding, Severity
-from core.samples import BoolArray, FloatArray, ImuBlock, RateKind, SensorInfo
+from core.samples import FloatArray, ImuBlock, RateKind, SensorInfo
 from devices.files.clock_repair import FileClock, repaired, unwrapped, without_turns
 from devices.files.magnitudes import middle_size, times_the_turning
-from devices.files.orientation_rates import Numbers, derive_rates, rate_kind_by
+from devices.files.orientation_rates import Numbers, derive_rates, quaternions, rate_kind_by
 from devices.files.refusal import FileRefusedError
 from devices.files.tables import Table, header_of, read_csv
 from devices.files.trial import ImportedSensor, ImportedTrial, read_each
@@ -167,11 +167,11 @@ def _orientation(table: Table, where: str) -> FloatArray | None:
         small = matrix[is_small]
         error[is_small] = np.abs(small @ small.swapaxes(1, 2) - np.eye(3)).max(axis=(1, 2))
         error[is_small] += np.linalg.det(small) < 0
-        q = _quaternions(Rotation.from_matrix, matrix, error < ROTATION_ERROR)
+        q = quaternions(Rotation.from_matrix, matrix, error < ROTATION_ERROR)
     elif names >= set(EULER):
         angles = table.matrix(EULER)
         error = np.zeros(len(angles))
-        q = _quaternions(lambda a: Rotation.from_euler("ZYX", a, degrees=True), angles, np.isfinite(angles.sum(axis=1)))
+        q = quaternions(lambda a: Rotation.from_euler("ZYX", a, degrees=True), angles, np.isfinite(angles.sum(axis=1)))
     else:
         return None
     wrong = np.flatnonzero(error > ROTATION_ERROR)
@@ -179,13 +179,6 @@ def _orientation(table: Table, where: str) -> FloatArray | None:
         raise FileRefusedError(
             f"{where}, {table.place(int(wrong[0]))}", "the orientation is not a valid rotation", EXPORT_AGAIN
         )
-    return q
-
-
-def _quaternions(make: Callable[[FloatArray], Rotation], values: FloatArray, is_there: BoolArray) -> FloatArray:
-    q = np.full((len(values), 4), np.nan)
-    if is_there.any():
-        q[is_there] = make(values[is_there]).as_quat(scalar_first=True)
     return q
 
 

@@ -122,7 +122,7 @@ class ReplaySource:
         now_ns: Callable[[], int] = host_time_ns,
         sleep: Callable[[float], None] = time.sleep,
     ) -> None:
-        if not session.recordings or not all(_has_samples(recording) for recording in session.recordings):
+        if not session.recordings or not all(any(map(len, recording.imu.values())) for recording in session.recordings):
             raise ValueError("a recording without samples cannot be played")
         self.now_ns = now_ns if speed == 1.0 else _faster(now_ns, speed)
         self._sleep, self._faults, self._finishes = sleep, faults, finishes
@@ -328,10 +328,6 @@ def names_of(session: Session) -> dict[Site, str]:
 def _renamed(imu: Mapping[Site, ImuBlock]) -> dict[Site, ImuBlock]:
     by_name = sorted(imu, key=lambda site: DEMONSTRATION_NAMES[site])
     return {site: replace(imu[site], sensor=DEMONSTRATION_NAMES[site]) for site in by_name}
-
-
-def _has_samples(recording: Recording) -> bool:
-    return any(len(block) for block in recording.imu.values())
 
 
 def _longest(session: Session, site: Site) -> ImuBlock:

@@ -225,7 +225,7 @@ def walk_course(
     phase_rad = rng.uniform(0.0, 2.0 * np.pi)
     motions = {side: sit(legs[side], motion, changes, phase_rad) for side, motion in motions.items()}
     compass = rotation_about(Z_AXIS, rng.uniform(0.0, 2.0 * np.pi, 1))[0]
-    motions = {side: _turned(motion, compass) for side, motion in motions.items()}
+    motions = {side: motion.turned(compass) for side, motion in motions.items()}
     return motions, changes, replace(_truth(motions, planned, changes), climbs_m=climbs_m), duration_s
 
 
@@ -236,15 +236,6 @@ def _climbed(motions: Mapping[Side, LegMotion], bout: Bout) -> tuple[dict[Side, 
     heights = {side: np.concatenate([[0.0], height_m[0 if side is first else 1 :: 2]]) for side in motions}
     climbed = {side: climb(motion, heights[side]) for side, motion in motions.items()}
     return climbed, {side: np.diff(values) for side, values in heights.items()}
-
-
-def _turned(motion: LegMotion, compass: FloatArray) -> LegMotion:
-    return replace(
-        motion,
-        rotations=compass @ motion.rotations,
-        origins_m=motion.origins_m @ compass.T,
-        footholds_m=motion.footholds_m @ compass[:2, :2].T,
-    )
 
 
 def _more_rises(course: TimedCourse, at_s: float, rng: np.random.Generator) -> list[SeatChange]:

@@ -1,6 +1,6 @@
 """Poses of the segments of one leg at every instant, from joint angles."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from scipy.ndimage import uniform_filter1d
@@ -49,6 +49,15 @@ class LegMotion:
     origins_m: FloatArray
     events: TrueFootEvents
     footholds_m: FloatArray
+
+    def turned(self, rotation: FloatArray) -> "LegMotion":
+        """The same motion in another compass direction; `rotation` (3, 3) about the vertical."""
+        return replace(
+            self,
+            rotations=rotation @ self.rotations,
+            origins_m=self.origins_m @ rotation.T,
+            footholds_m=self.footholds_m @ rotation[:2, :2].T,
+        )
 
 
 def rotation_about(axis: FloatArray, angle_rad: FloatArray) -> FloatArray:
@@ -179,9 +188,16 @@ def sway_of(time_s: FloatArray, rng: np.random.Generator) -> FloatArray:
     (n, 2)
         Forward and left, m.
     """
-    frequency, phase = rng.uniform(0.1, 0.6, (2, 4)), rng.uniform(0.0, 2.0 * np.pi, (2, 4))
+    return noise_in_band(time_s, (0.1, 0.6), (2, 4), rng) * 0.0015
+
+
+def noise_in_band(
+    time_s: FloatArray, band_hz: tuple[float, float], shape: tuple[int, int], rng: np.random.Generator
+) -> FloatArray:
+    """Sums (n, signals) of sines within a band by chance, so many for each signal: `shape` is (signals, sines)."""
+    frequency, phase = rng.uniform(*band_hz, shape), rng.uniform(0.0, 2.0 * np.pi, shape)
     waves = [np.sin(2.0 * np.pi * np.outer(time_s, f) + p).sum(axis=1) for f, p in zip(frequency, phase, strict=True)]
-    return np.stack(waves, axis=-1) * 0.0015
+    return np.stack(waves, axis=-1)
 
 
 def move_freely(

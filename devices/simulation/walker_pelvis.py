@@ -21,10 +21,11 @@ from devices.simulation.walker_motion import (
     JointAngles,
     LegMotion,
     hang_from_hip,
+    noise_in_band,
     rotation_about,
     smooth_step,
 )
-from devices.simulation.walker_sensors import Mounting, SensorClock, interpolate
+from devices.simulation.walker_sensors import Mounting, SensorClock, interpolate, ring_after
 
 HALF_WIDTH_M = 0.085  # the hips' centres are 0.17 m apart
 OBLIQUITY_RAD, ROTATION_RAD, TILT_RAD = np.deg2rad([4.0, 6.0, 2.0])  # over a stride; it tilts twice in it
@@ -50,6 +51,10 @@ class PelvisMotion:
     time_s: FloatArray
     rotations: FloatArray
     centre_m: FloatArray
+
+    def turned(self, rotation: FloatArray) -> "PelvisMotion":
+        """The same in another compass direction; `rotation` (3, 3) about the vertical."""
+        return replace(self, rotations=rotation @ self.rotations, centre_m=self.centre_m @ rotation.T)
 
 
 @dataclass(frozen=True, slots=True)
@@ -162,9 +167,7 @@ def _stride_phase(left: LegMotion, right: LegMotion) -> tuple[FloatArray, FloatA
 
 def _slow(time_s: FloatArray, rng: np.random.Generator, count: int) -> FloatArray:
     """Slow noise (n, count) of unit standard deviation, 0.2 to 0.8 Hz."""
-    frequency, phase = rng.uniform(0.2, 0.8, (count, 4)), rng.uniform(0.0, 2.0 * np.pi, (count, 4))
-    waves = [np.sin(2.0 * np.pi * np.outer(time_s, f) + p).sum(axis=1) for f, p in zip(frequency, phase, strict=True)]
-    return np.stack(waves, axis=-1) * np.sqrt(0.5)
+    return noise_in_band(time_s, (0.2, 0.8), (count, 4), rng) * np.sqrt(0.5)
 
 
 def _liveliness(leg: LegMotion) -> FloatArray:
@@ -223,22 +226,6 @@ def is_lunging(required: object) -> bool:
     return isinstance(required, FreeMotion) and required.motion is Motion.LUNGES
 
 
-def turned_pelvis(pelvis: PelvisMotion, rotation: FloatArray) -> PelvisMotion:
-    """The same in another compass direction.
-
-    Parameters
-    ----------
-    rotation : (3, 3)
-        About the vertical.
-
-    Returns
-    -------
-    PelvisMotion
-        On the same clock.
-    """
-    return replace(pelvis, rotations=rotation @ pelvis.rotations, centre_m=pelvis.centre_m @ rotation.T)
-
-
 def pelvis_poses(
     pelvis: PelvisMotion,
     contacts_s: FloatArray,
@@ -274,7 +261,9 @@ def pelvis_poses(
         turn = size * np.sqrt(0.5) * (follows + _slow(pelvis.time_s, rng, 3) * np.sqrt(0.5))
         if tissue is Tissue.REAL:
             direction = strap.normal(size=3)
-            ring = _ring(pelvis.time_s, contacts_s, strap.uniform(*RING_HZ))
+            ring = ring_after(
+                pelvis.time_s, contacts_s, np.ones(len(contacts_s)), strap.uniform(*RING_HZ), RING_DECAY_S
+            )
             turn = turn + REAL_RING_RAD * ring[:, None] * direction
         ridden = pelvis.rotations @ _small_turn(turn)
     place = pelvis.centre_m + np.einsum("nij,j->ni", ridden, mounting.place_m)
@@ -297,16 +286,6 @@ def thigh_on_tissue(motion: LegMotion, outward: float, strap: np.random.Generato
     gain, roll = strap.uniform(*REAL_THIGH_GAIN), REAL_THIGH_ROLL_RAD * strap.choice([-1.0, 1.0])
     turn = np.stack([roll * share * np.sqrt(0.5), gain * pitch, outward * length_rad * share * np.sqrt(0.5)], axis=-1)
     return _small_turn(turn)
-
-
-def _ring(time_s: FloatArray, hits_s: FloatArray, ring_hz: float) -> FloatArray:
-    total = np.zeros_like(time_s)
-    for hit_s in hits_s:
-        since = np.maximum(time_s - hit_s, 0.0)
-        total += (
-            (1.0 - np.exp(-since / 0.015)) ** 3 * np.exp(-since / RING_DECAY_S) * np.sin(2 * np.pi * ring_hz * since)
-        )
-    return total
 
 
 def _small_turn(v: FloatArray) -> FloatArray:

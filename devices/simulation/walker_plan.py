@@ -111,7 +111,6 @@ def plan_walk(
     }
     bend = Bend(0.5 * float(hip_path.max()), walk.turn_rad, max(abs(walk.turn_rad) * walk.turn_radius_m, 0.1))
     duration_s = float(stopped + walk.standing_after_s + 0.4 * stride_s)
-    duration_s = float(stopped + walk.standing_after_s + 0.4 * stride_s)
     return WalkPlan(gaits, duration_s, hip_path, plans, (bend,), walk.pivot_share)
 
 

@@ -11,7 +11,7 @@ from scipy.ndimage import gaussian_filter1d
 from core.body import Segment, Side, Site
 from core.samples import BoolArray, FloatArray, ImuBlock, RateKind
 from devices.simulation.walker_body import SENSOR_PLACES_M, Leg, SensorErrors, Tissue, WalkerSettings
-from devices.simulation.walker_motion import LegMotion, rotation_about
+from devices.simulation.walker_motion import LegMotion, noise_in_band, rotation_about
 
 GRAVITY_M_S2 = np.array([0.0, 0.0, -9.81])
 SEGMENT_ROW = {Segment.THIGH: 0, Segment.SHANK: 1, Segment.FOOT: 2}
@@ -153,12 +153,13 @@ def _tissue_motion(
     follows = [flexion / np.deg2rad(60.0), gaussian_filter1d(np.gradient(flexion, step_s), 0.01 / step_s) / 4.0]
     contacts_s = leg.events.initial_contact_s
     if tissue is Tissue.SOFT:
-        drives = np.stack([*follows, 2.0 * _ring(t, contacts_s, np.ones(len(contacts_s)), RING_HZ, RING_DECAY_S)], -1)
+        ring = ring_after(t, contacts_s, np.ones(len(contacts_s)), RING_HZ, RING_DECAY_S)
+        drives = np.stack([*follows, 2.0 * ring], axis=-1)
         return share * TISSUE_RAD * (drives @ ride.turn), share * TISSUE_M * (drives @ ride.shift)
     hits_s = np.concatenate([contacts_s, leg.events.toe_off_s])
     sizes = np.repeat([1.0, REAL_TOE_OFF_RING], [len(contacts_s), len(leg.events.toe_off_s)])
     sizes = sizes * np.exp(rng.normal(0.0, REAL_RING_STEADINESS, len(hits_s)))
-    ring = REAL_RING * REAL_SHARE[segment] / share * _ring(t, hits_s, sizes, ride.ring_hz, ride.ring_decay_s)
+    ring = REAL_RING * REAL_SHARE[segment] / share * ring_after(t, hits_s, sizes, ride.ring_hz, ride.ring_decay_s)
     drives = np.stack([*(REAL_RIDE * drive for drive in follows), ring], axis=-1)
     moving = _is_moving(leg)[:, None]
     usual = REAL_WALK_WOBBLE if len(contacts_s) else REAL_FREE_WOBBLE
@@ -204,7 +205,7 @@ def _liveliness(leg: LegMotion) -> float:
     return min(1.0, float(np.mean(moving**2)) / USUAL_KNEE_RAD_S**2) if len(moving) else 0.0
 
 
-def _ring(t: FloatArray, hits_s: FloatArray, sizes: FloatArray, ring_hz: float, decay_s: float) -> FloatArray:
+def ring_after(t: FloatArray, hits_s: FloatArray, sizes: FloatArray, ring_hz: float, decay_s: float) -> FloatArray:
     """A decaying oscillation (n,) after each hit, that begins smoothly."""
     ring = np.zeros_like(t)
     for hit_s, size in zip(hits_s, sizes, strict=True):
@@ -227,10 +228,7 @@ def _direction(rng: np.random.Generator) -> FloatArray:
 
 def _wobble(t: FloatArray, band_hz: tuple[float, float], rng: np.random.Generator) -> FloatArray:
     """Band noise (n, 3) of unit standard deviation: a few sines each within `band_hz`."""
-    count = 5
-    frequency, phase = rng.uniform(*band_hz, (3, count)), rng.uniform(0.0, 2.0 * np.pi, (3, count))
-    waves = [np.sin(2.0 * np.pi * np.outer(t, f) + p).sum(axis=1) for f, p in zip(frequency, phase, strict=True)]
-    return np.stack(waves, axis=-1) * np.sqrt(2.0 / count)
+    return noise_in_band(t, band_hz, (3, 5), rng) * np.sqrt(2.0 / 5)
 
 
 def _bursts(t: FloatArray, rng: np.random.Generator) -> FloatArray:
