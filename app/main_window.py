@@ -18,8 +18,6 @@ from PySide6.QtGui import (
     QDropEvent,
     QGuiApplication,
     QKeySequence,
-    QPainter,
-    QPaintEvent,
     QResizeEvent,
     QShortcut,
     QWindow,
@@ -35,6 +33,7 @@ from app.system.qt_messages import log_qt_messages
 from app.system.settings import Scheme, Settings
 from app.theme.colours import DARK, LIGHT
 from app.theme.current import current_theme, grow, load_fonts, set_theme
+from app.theme.ground import Ground, set_ground
 from app.theme.theme import Theme
 from app.widgets.accessible_role import show_roles
 from app.widgets.focus_ring import FocusRing
@@ -444,7 +443,8 @@ class MainWindow(QWidget):
         state = self.controller.state
         if self.entry is None or state is None or state.is_demonstration:
             if state is not None:
-                self.controller.forget()  # the demonstration goes on; the library behind it asks for its passphrase
+                # the demonstration goes on; the library behind it asks for its passphrase
+                self.controller.call(lambda holder: holder.forget(), None, None, self)
             self.idle.unlock()
             return
         self._covered = self.screens.currentWidget()
@@ -535,19 +535,13 @@ class _DropFrame(QWidget):
         super().__init__(window)
         self._window = window
         self.setAttribute(Qt.WidgetAttribute.WA_TransparentForMouseEvents)
-        self.setAttribute(Qt.WidgetAttribute.WA_NoSystemBackground)
+        set_ground(self, Ground(line="ink", width=DROP_EDGE, radius=0, inset=2))
         self.hide()
 
     def cover(self) -> None:
         self.setGeometry(self._window.rect())
         self.raise_()
         self.show()
-
-    def paintEvent(self, _event: QPaintEvent) -> None:
-        theme = current_theme()
-        painter = QPainter(self)
-        painter.setPen(theme.pen(theme.colours.ink, DROP_EDGE))
-        painter.drawRect(self.rect().adjusted(2, 2, -3, -3))
 
 
 def open_window(argv: list[str], language: str = "") -> int:

@@ -1,7 +1,6 @@
 """`gaitwright agree`: what a session and an optical system differ by, in the shape of Table 1."""
 
 import argparse
-import json
 from datetime import datetime
 from pathlib import Path
 
@@ -14,10 +13,9 @@ from app.reports.agreement.study import study_of
 from app.reports.agreement.tables import FORMAT, SUMMARY
 from app.system.logs import version_of
 from app.system.progress import Report
+from app.system.tables import is_free, read_json
 from core.analysis import analyse
 from devices.files.refusal import FileRefusedError, one_line
-
-MOST_SUMMARY_BYTES = 10_000_000
 
 
 def run(args: argparse.Namespace, report: Report) -> list[str]:
@@ -62,15 +60,9 @@ def _check_place(out: Path) -> None:
     FileRefusedError
         Something else is there.
     """
-    if not out.exists() or (out.is_dir() and not any(out.iterdir())):
+    if is_free(out):
         return
-    summary = out / SUMMARY
-    try:
-        is_one = summary.stat().st_size <= MOST_SUMMARY_BYTES
-        is_one = is_one and json.loads(summary.read_text(encoding="utf-8")).get("format") == FORMAT
-    except (OSError, ValueError, AttributeError, RecursionError):
-        is_one = False
-    if not is_one or any(out.rglob("session.toml")):
+    if read_json(out / SUMMARY, FORMAT) is None or any(out.rglob("session.toml")):
         raise FileRefusedError(
             str(out), "this already exists and is not a comparison with a reference", "Choose another --out"
         )

@@ -16,6 +16,7 @@ from app.exports.result_folder import session_of, written_beside
 from app.importing.untrusted_files import read_foreign_session
 from app.storage.pseudonyms import Typed
 from app.system.progress import Report
+from app.system.tables import is_free
 from core.analysis import analyse
 from devices.decoders import DECODERS
 from devices.files.refusal import FileRefusedError, one_line
@@ -39,7 +40,7 @@ def run(args: argparse.Namespace, report: Report) -> list[str]:
         )
     if args.preview:
         return _preview(args, kept)
-    if args.out.exists() and not (args.out.is_dir() and not any(args.out.iterdir())):
+    if not is_free(args.out):
         raise FileRefusedError(
             str(args.out), "this already exists and is not an empty folder", "Choose an empty folder or a new one"
         )

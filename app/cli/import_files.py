@@ -5,6 +5,7 @@ import argparse
 from app.cli.progress import finding_lines
 from app.importing.untrusted_files import read_foreign_session, read_foreign_trial, write_over_session
 from app.system.progress import Report
+from app.system.tables import is_free
 from core.session import Recording, RecordingKind, Session
 from devices.files.imports import add_recording, folder_for, free_name, parse_map, place_trial
 
@@ -21,8 +22,7 @@ def run(args: argparse.Namespace, progress: Report) -> list[str]:
     """
     kind = RecordingKind(args.kind)
     placement = parse_map(args.map)
-    is_new = not args.out.exists() or (args.out.is_dir() and not any(args.out.iterdir()))
-    session = Session(()) if is_new else read_foreign_session(args.out, lambda: progress(0.0, str(args.out)))
+    session = Session(()) if is_free(args.out) else read_foreign_session(args.out, lambda: progress(0.0, str(args.out)))
     name = args.recording or free_name(session, kind)
     progress(0.0, name)
     trial = read_foreign_trial(args.format or "", args.files, args.rate, lambda: progress(0.0, name))

@@ -77,21 +77,20 @@ def _add_analyse(parser: argparse.ArgumentParser) -> None:
     parser.description = "Compute knee and ankle angles of a session and write them as a folder of results."
     _add_session(parser, "the session folder, or library:ID for one of the library")
     parser.add_argument("--out", metavar="OUT", type=Path, required=True, help="the folder of results to write")
-    parser.add_argument(
-        "--method",
-        type=one_of(METHODS),
-        default=METHODS[0],
-        metavar="{robust,published}",
-        help="how joints are identified and which angle is the result (robust)",
+    _add_choices(
+        parser,
+        method="how joints are identified and which angle is the result (robust)",
+        tau="time constant of the published fusion in seconds (2)",
+        no_report="write no report.pdf",
     )
-    parser.add_argument(
-        "--tau",
-        type=positive,
-        default=DEFAULT_TAU_S,
-        metavar="S",
-        help="time constant of the published fusion in seconds (2)",
-    )
-    parser.add_argument("--no-report", action="store_true", help="write no report.pdf")
+
+
+def _add_choices(parser: argparse.ArgumentParser, *, method: str, tau: str, no_report: str) -> None:
+    """How a session is analysed and what is written of it, with the help on three of them."""
+    words = f"{{{','.join(METHODS)}}}"
+    parser.add_argument("--method", type=one_of(METHODS), default=METHODS[0], metavar=words, help=method)
+    parser.add_argument("--tau", type=positive, default=DEFAULT_TAU_S, metavar="S", help=tau)
+    parser.add_argument("--no-report", action="store_true", help=no_report)
     parser.add_argument("--no-rrd", action="store_true", help="write no session.rrd for Rerun")
 
 
@@ -232,16 +231,12 @@ def _add_batch(parser: argparse.ArgumentParser) -> None:
         help="the scheduler of a Dask cluster of your own, such as tcp://192.0.2.1:8786. FOLDER and OUT have to be on "
         "a disk that all its workers see under the same path, and all need this version",
     )
-    parser.add_argument(
-        "--method",
-        type=one_of(METHODS),
-        default=METHODS[0],
-        metavar="{robust,published}",
-        help="as of analyse (robust)",
+    _add_choices(
+        parser,
+        method="as of analyse (robust)",
+        tau="as of analyse (2)",
+        no_report="write no report.pdf, which takes half of the time",
     )
-    parser.add_argument("--tau", type=positive, default=DEFAULT_TAU_S, metavar="S", help="as of analyse (2)")
-    parser.add_argument("--no-report", action="store_true", help="write no report.pdf, which takes half of the time")
-    parser.add_argument("--no-rrd", action="store_true", help="write no session.rrd for Rerun")
     parser.set_defaults(stopped="What is done stays in OUT. Give the same command again to go on.")
 
 

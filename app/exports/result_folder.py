@@ -19,7 +19,7 @@ from app.exports.fitting_csv import fitting_means, write_fitting_strides
 from app.exports.gait_csv import peak_table, write_gait
 from app.exports.goals_csv import GOALS, goal_rows
 from app.exports.goals_csv import HEADER as GOAL_COLUMNS
-from app.exports.summary import MOST_BYTES, read_summary, write_summary
+from app.exports.summary import FORMAT, write_summary
 from app.exports.timed_csv import HEADER as TIMED_COLUMNS
 from app.exports.timed_csv import TIMED, timed_rows
 from app.summary.agreed import agreed_with
@@ -37,7 +37,7 @@ from app.summary.differences import (
 )
 from app.summary.targets import HEADER as TARGET_COLUMNS
 from app.summary.targets import TARGETS, target_rows
-from app.system.tables import write_table
+from app.system.tables import MOST_BYTES, is_free, read_json, write_table
 from core.results import Analysis
 from core.session import Session
 from devices.files.refusal import FileRefusedError
@@ -127,9 +127,9 @@ def check_place(out: Path, session: Path) -> None:
     if out == session or session in out.parents:
         what = "this lies inside the session, which stays as it was recorded"
         raise FileRefusedError(str(out), what, "Choose a folder outside the session for --out")
-    if _is_free(out):
+    if is_free(out):
         return
-    if read_summary(out / SUMMARY) is None:
+    if read_json(out / SUMMARY, FORMAT) is None:
         raise FileRefusedError(str(out), "this already exists and is not an analysis", "Choose another --out")
     _refuse_recordings(out, out / OWN_SESSION if session == out / OWN_SESSION else None)
 
@@ -143,9 +143,9 @@ def check_demonstration_place(out: Path) -> None:
         Something else is there.
     """
     out = out.resolve()
-    if _is_free(out):
+    if is_free(out):
         return
-    summary = read_summary(out / SUMMARY)
+    summary = read_json(out / SUMMARY, FORMAT)
     if summary is None or summary.get("simulated") is not True or not _is_simulated(out / OWN_SESSION):
         raise FileRefusedError(str(out), "this already exists and is not a demonstration", "Choose another --out")
     _refuse_recordings(out, out / OWN_SESSION)
@@ -206,10 +206,6 @@ def _exchange(out: Path, new: Path, old: Path, kept: list[str]) -> None:
         if old.exists() and not out.exists():
             old.rename(out)
         raise
-
-
-def _is_free(out: Path) -> bool:
-    return not out.exists() or (out.is_dir() and not any(out.iterdir()))
 
 
 def _refuse_recordings(out: Path, own: Path | None) -> None:

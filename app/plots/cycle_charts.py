@@ -3,15 +3,14 @@
 from collections.abc import Mapping, Sequence
 
 from PySide6.QtCore import Signal
-from PySide6.QtWidgets import QBoxLayout
+from PySide6.QtWidgets import QBoxLayout, QWidget
 
 from app.charts.cycles import Band, SideCycle
 from app.charts.marks import CurveLabel, Deviation, Gap
 from app.plots.cycle_chart import CycleChart
 from app.plots.cycle_frame import CycleFrame
 from app.summary.comparison import Comparison
-from app.theme.current import px
-from app.widgets.themed import Themed
+from app.widgets.lay_out import lay_out
 from app.wording.translation import tr
 from core.body import Joint, JointKind, Side
 from core.samples import FloatArray
@@ -19,7 +18,7 @@ from core.verdicts.model import JointVerdicts
 from core.verdicts.norms import ReferenceCurves
 
 
-class CycleCharts(Themed):
+class CycleCharts(QWidget):
     """All charts, with what they share: the band and the single strides, each on or off.
 
     The hip's is there where a hip was measured, or should have been.
@@ -32,13 +31,11 @@ class CycleCharts(Themed):
         self.hip, self.knee, self.ankle = (CycleFrame(CycleChart(kind), kind) for kind in JointKind)
         self._frames = (self.hip, self.knee, self.ankle)
         self.hip.hide()
-        self._box = QBoxLayout(QBoxLayout.Direction.TopToBottom, self)
-        self._box.setContentsMargins(0, 0, 0, 0)
+        frames = ((frame, 1) for frame in self._frames)
+        self._box = lay_out(QBoxLayout(QBoxLayout.Direction.TopToBottom, self), *frames, margins=0, spacing=12)
         for frame in self._frames:
-            self._box.addWidget(frame, 1)
             frame.chart.picked.connect(self._on_picked)
         self.set_band(reference)
-        self._apply_theme()
 
     @property
     def frames(self) -> tuple[CycleFrame, ...]:
@@ -131,6 +128,3 @@ class CycleCharts(Themed):
     def _on_picked(self, percent: float, angle_deg: float) -> None:
         kind = next(frame.kind for frame in self._frames if frame.chart is self.sender())
         self.picked.emit(kind, percent, angle_deg)
-
-    def _apply_theme(self) -> None:
-        self._box.setSpacing(px(12))

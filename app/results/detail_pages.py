@@ -77,7 +77,7 @@ class DetailPages(QObject):
             self._how_found = diagnostics_controller.DiagnosticsController(self.found, self._looking, self)
             self._how_found.refused.connect(self.refused)
             self._how_found.writing.connect(partial(self._on_writing, HOW_FOUND))
-            self.found.closed.connect(self.closed)
+            self.found.back.clicked.connect(self.closed)
         self._how_found.show(session, analysis, recording)
         self._stack.setCurrentWidget(self.found)
 
@@ -90,7 +90,7 @@ class DetailPages(QObject):
             self._stack.addWidget(self.agreement)
             self._compared = AgreementController(self.agreement, self._comparing, self)
             self._compared.writing.connect(partial(self._on_writing, AGREEMENT))
-            self.agreement.closed.connect(self.closed)
+            self.agreement.back.clicked.connect(self.closed)
         self._compared.show(session, analysis)
         self._stack.setCurrentWidget(self.agreement)
 

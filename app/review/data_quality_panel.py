@@ -51,6 +51,13 @@ def pieces_of(recording: RecordingAnalysis, joint: Joint) -> Iterator[tuple[Plac
         yield Place.NOT_REPORTED, slice(end, n)
 
 
+def shown_deg(place: Place, values_rad: FloatArray) -> FloatArray:
+    """A piece in degrees as it is shown: a shape has its mean taken away."""
+    values_deg = np.rad2deg(values_rad)
+    is_lowered = place is Place.SHAPE and np.isfinite(values_deg).any()
+    return np.asarray(values_deg - np.nanmean(values_deg)) if is_lowered else values_deg
+
+
 def places(analysis: Analysis, joint: Joint) -> list[Place]:
     """Where curves of a joint lie in any recording."""
     used = {p for r in analysis.recordings if joint in r.measured for p, _ in pieces_of(r, joint)}

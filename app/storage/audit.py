@@ -168,7 +168,7 @@ def append(
         return end_of_audit(session)
     if connection.dialect.name == "postgresql":
         _add_readings(session, key, at)
-    return _append(session, key, at, operator, action, subject, details)
+    return _link(session, key, _unlinked(at, operator, action, subject, details))
 
 
 def _add_readings(session: OrmSession, key: bytes, at: datetime.datetime) -> None:
@@ -177,30 +177,21 @@ def _add_readings(session: OrmSession, key: bytes, at: datetime.datetime) -> Non
     waiting = session.scalars(select(ReadingRow).order_by(ReadingRow.at).limit(MANY)).all()
     for row in waiting:
         details = {"read_at": row.at, "login": row.login, "as": row.action, "details": row.details}
-        _append(session, key, at, row.operator, Action.VIEW, row.subject, details)
+        _link(session, key, _unlinked(at, row.operator, Action.VIEW, row.subject, details))
         session.delete(row)
 
 
-def _append(
-    session: OrmSession,
-    key: bytes,
-    at: datetime.datetime,
-    operator: str,
-    action: Action,
-    subject: str,
-    details: Mapping[str, object],
-) -> Checkpoint:
+def _unlinked(
+    at: datetime.datetime, operator: str, action: Action, subject: str, details: Mapping[str, object]
+) -> AuditEntry:
+    """An entry that follows no other yet."""
+    stated_at = at.astimezone(datetime.UTC).isoformat()
+    return AuditEntry(0, stated_at, operator, action.value, subject, canonical(details), "", "")
+
+
+def _link(session: OrmSession, key: bytes, unlinked: AuditEntry) -> Checkpoint:
     before = end_of_audit(session)
-    unsealed = AuditEntry(
-        number=before.number + 1,
-        at=at.astimezone(datetime.UTC).isoformat(),
-        operator=operator,
-        action=action.value,
-        subject=subject,
-        details=canonical(details),
-        previous_hash=before.hash,
-        hash="",
-    )
+    unsealed = replace(unlinked, number=before.number + 1, previous_hash=before.hash)
     entry = replace(unsealed, hash=hash_of(unsealed, key))
     if session.connection().dialect.name == "postgresql":  # where nobody but this function may
         session.execute(APPEND, asdict(entry))

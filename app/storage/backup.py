@@ -23,7 +23,6 @@ from pathlib import Path
 
 import sqlcipher3.dbapi2 as sqlite
 from sqlalchemy import select
-from sqlalchemy.orm import Session as OrmSession
 
 from app.storage.audit import end_of_audit, verify_rows
 from app.storage.data_key import KeyMaterial
@@ -35,7 +34,7 @@ from app.storage.journal.header import JournalRefusedError, read_header
 from app.storage.layout import DATABASE, KEYS, RECORDINGS, SUFFIX
 from app.storage.library import Library, now_utc
 from app.storage.opened import OpenedLibrary, made_beside
-from app.storage.stored import Action, AuditFault, Checkpoint, LibraryError
+from app.storage.stored import Action, Checkpoint, LibraryError
 from app.system.progress import Report
 from app.wording.translation import tr
 
@@ -281,22 +280,16 @@ def _check(
                 tr("The copy of {file} does not match the original").format(file=name),
                 "Try again, or choose another disk",
             )
-    database = Database(sqlite_engine(folder / DATABASE, data_key, creates=False))
-    try:
+    with closing(Database(sqlite_engine(folder / DATABASE, data_key, creates=False))) as database:
         if database.faults():
             raise LibraryError("The database of this copy is damaged", "Choose an earlier backup, or another disk")
         with database.reading() as session:
-            faults = [f"audit {fault.number} {fault.what}" for fault in _audit_faults(session, data_key, checkpoint)]
+            audited = verify_rows(session, derived_keys(session, data_key).audit, checkpoint)
+            faults = [f"audit {fault.number} {fault.what}" for fault in audited.faults]
             for row in session.scalars(select(JournalRow).order_by(JournalRow.recording_id, JournalRow.segment)):
                 faults += _journal_faults(folder, row, data_key, hashes.get(f"{RECORDINGS}/{row.file}"))
-    finally:
-        database.close()
     work.add(work.database_bytes, "backup")
     return tuple(faults)
-
-
-def _audit_faults(session: OrmSession, data_key: KeyMaterial | None, checkpoint: Checkpoint) -> tuple[AuditFault, ...]:
-    return verify_rows(session, derived_keys(session, data_key).audit, checkpoint).faults
 
 
 def _journal_faults(folder: Path, row: JournalRow, data_key: KeyMaterial | None, sha256: str | None) -> list[str]:
@@ -324,12 +317,11 @@ def _sha256(path: Path, work: _Work) -> str:
 
 
 def _end_of_audit(folder: Path, data_key: KeyMaterial | None) -> Checkpoint:
-    database = Database(sqlite_engine(folder / DATABASE, data_key, creates=False))
-    try:
-        with database.reading() as session:
-            return end_of_audit(session)
-    finally:
-        database.close()
+    with (
+        closing(Database(sqlite_engine(folder / DATABASE, data_key, creates=False))) as database,
+        database.reading() as session,
+    ):
+        return end_of_audit(session)
 
 
 def _write_list(folder: Path, backup: Backup, hashes: dict[str, str]) -> None:

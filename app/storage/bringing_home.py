@@ -15,12 +15,11 @@ from pathlib import Path
 from threading import Lock
 from uuid import UUID
 
-from app.storage.files import hold, sync_folder
+from app.storage.files import hold, replacing, sync_folder
 from app.storage.journal.disk import PIECE_BYTES
 from app.storage.journal.header import JournalRefusedError, destroy_key, find_segments, read_header
 from app.storage.opened import OpenedLibrary
 
-BESIDE = ".new"
 _one_at_a_time = Lock()
 _log = logging.getLogger(__name__)
 
@@ -71,16 +70,8 @@ def _bring(path: Path, recordings: Path) -> bool:
 
 
 def _copy(source: Path, target: Path) -> None:
-    beside = target.with_name(target.name + BESIDE)
-    with (
-        source.open("rb") as file,
-        os.fdopen(os.open(beside, os.O_WRONLY | os.O_CREAT | os.O_TRUNC, 0o600), "wb") as to,
-    ):
+    with source.open("rb") as file, replacing(target) as to:
         shutil.copyfileobj(file, to)
-        to.flush()
-        os.fsync(to.fileno())
-    beside.replace(target)
-    sync_folder(target.parent)
 
 
 def _goes_on(path: Path, target: Path) -> bool:

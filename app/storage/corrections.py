@@ -46,7 +46,8 @@ class Corrections:
     def of_patient(self, patient_id: UUID) -> tuple[Correction, ...]:
         """All that was corrected about a patient and the patient's sessions, latest first."""
         with self._unit.reading() as session:
-            return corrections_of_patient(session, patient_id)
+            own = select(SessionRow.id).where(SessionRow.patient_id == patient_id)
+            return _listed(session, or_(CorrectionRow.patient_id == patient_id, CorrectionRow.session_id.in_(own)))
 
     def of_session(self, session_id: UUID) -> tuple[Correction, ...]:
         """Latest first."""
@@ -84,11 +85,6 @@ def unchanged(row: R, version: int) -> R:
     if row.version != version:
         raise changed_meanwhile()
     return row
-
-
-def corrections_of_patient(session: OrmSession, patient_id: UUID) -> tuple[Correction, ...]:
-    own = select(SessionRow.id).where(SessionRow.patient_id == patient_id)
-    return _listed(session, or_(CorrectionRow.patient_id == patient_id, CorrectionRow.session_id.in_(own)))
 
 
 def apply(

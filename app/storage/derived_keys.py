@@ -60,11 +60,7 @@ def keep_derived_keys(session: OrmSession, kept: DerivedKeys, data_key: KeyMater
     """Keep them under a new data key."""
     nonce = secrets.token_bytes(NONCE_BYTES)
     content = nonce + _wrapping(data_key).encrypt(nonce, kept.audit + kept.pseudonyms, None)
-    value = base64.b64encode(content).decode()
-    if (row := session.get(SettingRow, SETTING)) is None:
-        session.add(SettingRow(name=SETTING, value=value))
-    else:
-        row.value = value
+    SettingRow.put(session, SETTING, base64.b64encode(content).decode())
 
 
 def _derived(data_key: KeyMaterial | None, info: bytes) -> bytes:

@@ -79,11 +79,8 @@ def change_data_key(opened: OpenedLibrary, staying: Iterable[str], report: Repor
     with slots.held():
         sealed = slots.sealed_again(old, new, staying)
         _replace(opened.folder, old, new, sealed.content, report)
-    database = Database(sqlite_engine(opened.folder / DATABASE, new, creates=False))
-    try:
+    with closing(Database(sqlite_engine(opened.folder / DATABASE, new, creates=False))) as database:
         write_headers(database, opened.folder / RECORDINGS)
-    finally:
-        database.close()
     report(1.0, "")
     return ChangedKey(new, sealed.recovery_key, sealed.left_out)
 
@@ -178,8 +175,7 @@ def _copy(connection: "object", beside: Path, new: KeyMaterial, report: Report) 
 
 
 def _wrap_again(folder: Path, beside: Path, old: DataKey, new: DataKey, report: Report) -> None:
-    database = Database(sqlite_engine(beside, new, creates=False))
-    try:
+    with closing(Database(sqlite_engine(beside, new, creates=False))) as database:
         with database.writing() as session:
             keep_derived_keys(session, derived_keys(session, old), new)
             session.add(SettingRow(name=HEADERS_DUE, value=True))
@@ -193,8 +189,6 @@ def _wrap_again(folder: Path, beside: Path, old: DataKey, new: DataKey, report: 
                 report(share, "")
         if database.faults():
             raise LibraryError("The copy of the database is faulty", "Try again, or check the disk")
-    finally:
-        database.close()
     with beside.open("rb") as file:
         os.fsync(file.fileno())
 

@@ -234,7 +234,7 @@ class Library:
         """
         if self.root is not None:
             self.root.take()
-            self.database.reconnect()
+            self.database.close()
 
     def _take_root(self, folder: Path) -> None:
         """Know the folder again, and from now on write nowhere else.

@@ -77,16 +77,11 @@ class OperatorSettings:
 
     def get(self, name: str, default: Any = None) -> Any:
         with self._unit.reading() as session:
-            row = session.get(SettingRow, name)
-            return default if row is None else row.value
+            return SettingRow.of(session, name, default)
 
     def put(self, name: str, value: Any) -> None:
         with self._unit.writing(Role.ADMINISTRATOR) as session:
-            row = session.get(SettingRow, name)
-            if row is None:
-                session.add(SettingRow(name=name, value=value))
-            else:
-                row.value = value
+            SettingRow.put(session, name, value)
             note(self._unit, session, Action.EDIT, about("setting", name))
 
 

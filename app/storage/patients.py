@@ -7,17 +7,15 @@ from uuid import UUID
 from sqlalchemy import delete, func, select
 from sqlalchemy.orm import Session as OrmSession
 
-from app.storage.audit import about, entry_of, note
-from app.storage.corrections import apply, corrections_of_patient, differences, unchanged
+from app.storage.audit import about, note
+from app.storage.corrections import apply, differences, unchanged
 from app.storage.database.engine import changed_meanwhile
-from app.storage.database.models import AuditRow, PatientRow, RecordingRow, ResultRow, SessionRow, folded
+from app.storage.database.models import AuditRow, PatientRow, RecordingRow, SessionRow, folded
 from app.storage.database.values import (
     patient_in_row,
     reported_patient,
     stored_patient,
     stored_patients,
-    stored_result,
-    stored_session,
 )
 from app.storage.edited_fields import PATIENT_CORRECTABLE
 from app.storage.sessions import refuse_early
@@ -25,7 +23,6 @@ from app.storage.stored import (
     Action,
     Change,
     LibraryError,
-    PatientFile,
     RecordingState,
     Role,
     StoredPatient,
@@ -181,34 +178,6 @@ class Patients:
             session.execute(delete(PatientRow).where(PatientRow.merged_into_id == row.id))
             session.execute(delete(PatientRow).where(PatientRow.id == row.id))
             note(self._unit, session, Action.DELETE, about("patient", patient_id), is_final=True)
-
-    def everything(self, patient_id: UUID) -> PatientFile:
-        """All that the library holds of one patient, for an export; it is noted as one.
-
-        Raises
-        ------
-        LibraryError
-            There is no such patient, or the export cannot be noted.
-        """
-        with self._unit.writing(Role.VIEWER) as session:
-            patient = stored_patient(session, existing_patient(session, patient_id))
-            note(self._unit, session, Action.EXPORT, about("patient", patient_id), is_everything=True)
-            rows = session.scalars(
-                select(SessionRow).where(SessionRow.patient_id == patient_id).order_by(SessionRow.started)
-            )
-            sessions = tuple(stored_session(row) for row in rows)
-            ids = [visit.id for visit in sessions]
-            results = session.scalars(select(ResultRow).where(ResultRow.session_id.in_(ids)).order_by(ResultRow.id))
-            subjects = [about("patient", patient_id), *(about("session", visit) for visit in ids)]
-            subjects += [about("recording", recording.id) for visit in sessions for recording in visit.recordings]
-            entries = session.scalars(select(AuditRow).where(AuditRow.subject.in_(subjects)).order_by(AuditRow.number))
-            return PatientFile(
-                patient,
-                sessions,
-                corrections_of_patient(session, patient_id),
-                tuple(stored_result(row) for row in results),
-                tuple(entry_of(row) for row in entries),
-            )
 
     def _what_goes(self, session: OrmSession, row: PatientRow) -> WhatGoes:
         visits = [

@@ -15,6 +15,7 @@ from app.storage.database.ids import uuid7
 from app.storage.database.models import AuditRow, JournalRow, PatientRow, RecordingRow, SessionRow
 from app.storage.database.values import RECORDING_FIELDS, left_out_in_row, stored_recording
 from app.storage.edited_fields import RECORDING_CORRECTABLE
+from app.storage.sessions import existing_session
 from app.storage.stored import (
     Action,
     Change,
@@ -68,9 +69,7 @@ class Recordings:
             There is no such session, it has a recording of this name, or `is_simulated` and its patient is not.
         """
         with self._unit.writing(Role.CLINICIAN) as session:
-            visit = session.get(SessionRow, session_id)
-            if visit is None:
-                raise LibraryError("This session is no longer in the library", "Reload the list")
+            visit = existing_session(session, session_id)
             _refuse_taken(visit, reported.name)
             row = RecordingRow(
                 id=recording_id or uuid7(),

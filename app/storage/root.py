@@ -115,14 +115,11 @@ def root_of(folder: Path, database: "Database") -> LibraryRoot:
     from app.storage.database.models import SettingRow  # the page of a missing library opens none
 
     with database.reading() as session:
-        row = session.get(SettingRow, ID_SETTING)
-        library_id = "" if row is None else str(row.value)
+        library_id = str(SettingRow.of(session, ID_SETTING, ""))
     if not library_id:
-        with database.writing() as session:
-            row = session.get(SettingRow, ID_SETTING)  # another program may have been quicker
-            library_id = secrets.token_hex(ID_BYTES) if row is None else str(row.value)
-            if row is None:
-                session.add(SettingRow(name=ID_SETTING, value=library_id))
+        with database.writing() as session:  # another program may have been quicker
+            library_id = str(SettingRow.of(session, ID_SETTING, secrets.token_hex(ID_BYTES)))
+            SettingRow.put(session, ID_SETTING, library_id)
     if read_id(folder) != library_id:
         replace_file(folder / ID_FILE, library_id.encode())
     return LibraryRoot(folder, library_id)

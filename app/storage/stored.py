@@ -365,14 +365,3 @@ class AuditReport:
 
     end: Checkpoint
     faults: tuple[AuditFault, ...]
-
-
-@dataclass(frozen=True, slots=True)
-class PatientFile:
-    """Everything of one patient, as the patient may ask for."""
-
-    patient: StoredPatient
-    sessions: tuple[StoredSession, ...]
-    corrections: tuple[Correction, ...]
-    results: tuple[StoredResult, ...]
-    audit: tuple[AuditEntry, ...]

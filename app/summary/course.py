@@ -10,6 +10,7 @@ from typing import Any
 
 from app.summary.conditions import Part
 from app.summary.visits import by_condition
+from app.system.tables import finite
 from core.body import Joint, Side
 from core.goals import OF_LEGS
 from core.parameters import CADENCE, SPEED
@@ -286,7 +287,7 @@ def course_in_json(course: Course) -> dict[str, Any]:
                 "tests": [
                     {
                         "column": test.column,
-                        "mean": test.found.mean if math.isfinite(test.found.mean) else None,
+                        "mean": finite(test.found.mean),
                         "attempts": test.found.attempts,
                         "verdict": test.verdict,
                     }

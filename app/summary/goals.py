@@ -173,7 +173,7 @@ def often_at_goal(found: GoalFigure) -> str:
 
 def goal_mark(goal: Goal) -> str:
     """A goal in a narrow place: "goal L 60°", "goal ±2 %"."""
-    letter = goal.of.side[0].upper() if goal.of.side is not None else ""
+    letter = goal.of.side.letter if goal.of.side is not None else ""
     sign = (
         "\N{PLUS-MINUS SIGN}" if goal.of is GoalOf.BETWEEN else "\N{LESS-THAN OR EQUAL TO}" if goal.is_at_most else ""
     )

@@ -144,7 +144,7 @@ def _without_lag(facts: Facts) -> list[Joint]:
 
 
 def _each(facts: Facts, stated: Callable[[Side], str]) -> str:
-    parts = [f"{side[0].upper()}\u00a0{stated(side)}" for side in Side if side in facts.gait]
+    parts = [f"{side.letter}\u00a0{stated(side)}" for side in Side if side in facts.gait]
     return ", ".join(parts) or tr("not measured")
 
 
@@ -155,7 +155,7 @@ def _left_out(facts: Facts) -> str:
         out = Counter({one: count for one, count in facts.part.reasons(side).items() if one is not Reason.USED})
         if out:
             each = [f"{count}\u00a0{tr(NAMES['reason'][reason])}" for reason, count in out.most_common()]
-            parts.append(f"{side[0].upper()}\u00a0{', '.join(each)}")
+            parts.append(f"{side.letter}\u00a0{', '.join(each)}")
     return "; ".join(parts) or tr("none")
 
 

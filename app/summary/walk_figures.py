@@ -90,7 +90,7 @@ def strides_in_words(part: Part, side: Side) -> str:
     for reason, count in part.reasons(side).items():
         if reason is not Reason.USED:
             left_out[tr(NAMES["reason"][reason])] += count
-    letter = side[0].upper()
+    letter = side.letter
     if not left_out:
         return tr_n("{side}: {used} stride used.", "{side}: {used} strides used.", used).format(side=letter, used=used)
     reasons = [f"{count} {words}" for words, count in left_out.most_common()] if len(left_out) > 1 else list(left_out)
@@ -104,7 +104,7 @@ def strides_in_words(part: Part, side: Side) -> str:
 
 def few_strides_in_words(part: Part) -> str:
     """What is missing for want of strides; empty where there are enough."""
-    counts = {side[0].upper(): part.strides(side) for side in part.sides}
+    counts = {side.letter: part.strides(side) for side in part.sides}
     without_mean = [side for side, n in counts.items() if n and not is_mean_enough(n)]
     without_spread = [side for side, n in counts.items() if is_mean_enough(n) and not is_spread_enough(n)]
     stated = []

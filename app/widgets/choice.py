@@ -1,8 +1,9 @@
 """One choice out of many, folded away until it is asked for."""
 
 import sys
+from collections.abc import Iterable
 
-from PySide6.QtCore import QEvent, QPoint, QSize, Qt
+from PySide6.QtCore import QEvent, QPoint, QSignalBlocker, QSize, Qt
 from PySide6.QtGui import QWheelEvent
 from PySide6.QtWidgets import QComboBox, QSizePolicy
 
@@ -24,6 +25,16 @@ class Choice(QComboBox):
 
         self.ensurePolished()  # its font, and so its size, is the style's
         self.currentIndexChanged.connect(self.updateGeometry)
+
+    def offer(self, lines: Iterable[tuple[str, object]], chosen: object, otherwise: int = 0) -> None:
+        """Offer other lines, each its words and its data; `chosen` is in force, or another line. Nobody is notified."""
+        with QSignalBlocker(self):
+            self.clear()
+            for words, data in lines:
+                self.addItem(words, data)
+            found = self.findData(chosen)
+            self.setCurrentIndex(found if found >= 0 else otherwise)
+        self.updateGeometry()
 
     def let_shrink(self, least: float, most: float) -> None:
         """For words that somebody typed, of any length: cut them short where room is short, their whole in a tooltip.

@@ -105,15 +105,7 @@ _WITH_CTRL: dict[int, KeyAction] = {
     _Key.Key_P: KeyAction.PRINT,
     _Key.Key_Z: KeyAction.UNDO,
 }
-_STEPS: dict[int, int] = {
-    _Key.Key_1: 1,
-    _Key.Key_2: 2,
-    _Key.Key_3: 3,
-    _Key.Key_4: 4,
-    _Key.Key_5: 5,
-    _Key.Key_6: 6,
-    _Key.Key_7: 7,
-}
+_STEPS: dict[int, int] = {_Key.Key_0 + number: number for number in range(1, 8)}
 _FUNCTIONS: dict[int, KeyAction] = {
     _Key.Key_F1: KeyAction.HELP,
     _Key.Key_F8: KeyAction.PATIENT_SCREEN,

@@ -12,8 +12,9 @@ from PySide6.QtCore import QObject, Signal
 
 from app.acquisition.recorder import Recorder
 from app.system.progress import Report
-from app.wording.translation import filled, tr
+from app.wording.translation import tr
 from app.workers.background import Background
+from app.workers.refusals import refusal_of
 from devices.live import SourceRefusedError
 
 if TYPE_CHECKING:
@@ -132,7 +133,7 @@ class MemoryFetches(QObject):
             )
         for sensor, problem in self._failed.items():
             if isinstance(problem, SourceRefusedError):
-                return f"{filled(problem.what, problem.values)}.", f"{filled(problem.remedy, problem.values)}."
+                return refusal_of(problem)
             what = tr("{sensor} is out of range.").format(sensor=sensor)
             then = tr("The recording is still in the sensor. Bring {sensor} closer, then fetch the recording again.")
             return what, then.format(sensor=sensor)

@@ -47,6 +47,7 @@ if TYPE_CHECKING:
     from concurrent.futures import Future
 
     from app.storage.opened import OpenedLibrary
+    from app.wizard.memory_fetches import MemoryFetches
     from core.calibration.rest import Rest
     from core.hip.results import HipIdentification
     from core.live.sensors import LiveSensor
@@ -347,10 +348,8 @@ class Visit(QObject):
     @property
     def is_idle(self) -> bool:
         """Whether nothing of it goes on any more: no recording, no thread, no window of Rerun's."""
-        idle = self.sensors.is_idle and self.evaluation.is_idle and self.reviewing.is_idle and self.preview.is_idle
-        idle = idle and self.looking.is_idle and self.comparing.is_idle and self.recordings.is_idle
-        idle = idle and self.recordings.fetches.is_idle
-        return idle and not (self.is_asking or self.is_saving)
+        is_idle = self.recordings.is_idle and all(part.is_idle for part in self._with_threads)
+        return is_idle and not (self.is_asking or self.is_saving)
 
     @property
     def is_saving(self) -> bool:
@@ -359,13 +358,13 @@ class Visit(QObject):
 
     def finish(self) -> None:
         """Wait for all threads: for the end of the program."""
-        self.recordings.fetches.finish()
-        self.sensors.finish()
-        self.evaluation.finish()
-        self.reviewing.finish()
-        self.preview.finish()
-        self.looking.finish()
-        self.comparing.finish()
+        for part in self._with_threads:
+            part.finish()
+
+    @property
+    def _with_threads(self) -> "tuple[MemoryFetches | WornSensors | Evaluation | Reviewing | Background, ...]":
+        fetches, pages = self.recordings.fetches, (self.preview, self.looking, self.comparing)
+        return (fetches, self.sensors, self.evaluation, self.reviewing, *pages)
 
     @property
     def is_asking(self) -> bool:
@@ -474,7 +473,7 @@ class Visit(QObject):
                 tr("Repeat standing still and free motion before the next walk."),
             )
 
-    def _on_recording_ended(self, _take: SessionRecording) -> None:
+    def _on_recording_ended(self) -> None:
         self.evaluate()
 
     def _on_recordings_changed(self) -> None:

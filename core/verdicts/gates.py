@@ -1,6 +1,7 @@
 """The gates that a recording passes: from what was measured to a verdict per joint, leg and kind of quantity.
 
-Every limit is in `LIMITS`, each with its reason; a reason in a verdict carries the value found beside its limit.
+Limits are in `LIMITS`, each with its reason; those of clocks and signs stand where these are measured. A reason in a
+verdict carries the value found beside its limit.
 """
 
 from collections.abc import Collection, Iterable, Iterator, Mapping

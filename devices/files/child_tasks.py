@@ -12,7 +12,7 @@ from typing import BinaryIO
 import pyarrow as pa
 import pyarrow.csv as pcsv
 
-from devices.files.answers import Array, Details, details_of_document, details_of_refusal, packed, receive, send
+from devices.files.answers import Array, Details, details_of, details_of_document, receive, send
 from devices.files.bids_tables import folders_of_scans, tables_beside
 from devices.files.child import GATHER, MEMORY, QUESTION, READ, REFERENCE, REFUSED, SITE, TOML, TRIAL, UNFORESEEN
 from devices.files.limits import forbid_reading, limit_processor_time
@@ -97,12 +97,12 @@ def _answer(asked: Details, arrays: list[Array]) -> Details:
     try:
         return {"what": READ, "details": _read(asked, arrays)}
     except FileRefusedError as refusal:
-        return {"what": REFUSED, "details": details_of_refusal(refusal)}
+        return {"what": REFUSED, "details": details_of(refusal, arrays)}
     except OSError as problem:
         why = problem.strerror or type(problem).__name__
         where = str(problem.filename or asked["where"])
         unread = FileRefusedError(where, "the file or folder cannot be read ({why})", "Check the permissions", why=why)
-        return {"what": REFUSED, "details": details_of_refusal(unread)}
+        return {"what": REFUSED, "details": details_of(unread, arrays)}
     except MemoryError:
         arrays.clear()
         return {"what": MEMORY}
@@ -116,8 +116,8 @@ def _read(asked: Details, arrays: list[Array]) -> object:
     if task == TOML:
         return details_of_document(IN_THIS_PROCESS.read_toml(Path(asked["path"])))
     if task == SITE:
-        how = (asked[name] for name in ("where", "place", "sensor", "is_rate_derived"))
-        return packed(read_site(Path(asked["path"]), *how), arrays)
+        site = Path(asked["path"]), asked["where"], asked["place"], asked["sensor"], asked["is_rate_derived"]
+        return details_of(read_site(*site), arrays)
     if task == QUESTION:
         from devices.files.parquet_questions import answer  # with the half of Arrow that only questions need
 
@@ -126,15 +126,15 @@ def _read(asked: Details, arrays: list[Array]) -> object:
         path = Path(asked["path"])
         if not IS_LINUX:
             _limit_reference(path)
-        return packed(read_reference(path), arrays)
+        return details_of(read_reference(path), arrays)
     files = list(map(Path, asked["files"]))
     if task == GATHER:
         from devices.files.gathering import gather  # as below
 
-        return packed(gather(files), arrays)
+        return details_of(gather(files), arrays)
     from devices.files.formats import read_trial  # here: SciPy takes longer to import than most files
 
-    return packed(read_trial(asked["format"], files, asked["rate_hz"]), arrays)
+    return details_of(read_trial(asked["format"], files, asked["rate_hz"]), arrays)
 
 
 def _limit_reference(path: Path) -> None:

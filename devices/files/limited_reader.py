@@ -16,19 +16,10 @@ from collections.abc import Callable, Mapping, Sequence
 from functools import partial
 from pathlib import Path
 from time import monotonic
-from typing import Any, TypeVar, cast
+from typing import Any, TypeVar
 
 from devices.files import child
-from devices.files.answers import (
-    Array,
-    BrokenAnswerError,
-    Details,
-    document_from,
-    receive,
-    refusal_from,
-    send,
-    unpacked,
-)
+from devices.files.answers import Array, BrokenAnswerError, Details, document_from, receive, send, value_from
 from devices.files.references.answers import reference_from
 from devices.files.references.trial import ReferenceFile
 from devices.files.refusal import FileRefusedError
@@ -262,7 +253,7 @@ def _details(answer: Details, where: str) -> Any:
         case {"what": child.READ, "details": details}:
             return details
         case {"what": child.REFUSED, "details": dict(details)}:
-            raise refusal_from(details)
+            raise value_from(FileRefusedError, details)
         case {"what": child.MEMORY}:
             raise ReadingEndedError(where, child.MEMORY)
         case {"what": child.UNFORESEEN, "details": str(details)}:
@@ -290,8 +281,7 @@ class LimitedReading:
             "sensor": file.sensor,
             "is_rate_derived": file.is_rate_derived,
         }
-        made_of = partial(unpacked, cast(type[ReadSite], ReadSite))
-        return self._reader.ask(task, [file.path], file.where, made_of, self.waiting)
+        return self._reader.ask(task, [file.path], file.where, partial(value_from, ReadSite), self.waiting)
 
     def read_trial(self, format_name: str, files: Sequence[Path], rate_hz: float | None) -> ImportedTrial:
         """As `formats.read_trial` does."""
@@ -302,7 +292,7 @@ class LimitedReading:
             "rate_hz": rate_hz,
         }
         where = ", ".join(path.name for path in files)
-        return self._reader.ask(task, files, where, partial(unpacked, ImportedTrial), self.waiting)
+        return self._reader.ask(task, files, where, partial(value_from, ImportedTrial), self.waiting)
 
     def read_reference(self, path: Path) -> ReferenceFile:
         """As `references.reading.read_reference` does."""
@@ -326,7 +316,7 @@ class LimitedReading:
     def gather(self, paths: Sequence[Path]) -> Gathered:
         """As `gathering.gather` does."""
         task = {"task": child.GATHER, "files": [str(path) for path in paths]}
-        return self._reader.ask(task, (), paths[0].name, partial(unpacked, Gathered), self.waiting)
+        return self._reader.ask(task, (), paths[0].name, partial(value_from, Gathered), self.waiting)
 
 
 def _found_rows(details: Any, arrays: Sequence[Array]) -> tuple[tuple[str, ...], list[Columns]]:

@@ -21,8 +21,9 @@ from core.samples import ImuBlock
 from devices.files.formats import read_trial
 from devices.files.references.reading import read_reference
 from devices.files.session_folder import read_session, write_session
-from devices.simulation.walker import FreeMotion, Standing, Walk, WalkerSettings, simulate
+from devices.simulation.walker import FreeMotion, Standing, Walk, WalkerSettings
 from tests.benchmarks.long import repeated
+from tests.simulated import simulation_of
 
 CASES = "cases"
 
@@ -141,7 +142,9 @@ def dot_every_second_lost(case: Case) -> None:
 
 
 def c3d_over_65535_frames(case: Case) -> None:
-    simulated = simulate(WalkerSettings(seed=1, rate_hz=200.0, recordings=(Standing(), FreeMotion(), Walk(strides=10))))
+    simulated = simulation_of(
+        WalkerSettings(seed=1, rate_hz=200.0, recordings=(Standing(), FreeMotion(), Walk(strides=10)))
+    )
     standing, motion, walk = simulated.session.recordings
     long = replace(walk, imu={site: repeated(block, 330.0) for site, block in walk.imu.items()})
     session = case.out.with_name("session")

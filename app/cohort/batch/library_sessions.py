@@ -17,6 +17,7 @@ from app.storage.journal.header import JournalRefusedError
 from app.storage.opened import OpenedLibrary
 from app.storage.pseudonyms import Pseudonyms
 from app.storage.stored import Action, LibraryError, StoredSession
+from app.system.progress import nobody
 from devices.decoders import DECODERS
 from devices.files.refusal import FileRefusedError
 
@@ -62,7 +63,7 @@ class LibrarySessions:
             opened.library.audit.note(
                 Action.EXPORT, about("session", visit.id), format="batch", is_identified=True, typed="all"
             )
-            session = session_with_samples(opened, visit, DECODERS, _nobody_asks)
+            session = session_with_samples(opened, visit, DECODERS, nobody)
         except LibraryError as refusal:
             raise FileRefusedError(name, refusal.what, refusal.remedy) from refusal
         except JournalRefusedError as refusal:
@@ -99,7 +100,3 @@ def _content(visit: StoredSession) -> str:
     return hashlib.sha256(
         repr((visit.patient_id, visit.details, recordings)).encode("utf-8", "surrogatepass")
     ).hexdigest()
-
-
-def _nobody_asks(_share: float, _what: str) -> None:
-    """Report to nobody."""

@@ -3,7 +3,7 @@
 import math
 from collections import deque
 from collections.abc import Callable, Iterator
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 from datetime import datetime, timedelta
 from time import monotonic
 
@@ -12,7 +12,7 @@ from app.cohort.batch.done import BatchFolder
 from app.cohort.batch.rows import COLUMNS, HIP_COLUMNS, UNNUMBERED, Row
 from app.cohort.batch.software import software
 from app.cohort.batch.sources import SessionSource
-from app.cohort.batch.spread import WorkerLostError, Workers, finished
+from app.cohort.batch.spread import SelectionResult, WorkerLostError, Workers, finished
 from app.cohort.batch.table import write_tables
 from app.cohort.batch.task import BatchTask, SessionOutcome, analyse_task, key_of, making_of, summary_digest
 from app.system.progress import Report
@@ -27,18 +27,10 @@ Work = Callable[[BatchTask], SessionOutcome]
 
 
 @dataclass(slots=True)
-class BatchResult:
-    """What came of a batch. `failures`: reasons by the sessions' names; `rows`: of the table."""
+class BatchResult(SelectionResult[str]):
+    """What came of a batch, sessions by their names. `rows`: of the table."""
 
-    total: int
-    analysed: int = 0
-    as_before: int = 0
     rows: int = 0
-    failures: dict[str, str] = field(default_factory=dict)
-
-    @property
-    def finished(self) -> int:
-        return self.analysed + self.as_before + len(self.failures)
 
 
 class Batch:

@@ -8,7 +8,7 @@ nothing changed take no longer than one, and one that changed among them must no
 from collections import deque
 from collections.abc import Callable, Iterator
 from concurrent.futures import FIRST_COMPLETED, Executor, Future, wait
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from itertools import islice
 from time import perf_counter
 from typing import Generic, TypeVar
@@ -32,6 +32,20 @@ class WorkerLostError(Exception):
 
 class ClusterLostError(Exception):
     """Nobody can be given a task any more."""
+
+
+@dataclass(slots=True)
+class SelectionResult(Generic[T]):
+    """What came of a selection of sessions so far. `failures`: reasons by what the sessions are called."""
+
+    total: int
+    analysed: int = 0
+    as_before: int = 0
+    failures: dict[T, str] = field(default_factory=dict)
+
+    @property
+    def finished(self) -> int:
+        return self.analysed + self.as_before + len(self.failures)
 
 
 @dataclass(frozen=True, slots=True)

@@ -15,7 +15,7 @@ import pyarrow as pa
 import pyarrow.parquet as pq
 
 from app.cohort.batch.rows import COLUMNS, CellKind, Row
-from app.system.tables import typed_cell
+from app.system.tables import csv_cell
 
 CSV, PARQUET = "parameters.csv", "parameters.parquet"
 BLOCK_ROWS = 1024
@@ -50,7 +50,7 @@ def write_tables(
         group: list[pa.RecordBatch] = []
         for block in _blocks(rows):
             count += len(block)
-            lines.writerows([_cell(kind, row.get(name)) for name, kind in columns.items()] for row in block)
+            lines.writerows([csv_cell(row.get(name)) for name in columns] for row in block)
             group.append(_batch(block, schema))
             if sum(len(batch) for batch in group) >= GROUP_ROWS:
                 parquet.write_table(pa.Table.from_batches(group), row_group_size=GROUP_ROWS)
@@ -71,12 +71,3 @@ def _blocks(rows: Iterable[Row]) -> Iterator[list[Row]]:
 def _batch(block: Sequence[Row], schema: pa.Schema) -> pa.RecordBatch:
     arrays = [pa.array([row.get(field.name) for row in block], field.type) for field in schema]
     return pa.RecordBatch.from_arrays(arrays, schema=schema)
-
-
-def _cell(kind: CellKind, value: str | float | int | bool | None) -> str:
-    """Empty where nothing is known; numbers with every digit they have."""
-    if value is None:
-        return ""
-    if kind is CellKind.FLAG:
-        return "true" if value else "false"
-    return typed_cell(str(value)) if kind is CellKind.TEXT else repr(value)

@@ -22,6 +22,7 @@ from app.cohort.batch.software import software
 from app.exports.result_folder import SUMMARY, check_place, written_beside
 from app.importing.untrusted_files import read_foreign_session
 from app.system.logs import pseudonymised
+from app.system.progress import nobody
 from core.session import Session
 from core.verdicts.sigmas import PUBLISHED, ErrorFigures, using
 from devices.files.limited_reader import MOST_FILE_BYTES
@@ -116,7 +117,7 @@ def _analysed(task: BatchTask) -> SessionOutcome:
         session = read_foreign_session(source, _nobody_waits)
         reported = reported_of_folder(session, task.batch.mark)
     with written_beside(results, within=task.batch.work) as folder:
-        analysis = write_analysed(session, folder, task.choices, _nobody_asks)
+        analysis = write_analysed(session, folder, task.choices, nobody)
         digest = summary_digest(folder)
     rows = rows_of(task.name, session, analysis, reported)
     return SessionOutcome(task.name, DoneRecord(key, making, digest, rows))
@@ -199,7 +200,3 @@ def _add(path: Path, digest: _Hash) -> None:
 
 def _nobody_waits() -> None:
     """Let it end in its own time: the reading has a deadline."""
-
-
-def _nobody_asks(_share: float, _what: str) -> None:
-    """Report to nobody."""

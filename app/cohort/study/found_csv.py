@@ -6,30 +6,15 @@ import math
 import os
 import tempfile
 from collections.abc import Iterable, Iterator, Sequence
-from decimal import Decimal
 from itertools import chain, islice
 from pathlib import Path
 
-from app.system.tables import typed_cell
+from app.system.tables import csv_cell
 from devices.files.refusal import FileRefusedError, one_line
 
 MOST_ON_TERMINAL = 1000  # rows: who wants more wants a file
 WIDEST_ON_TERMINAL = 40  # letters of a cell
 DIGITS_ON_TERMINAL = 6
-
-
-def csv_cell(value: object) -> str:
-    """Give one value as a cell: empty where there is none, numbers with all their digits, no text as a formula."""
-    match value:
-        case None:
-            return ""
-        case bool():
-            return "true" if value else "false"
-        case float():
-            return "" if math.isnan(value) else repr(value)
-        case int() | Decimal():
-            return str(value)
-    return typed_cell(str(value))
 
 
 def csv_lines(columns: Sequence[str], rows: Iterable[Sequence[object]]) -> Iterator[str]:

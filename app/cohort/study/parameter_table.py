@@ -15,7 +15,7 @@ from devices.files.refusal import FileRefusedError
 PARQUET = "parameters.parquet"  # in the folder of a batch
 VIEW = "parameters"
 NEEDED = ("session", "walk", "side")  # what a row is of
-STATUS, ERROR, SD = "_status", "_error", "_sd"
+STATUS, ERROR = "_status", "_error"
 NUMBERS = ("DOUBLE", "FLOAT")
 
 

@@ -9,8 +9,9 @@ from uuid import UUID
 from PySide6.QtCore import QObject, Signal
 from PySide6.QtWidgets import QFileDialog
 
-from app.cohort.batch.again import AgainResult, analyse_again
+from app.cohort.batch.again import analyse_again
 from app.cohort.batch.executors import of_this_computer, processors
+from app.cohort.batch.spread import SelectionResult
 from app.home.again.analyse_again_page import AgainLine, AnalyseAgainPage
 from app.storage.kept_analyses import algorithm
 from app.system.progress import Report
@@ -22,6 +23,7 @@ from app.wording.patients import when
 from app.wording.recordings import name_in_words
 from app.wording.translation import tr, tr_n
 from app.workers.library_controller import LibraryController
+from app.workers.long_work import LongWork
 
 if TYPE_CHECKING:
     from app.cohort.batch.run import BatchResult
@@ -30,17 +32,13 @@ if TYPE_CHECKING:
 TABLE = "parameters.parquet"  # as app.cohort.batch.table has it
 
 
-class AnalysingAgain(QObject):
+class AnalysingAgain(LongWork):
     """One selection at a time.
 
     Signals
     -------
     changed
         The bar shows something else.
-    working
-        Something takes a while: its title.
-    progressed
-        The share that is done, and how many sessions.
     done
         It ended: what came of it, and what to do.
     table_made
@@ -48,19 +46,15 @@ class AnalysingAgain(QObject):
     """
 
     changed = Signal()
-    working = Signal(str)
-    progressed = Signal(float, str)
     done = Signal(str, str)
     table_made = Signal(object)
 
     def __init__(self, controller: LibraryController, parent: QObject) -> None:
-        super().__init__(parent)
-        self._controller = controller
+        super().__init__(controller, parent)
         self._dialog: QFileDialog | None = None
         self._failures: dict[UUID, str] = {}
         self._required: UUID | None = None
         self._out = Path()
-        self.is_working = False
         self.is_of_library = False  # what was asked for last: a table over all sessions, from the page that asks it
         self.page = AnalyseAgainPage()
         self.page.changed.connect(self.changed)
@@ -86,7 +80,7 @@ class AnalysingAgain(QObject):
         if not ids:
             return
 
-        def work(opened: "OpenedLibrary", report: Report) -> AgainResult:
+        def work(opened: "OpenedLibrary", report: Report) -> SelectionResult[UUID]:
             with of_this_computer(processors()) as workers:
                 return analyse_again(ids, lambda session_id: session_to_analyse(opened, session_id), workers, report)
 
@@ -123,10 +117,6 @@ class AnalysingAgain(QObject):
         if not self.is_of_library:
             self._read()
 
-    def _begin(self, title: str) -> None:
-        self.is_working = True
-        self.working.emit(title)
-
     def _end(self, what: str, then: str) -> None:
         self.is_working = False
         self.done.emit(what, then)
@@ -156,10 +146,7 @@ class AnalysingAgain(QObject):
         self.page.show_lines(*found)
         self.page.focus()
 
-    def _on_progressed(self, share: float, what: str) -> None:
-        self.progressed.emit(share, what)
-
-    def _on_analysed(self, result: AgainResult) -> None:
+    def _on_analysed(self, result: SelectionResult[UUID]) -> None:
         self._failures, self._required = dict(result.failures), None
         stated = tr_n(
             "{count} session was analysed with this version.",

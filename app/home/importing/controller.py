@@ -20,6 +20,7 @@ from app.widgets.action_bar import BarAction, BarState
 from app.widgets.folder_dialog import ask_for_files, ask_for_folder
 from app.wording.translation import tr, tr_n
 from app.workers.library_controller import LibraryController
+from app.workers.long_work import LongWork
 from devices.files.refusal import FileRefusedError
 from devices.files.trial import PROGRAMS, SESSION
 
@@ -51,15 +52,11 @@ class _Read:
     again: tuple[Path, ...]
 
 
-class Importing(QObject):
+class Importing(LongWork):
     """What leads to the page that shows what is in files, and on from it: one session after the other.
 
     Signals
     -------
-    working
-        Something takes a while: its title.
-    progressed
-        The share that is done, and what is being done.
     asked
         Something is on the page, to be imported or not.
     left
@@ -70,26 +67,23 @@ class Importing(QObject):
         What came of it, and what to do.
     """
 
-    working = Signal(str)
-    progressed = Signal(float, str)
     asked = Signal()
     left = Signal()
     imported = Signal(object)
     reported = Signal(str, str)
 
     def __init__(self, controller: LibraryController, parent: QObject) -> None:
-        super().__init__(parent)
-        self._controller = controller
+        super().__init__(controller, parent)
+        self._dialog: QFileDialog | None = None
         self._waiting: deque[_Found] = deque()
         self._shown: _Found | None = None
         self._number = self._count = 0
         self._again: tuple[Path, ...] = ()
         self._is_importing = False
-        self._dialog: QFileDialog | None = None
         self.page = ImportPage()
         self.page.code.line_edit.returnPressed.connect(self.take_in)
-        self.page.files_requested.connect(self._choose_files)
-        self.page.folder_requested.connect(self._choose_folder)
+        self.page.choose_files.clicked.connect(self._choose_files)
+        self.page.choose_folder.clicked.connect(self._choose_folder)
         self.page.reading_requested.connect(self._on_reading_requested)
         self.page.draft.placing_requested.connect(self._on_placing_requested)
 
@@ -182,9 +176,6 @@ class Importing(QObject):
 
     def _on_reading_requested(self, rate_hz: float) -> None:
         self.read(self._again, rate_hz)
-
-    def _on_progressed(self, share: float, what: str) -> None:
-        self.progressed.emit(share, what)
 
     def _on_read(self, read: _Read) -> None:
         self._again = read.again

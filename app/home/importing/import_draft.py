@@ -16,12 +16,13 @@ from app.home.importing.import_words import (
     sensor_name,
 )
 from app.importing.import_drafts import DraftRecording, DraftSensor, Origin, SessionDraft, key_of
-from app.theme.current import px
+from app.theme.current import scaled
 from app.theme.icons import Icon
 from app.widgets.button import Button, ButtonKind
 from app.widgets.card import Card
 from app.widgets.choice import Choice
 from app.widgets.heard_order import hear_as_laid_out
+from app.widgets.lay_out import lay_out
 from app.widgets.small_curve import SmallCurve
 from app.widgets.text import SEMIBOLD, Text
 from app.wording.translation import joined, tr, tr_n
@@ -145,29 +146,15 @@ class DraftCards(QWidget):
         return True
 
     def _build(self, of_code: QWidget) -> None:
-        self._of_recordings.column.addWidget(self._recordings_title)
-        self._of_recordings.column.addLayout(self._recording_rows)
-        self._of_recordings.column.addStretch(1)
-        column = self._of_sensors.column
-        column.addWidget(self._sensors_title)
-        column.addLayout(self._sensor_rows)
+        lay_out(self._of_recordings.column, self._recordings_title, self._recording_rows, 1)
         self._sensor_rows.setColumnStretch(0, 1)
-        column.addWidget(self.trouble)
-        column.addWidget(self._question)
-        buttons = QHBoxLayout()
-        for button in (self.place, self.is_left, self.is_right):
-            buttons.addWidget(button)
-        buttons.addStretch(1)
-        column.addLayout(buttons)
-        column.addStretch(1)
-        self._left = QVBoxLayout()
-        self._left.addWidget(self._of_recordings)
-        self._left.addWidget(of_code)
-        self._left.addStretch(1)
-        self._row = QBoxLayout(QBoxLayout.Direction.LeftToRight, self)
-        self._row.setContentsMargins(0, 0, 0, 0)
-        self._row.addLayout(self._left, 1)
-        self._row.addWidget(self._of_sensors, 1)
+        buttons = lay_out(QHBoxLayout(), self.place, self.is_left, self.is_right, 1)
+        of_sensors = (self._sensors_title, self._sensor_rows, self.trouble, self._question, buttons)
+        lay_out(self._of_sensors.column, *of_sensors, 1)
+        self._left = lay_out(QVBoxLayout(), self._of_recordings, of_code, 1)
+        self._row = lay_out(
+            QBoxLayout(QBoxLayout.Direction.LeftToRight, self), (self._left, 1), (self._of_sensors, 1), margins=0
+        )
         self.place.clicked.connect(self._on_place)
         self.is_left.clicked.connect(lambda: self._on_side(Side.LEFT))
         self.is_right.clicked.connect(lambda: self._on_side(Side.RIGHT))
@@ -175,7 +162,7 @@ class DraftCards(QWidget):
     def set_narrow(self, is_narrow: bool) -> None:
         """Put the sensors under the recordings."""
         for layout in (self._row, self._left):
-            layout.setSpacing(px(16))
+            scaled(layout.setSpacing, 16)
         way = QBoxLayout.Direction.TopToBottom if is_narrow else QBoxLayout.Direction.LeftToRight
         self._row.setDirection(way)
 
@@ -263,11 +250,7 @@ class _SensorRow:
         self._from = Text(size=12, tone="ink2")
         row = grid.rowCount()
         self._stated = QWidget()
-        stated = QVBoxLayout(self._stated)
-        stated.setContentsMargins(0, 0, 0, 0)
-        stated.setSpacing(0)
-        stated.addWidget(self._words)
-        stated.addWidget(self._from)
+        lay_out(QVBoxLayout(self._stated), self._words, self._from, margins=0, spacing=0)
         for column, part in enumerate(self._parts):
             grid.addWidget(part, row, column)
 

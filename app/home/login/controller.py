@@ -90,7 +90,7 @@ class Entry(QObject):
         self.log_in.show_operators(())
         self.log_in.show_library("")
         self._show(self.log_in)
-        self._controller.look(self._folder, self._on_looked, self._on_look_failed, self)
+        self._controller.call(lambda holder: holder.look(self._folder), self._on_looked, self._on_look_failed, self)
 
     def look_again(self) -> None:
         """Go on where a library that was missing is there now."""
@@ -130,7 +130,7 @@ class Entry(QObject):
         self._tried = ""
         self.waiting.begin(tr("Opening the library"))
         self._show(self.waiting)
-        self._controller.open_kept(kept)
+        self._controller.open(lambda holder: holder.open_kept(kept))
 
     def focus(self, page: QWidget) -> None:
         if isinstance(page, FirstStartPage | LogInPage | JoinPage):
@@ -148,14 +148,14 @@ class Entry(QObject):
     def _connect(self) -> None:
         first, log_in, controller = self.first_start, self.log_in, self._controller
         first.made.connect(self._on_made)
-        first.look_requested.connect(self._on_look_requested)
+        first.look_again.clicked.connect(self._on_look_requested)
         first.done.connect(self._on_key_kept)
         first.typed_back.connect(self._confirm)
-        first.renew_requested.connect(self._on_renew_requested)
-        first.put_off.connect(self._enter)
+        first.renew.clicked.connect(self._on_renew_requested)
+        first.later.clicked.connect(self._enter)
         first.print_requested.connect(self._on_print_requested)
         first.save_requested.connect(self._on_save_requested)
-        first.join_requested.connect(self._on_join_requested)
+        first.join.clicked.connect(self._on_join_requested)
         self.join.joined.connect(self._on_server_named)
         self.join.again_requested.connect(self._join_by_itself)
         self.join.left.connect(self.begin)
@@ -193,7 +193,12 @@ class Entry(QObject):
 
     def _on_server_named(self, address: str, password: str, place: str) -> None:
         self.join.show_busy(True)
-        self._controller.join(self._folder, address, password, place, self._on_joined, self._on_join_refused, self)
+        self._controller.call(
+            lambda holder: holder.join(self._folder, address, password, place),
+            self._on_joined,
+            self._on_join_refused,
+            self,
+        )
 
     def _on_joined(self, joined: Joined) -> None:
         if joined.refusal is not None:
@@ -209,8 +214,11 @@ class Entry(QObject):
         """Become a station of the library on the server that the environment names."""
         self.waiting.begin(tr("Searching for the clinic's library"))
         self._show(self.waiting)
-        self._controller.join(
-            self._folder, os.environ[DATABASE_VARIABLE], "", "", self._on_joined_by_itself, self._on_unreached, self
+        self._controller.call(
+            lambda holder: holder.join(self._folder, os.environ[DATABASE_VARIABLE], "", ""),
+            self._on_joined_by_itself,
+            self._on_unreached,
+            self,
         )
 
     def _on_joined_by_itself(self, joined: Joined) -> None:
@@ -225,7 +233,7 @@ class Entry(QObject):
 
     def _on_made(self, code: str, name: str, passphrase: str) -> None:
         self.first_start.show_busy(True)
-        self._controller.create(self._folder, code, name, passphrase)
+        self._controller.open(lambda holder: holder.create(self._folder, code, name, passphrase))
 
     def _on_open_requested(self, code: str, passphrase: str, must_remember: bool) -> None:
         self._tried = code
@@ -235,24 +243,27 @@ class Entry(QObject):
         self.log_in.show_busy(True)
         delay = self._delay
         if not self.is_covering:
-            self._controller.open(self._folder, passphrase, code, must_remember, delay)
+            self._controller.open(lambda holder: holder.open(self._folder, passphrase, code, must_remember, delay))
             return
-        self._controller.unlock(code, passphrase, delay, self._on_checked, self._on_check_failed, self)
+        self._controller.call(
+            lambda holder: holder.unlock(code, passphrase, delay), self._on_checked, self._on_check_failed, self
+        )
 
     def _on_remembered_requested(self, code: str) -> None:
         self._tried = code
         self.log_in.show_busy(True)
-        self._controller.open_remembered(self._folder, code)
+        self._controller.open(lambda holder: holder.open_remembered(self._folder, code))
 
     def _on_away_requested(self, code: str, passphrase: str) -> None:
         self._tried = code
         self.log_in.show_busy(True)
-        self._controller.open_away(self._folder, passphrase, code, self._delay)
+        delay = self._delay
+        self._controller.open(lambda holder: holder.open_away(self._folder, passphrase, code, delay))
 
     def _on_recovery_requested(self, code: str, recovery_key: str, passphrase: str) -> None:
         self._tried = code
         self.log_in.show_busy(True)
-        self._controller.open_recovered(self._folder, recovery_key, code, passphrase)
+        self._controller.open(lambda holder: holder.open_recovered(self._folder, recovery_key, code, passphrase))
 
     def _on_checked(self, _nothing: object) -> None:
         self._cover_of = ""

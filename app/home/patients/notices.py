@@ -21,7 +21,6 @@ class LibraryNotices(QObject):
         Why the older state could not be accepted.
     """
 
-    log_in_requested = Signal()
     refused = Signal(str, str)
 
     def __init__(self, controller: LibraryController, parent: QObject) -> None:
@@ -30,7 +29,6 @@ class LibraryNotices(QObject):
         self._state: OpenedState | None = None
         self.rollback, self.away = Banner(), Banner()
         self.rollback.acted.connect(self._on_accepted)
-        self.away.acted.connect(self.log_in_requested)
         controller.server_back.connect(self._on_server_back)
 
     def show(self, state: OpenedState) -> None:
@@ -61,8 +59,10 @@ class LibraryNotices(QObject):
         )
 
     def _on_accepted(self) -> None:
-        if self._state is not None and self._state.rollback is not None:
-            self._controller.accept_rollback(self._state.rollback, self._on_noted, self._on_refused, self)
+        if self._state is not None and (rollback := self._state.rollback) is not None:
+            self._controller.call(
+                lambda holder: holder.accept_rollback(rollback), self._on_noted, self._on_refused, self
+            )
 
     def _on_noted(self, _nothing: object) -> None:
         self.rollback.hide()

@@ -14,6 +14,7 @@ import hmac
 import json
 import logging
 import shutil
+from contextlib import closing
 from dataclasses import asdict
 from pathlib import Path
 from typing import Any
@@ -173,36 +174,33 @@ def _bring_rows(opened: OpenedLibrary, folder: Path) -> tuple[int, bool]:
     station = opened.library.station
     assert station is not None  # the caller has asked
     name = MARK.format(library=read_id(folder))
-    source = Database(sqlite_engine(folder / DATABASE, opened.data_key, creates=False))
-    try:
-        with source.reading() as here, opened.library.database.writing() as there:
-            mark, end = there.get(SettingRow, name), end_of_audit(here)
-            if mark is not None and mark.value == str(end):
-                return 0, True
-            refuse_closed(there)
-            covered = _covered(here, mark)
-            patients = _bring_patients(here, there)
-            count, is_covered = 0, True
-            for table in Base.metadata.sorted_tables:
-                if table.name not in OWN_TO_EACH:
-                    added, are_same = _bring_table(here, there, table, patients, station.id)
-                    count += added if table.name == "sessions" else 0
-                    is_covered &= are_same or table.name in DERIVED
-            _bring_corrections(here, there, patients)
-            _bring_audit(here, there, opened, covered)
-            if mark is None:
-                there.add(SettingRow(name=name, value=str(end)))
-            else:
-                mark.value = str(end)
-            return count, is_covered
-    finally:
-        source.close()
+    with (
+        closing(Database(sqlite_engine(folder / DATABASE, opened.data_key, creates=False))) as source,
+        source.reading() as here,
+        opened.library.database.writing() as there,
+    ):
+        mark, end = SettingRow.of(there, name), end_of_audit(here)
+        if mark == str(end):
+            return 0, True
+        refuse_closed(there)
+        covered = _covered(here, mark)
+        patients = _bring_patients(here, there)
+        count, is_covered = 0, True
+        for table in Base.metadata.sorted_tables:
+            if table.name not in OWN_TO_EACH:
+                added, are_same = _bring_table(here, there, table, patients, station.id)
+                count += added if table.name == "sessions" else 0
+                is_covered &= are_same or table.name in DERIVED
+        _bring_corrections(here, there, patients)
+        _bring_audit(here, there, opened, covered)
+        SettingRow.put(there, name, str(end))
+        return count, is_covered
 
 
-def _covered(here: OrmSession, mark: SettingRow | None) -> int:
+def _covered(here: OrmSession, mark: object) -> int:
     """Find up to which entry of its own audit a library is on the server; 0 where it went another way since."""
     try:
-        end = Checkpoint.parsed(str(mark.value)) if mark is not None else BEGINNING
+        end = Checkpoint.parsed(str(mark)) if mark is not None else BEGINNING
     except LibraryError:  # of an earlier version, which kept the time
         return 0
     row = here.get(AuditRow, end.number)

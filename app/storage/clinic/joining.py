@@ -1,6 +1,7 @@
 """Make a computer a station of the clinic, and make the server ready for its library."""
 
 import os
+from contextlib import closing
 from pathlib import Path
 from uuid import uuid4
 
@@ -55,8 +56,7 @@ def join(folder: Path, address: str, journals: str = "") -> Station:
     with database.reading() as session:
         refuse_closed(session)
         library_id = str(session.get_one(SettingRow, ID_SETTING).value)
-        place = session.get(SettingRow, JOURNALS_SETTING)
-    named = str(place.value) if place is not None else ""
+        named = str(SettingRow.of(session, JOURNALS_SETTING, ""))
     if not station.journals:
         raise PlaceUnconfirmedError(named)
     JournalStore(station.journals).refuse_missing()
@@ -87,11 +87,8 @@ def prepare_server(address: str) -> None:
     LibraryError
         The address is none, the server does not answer, or this login may not make tables.
     """
-    database = Database(postgres_engine(driver_url(address)))
-    try:
+    with closing(Database(postgres_engine(driver_url(address)))) as database:
         bring_up_to_date(database)
-    finally:
-        database.close()
 
 
 def is_station(folder: Path) -> bool:

@@ -12,13 +12,12 @@ import os
 import re
 import secrets
 import shutil
-import tempfile
 import time
 from collections.abc import Callable, Iterator
 from pathlib import Path
 from typing import Any, BinaryIO
 
-from app.storage.files import sync_folder
+from app.storage.files import replacing
 from app.storage.layout import SUFFIX
 from app.storage.stored import LibraryError, LibraryFaultError
 from app.wording.translation import tr
@@ -145,22 +144,14 @@ class JournalStore:
         """
         digest = hashlib.sha256()
         target.parent.mkdir(mode=0o700, parents=True, exist_ok=True)
-        descriptor, beside = tempfile.mkstemp(dir=target.parent, prefix=".fetching-")
-        try:
-            with os.fdopen(descriptor, "wb") as here:
-                for piece in self._pieces(name):
-                    digest.update(piece)
-                    here.write(piece)
-                here.flush()
-                os.fsync(here.fileno())
+        with replacing(target, target.with_name(f".fetching-{secrets.token_hex(8)}")) as here:
+            for piece in self._pieces(name):
+                digest.update(piece)
+                here.write(piece)
             if digest.hexdigest() + SUFFIX != name:
                 raise LibraryFaultError(
                     "A recording in the clinic's shared storage is damaged", "Restore the recording there from a backup"
                 )
-            Path(beside).replace(target)
-            sync_folder(target.parent)
-        finally:
-            Path(beside).unlink(missing_ok=True)
 
     def destroy(self, name: str) -> None:
         """Remove a journal for good; versions and snapshots that the place keeps are whose it is.
@@ -202,24 +193,13 @@ class JournalStore:
         return f"{self._root}/{name}"
 
     def _put_beside(self, here: BinaryIO, target: str) -> None:
-        beside = f"{self._root}/{UNFINISHED}{secrets.token_hex(8)}"
-        descriptor = os.open(beside, os.O_WRONLY | os.O_CREAT | os.O_EXCL, 0o660)  # for the stations' group
-        try:
-            with os.fdopen(descriptor, "wb") as there:
-                shutil.copyfileobj(here, there, PIECE_BYTES)
-                there.flush()
-                os.fsync(there.fileno())
-            Path(beside).replace(target)
-            sync_folder(Path(target).parent)
-        finally:
-            Path(beside).unlink(missing_ok=True)
+        beside = Path(self._root) / f"{UNFINISHED}{secrets.token_hex(8)}"
+        with replacing(Path(target), beside, 0o660) as there:  # for the stations' group
+            shutil.copyfileobj(here, there, PIECE_BYTES)
 
     def _sha256_there(self, at: str) -> str:
-        digest = hashlib.sha256()
         with self._files.open(at, "rb") as there:
-            while piece := there.read(PIECE_BYTES):
-                digest.update(piece)
-        return digest.hexdigest()
+            return hashlib.file_digest(there, "sha256").hexdigest()
 
 
 def name_in_place(path: Path) -> str:

@@ -98,11 +98,7 @@ class SharedKeySlots(KeySlots):
 
 def put_slots(session: OrmSession, content: bytes) -> None:
     """Keep the slots' file on the server."""
-    row, value = session.get(SettingRow, SLOTS_SETTING), json.loads(content)
-    if row is None:
-        session.add(SettingRow(name=SLOTS_SETTING, value=value))
-    else:
-        row.value = value
+    SettingRow.put(session, SLOTS_SETTING, json.loads(content))
 
 
 def _content_of(session: OrmSession) -> bytes | None:

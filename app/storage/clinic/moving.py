@@ -11,6 +11,7 @@ A folder that is being moved is not opened meanwhile, nor is a server whose libr
 import json
 import shutil
 from collections.abc import Mapping
+from contextlib import closing
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -79,8 +80,8 @@ def move_to_server(opened: OpenedLibrary, station: Station, report: Report) -> M
         raise LibraryError("Only a library in a folder can be moved to a server", "Open your own library")
     if any(not one.problem for one in find_interrupted(opened)):
         raise LibraryError("A recording is running or was not completed", "Stop or review it, then move the library")
-    store, server = JournalStore(station.journals), station.database_kept()
-    try:
+    store = JournalStore(station.journals)
+    with closing(station.database_kept()) as server:
         refuse_nul(library.database)
         store.refuse_missing()
         bring_up_to_date(server)
@@ -102,8 +103,6 @@ def move_to_server(opened: OpenedLibrary, station: Station, report: Report) -> M
                 set_state(session, ServerState.OPEN)
         else:
             moved = _counted(server, 0, 0)
-    finally:
-        server.close()
     library.close()
     become_station(folder, own)
     report(1.0, "")
@@ -241,10 +240,10 @@ def _state_for(server: Database, source: Database) -> ServerState | None:
     with source.reading() as session:
         own = session.get_one(SettingRow, ID_SETTING).value
     with server.reading() as session:
-        row, state = session.get(SettingRow, ID_SETTING), state_of(session)
-    if row is None:
+        there, state = SettingRow.of(session, ID_SETTING), state_of(session)
+    if there is None:
         return None
-    if row.value != own:
+    if there != own:
         raise LibraryError(
             "The clinic's server already holds another library", "Use a separate database for this library"
         )
@@ -297,16 +296,13 @@ def _put_later_entries(source: Database, server: Database) -> None:
 def _make_folder(opened: OpenedLibrary, store: JournalStore, folder: Path, report: Report, *, is_copy: bool) -> Moved:
     server = opened.library.database
     (folder / RECORDINGS).mkdir(mode=0o700)
-    target = Database(sqlite_engine(folder / DATABASE, opened.data_key))
-    try:
+    with closing(Database(sqlite_engine(folder / DATABASE, opened.data_key))) as target:
         bring_up_to_date(target)
         kept = _take_rows(server, target)
         size = _fetch_journals(kept, store, folder, report)
         if not is_copy:  # else the server goes on changing
             _refuse_difference(server, target, "Try again")
         moved = _counted(target, len(kept), size)
-    finally:
-        target.close()
     with server.reading() as session:
         slots = session.get_one(SettingRow, SLOTS_SETTING).value
     replace_file(folder / KEYS, json.dumps(slots, indent=1).encode())

@@ -30,11 +30,7 @@ def state_of(session: OrmSession) -> ServerState | None:
 
 
 def set_state(session: OrmSession, state: ServerState) -> None:
-    row = session.get(SettingRow, STATE_SETTING)
-    if row is None:
-        session.add(SettingRow(name=STATE_SETTING, value=state.value))
-    else:
-        row.value = state.value
+    SettingRow.put(session, STATE_SETTING, state.value)
 
 
 def close_for(session: OrmSession, target: str) -> None:
@@ -45,19 +41,16 @@ def close_for(session: OrmSession, target: str) -> None:
     LibraryError
         It went, or is going, to another place already.
     """
-    row = session.get(SettingRow, TARGET_SETTING)
-    if row is None:
-        session.add(SettingRow(name=TARGET_SETTING, value=target))
-    elif state_of(session) is ServerState.CLOSED and row.value != target:
+    before = SettingRow.of(session, TARGET_SETTING, target)
+    if state_of(session) is ServerState.CLOSED and before != target:
         raise LibraryError(
             tr("The library was or is being moved back to another folder: {folder}").format(
-                folder=str(row.value).partition(" ")[2]
+                folder=str(before).partition(" ")[2]
             ),
             "Use the library in that folder. If nobody uses that folder, first reopen the server: "
             "gaitwright clinic back --give-up",
         )
-    else:
-        row.value = target
+    SettingRow.put(session, TARGET_SETTING, target)
     set_state(session, ServerState.CLOSED)
 
 

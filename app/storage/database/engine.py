@@ -181,9 +181,6 @@ class Database:
             return tuple(found)
 
     def close(self) -> None:
-        self.engine.dispose()
-
-    def reconnect(self) -> None:
         """Let go of all connections: what is asked next opens the file that is there now."""
         self.engine.dispose()
 

@@ -8,7 +8,7 @@ from enum import StrEnum
 from errno import EEXIST
 from pathlib import Path
 
-from app.storage.files import hold, replace_file, sync_folder
+from app.storage.files import hold, replace_file, replacing
 from app.storage.journal.header import JournalRefusedError
 from app.wording.translation import later, tr
 
@@ -160,15 +160,10 @@ class JournalFile:
 
     def copy_to(self, path: Path) -> None:
         """Write all that the open file holds to `path`, which is then whole, or not there."""
-        beside = path.with_name(path.name + ".new")
         os.lseek(self._descriptor, 0, os.SEEK_SET)  # it appends all the same
-        with os.fdopen(os.open(beside, os.O_WRONLY | os.O_CREAT | os.O_TRUNC, 0o600), "wb") as to:
+        with replacing(path) as to:
             while piece := os.read(self._descriptor, PIECE_BYTES):
                 to.write(piece)
-            to.flush()
-            os.fsync(to.fileno())
-        beside.replace(path)
-        sync_folder(path.parent)
 
     def sha256(self) -> str:
         return self._sha256.hexdigest()

@@ -276,8 +276,8 @@ class ResultsStep(Step):
             page.condition_typed.connect(self._on_condition_typed)
             page.kept_turned.connect(self._on_kept_turned)
             page.sign_turned.connect(self._on_sign_turned)
-            page.sides_swapped.connect(self._on_sides_swapped)
-            page.closed.connect(self._on_corrected)
+            page.swap.clicked.connect(self._on_sides_swapped)
+            page.back.clicked.connect(self._on_corrected)
         return page
 
     def _recording(self, key: str) -> "SessionRecording | None":

@@ -53,8 +53,8 @@ class PatientFeedback(QObject):
         self._news.connect(self._on_news, Qt.ConnectionType.QueuedConnection)
         controls.target_set.connect(self._on_target_set)
         controls.metronome_pressed.connect(self._on_metronome_pressed)
-        controls.full_screen_pressed.connect(self.toggle_full_screen)
-        controls.close_pressed.connect(self.close)
+        controls.full.clicked.connect(self.toggle_full_screen)
+        controls.close_screen.clicked.connect(self.close)
         self.metronome.changed.connect(self._on_metronome_changed)
         controls.setVisible(False)
 

@@ -79,15 +79,15 @@ class WalkingStep(Step):
     def page(self) -> WalkingPage:
         if self._page is None:
             page = self._page = WalkingPage(self.bench.entry)
-            page.bench.chosen.connect(self.bench.choose)
-            page.bench.reported.connect(self._on_change_reported)
+            page.bench.alignments.chosen.connect(self.bench.choose)
+            page.bench.alignments.reported.connect(self._on_change_reported)
             page.label_chosen.connect(self._on_label_chosen)
             page.next.test.chosen.connect(self._timed.on_chosen)
             page.keep_pressed.connect(self._on_keep_pressed)
             page.discard_pressed.connect(self._on_discard_pressed)
-            page.undo_pressed.connect(self._on_keep_pressed)
-            page.renamed.connect(self._on_renamed)
-            page.restrapped_pressed.connect(self._on_restrapped_pressed)
+            page.walks.undo_pressed.connect(self._on_keep_pressed)
+            page.walks.renamed.connect(self._on_renamed)
+            page.walks.restrapped.clicked.connect(self._on_restrapped_pressed)
             page.memory.stop_pressed.connect(self.memory.stop)
             self.feedback = PatientFeedback(self._visit, page.patient_controls, self)
             self.feedback.run_requested.connect(self.run)
@@ -433,7 +433,7 @@ class WalkingStep(Step):
     @Slot()
     def _on_change_reported(self) -> None:
         """Show what was entered for the next change, without drawing anything else again."""
-        self.page.bench.show_entry(self.bench.next_title)
+        self.page.bench.alignments.show_entry(self.bench.next_title)
         self.changed.emit()
 
     @Slot(str)

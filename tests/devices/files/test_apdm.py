@@ -12,7 +12,7 @@ from core.body import Site
 from core.samples import RateKind
 from devices.files.apdm import apdm_trial
 from devices.files.refusal import FileRefusedError
-from tests.trials_of_files import import_with
+from tests.trials_of_files import import_with, refused
 
 FindData = Callable[[str], Path]
 FOLDER = "vendor_exports/apdm"
@@ -54,10 +54,7 @@ def monitors(path: Path, acc: float = 9.81, gyr: float = 0.1) -> Path:
 
 
 def refusal(path: Path) -> str:
-    with pytest.raises(FileRefusedError) as caught:
-        apdm_trial([path])
-    assert str(caught.value).isprintable()
-    return str(caught.value)
+    return refused(apdm_trial, [path])
 
 
 def test_the_orientation_turns_gravity_up(test_data: FindData) -> None:

@@ -12,6 +12,7 @@ from app.cohort.batch.spread import ClusterLostError, finished
 from devices.files.refusal import FileRefusedError
 from tests.app.batch_material import results_in, write_swinging
 from tests.app.batch_stand_ins import StandIn, digest_of
+from tests.driver import Found
 from tests.safety import batch_kills
 
 pytestmark = [
@@ -22,16 +23,16 @@ pytestmark = [
 
 
 def test_stand_ins_are_equal_by_hash_and_each_is_done_once() -> None:
-    found = batch_kills.BatchKills()
+    found = Found()
     batch_kills.stand_ins(15_000, 5.0, 500, "serial,pool,dask", found)
-    assert found.faults == [], "\n".join(found.lines())
+    assert found.faults == [], found
 
 
 def test_a_hundred_sessions_are_equal_by_hash_with_their_table(tmp_path: Path) -> None:
-    found = batch_kills.BatchKills()
+    found = Found()
     batch_kills.sessions(tmp_path, 100, 5.0, "serial,pool,dask", found)
-    assert found.faults == [], "\n".join(found.lines())
-    assert found.kills["100 sessions, pool"] > 0
+    assert found.faults == [], found
+    assert found.count["workers killed of 100 sessions, pool"] > 0
 
 
 def test_the_command_gives_the_same_by_a_cluster_and_goes_on_there(

@@ -14,7 +14,6 @@ from app.demonstration.patients import ReportedOfWalk, SimulatedPatient, Simulat
 from app.home.home import Home
 from app.storage.opened import OpenedLibrary
 from app.system.settings import Settings
-from app.theme.current import load_fonts
 from app.workers.library_controller import LibraryController
 from core.session import Patient, Session
 from devices.simulation.walker import Standing, Walk, WalkerSettings
@@ -96,7 +95,6 @@ def home(
         "app.home.patients.demonstration.record_beside",
         lambda required: replace(session, started=required.started.isoformat(timespec="seconds")),
     )
-    load_fonts()
     home = Home(controller, settings)
     home.resize(1280, 800)
     qtbot.addWidget(home)

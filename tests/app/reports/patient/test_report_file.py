@@ -90,7 +90,7 @@ def test_the_last_walk_of_each_condition_is_shown(alignments: AnalysedVisit) -> 
 
 
 def test_what_is_typed_reaches_the_template_as_data_in_memory_and_nothing_there_runs_or_reads(
-    request_of_demonstration: ReportRequest, monkeypatch: pytest.MonkeyPatch
+    demo: ReportRequest, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     came: list[tuple[bytes, dict[str, Any]]] = []
 
@@ -99,7 +99,7 @@ def test_what_is_typed_reaches_the_template_as_data_in_memory_and_nothing_there_
         return b"", []
 
     monkeypatch.setattr(typst, "compile_with_warnings", compiled)
-    make_report(replace(request_of_demonstration, comment='#eval("1") #image("/etc/passwd")'))
+    make_report(replace(demo, comment='#eval("1") #image("/etc/passwd")'))
     ((template, options),) = came
     assert b"passwd" not in template
     assert "passwd" in options["sys_inputs"]["data"]

@@ -29,19 +29,19 @@ from app.wizard.report.printing import PRINTED_PPI
 from app.wizard.report.step import ReportStep
 from app.wizard.visit import Visit
 from app.workers.library_controller import LibraryController
-from core.analysis import analyse
 from core.body import Site
 from core.results import Analysis
 from core.session import RecordingKind, Session
 from tests.app.wizard.begun_visit import begin
 from tests.app.wizard.pressing import press
+from tests.simulated import analysis_of
 
 WAIT_MS = 60_000  # on a busy machine
 
 
 @pytest.fixture(scope="module")
 def analysis(simulated_session: Session) -> Analysis:
-    return analyse(simulated_session)
+    return analysis_of(simulated_session)
 
 
 @pytest.fixture
