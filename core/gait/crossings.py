@@ -17,8 +17,8 @@ class Onset:
     reach: float
 
 
-def first_crossing(signal: FloatArray, first: int, last: int, level: float) -> float:
-    """Fractional index in first..last where `signal` (n,) first passes `level`; NaN where it does not.
+def crossing(signal: FloatArray, first: int, last: int, level: float, which: int = 0) -> float:
+    """Fractional index in first..last where `signal` (n,) passes `level`; NaN where it does not.
 
     Parameters
     ----------
@@ -26,34 +26,14 @@ def first_crossing(signal: FloatArray, first: int, last: int, level: float) -> f
         In any unit.
     level
         In that unit.
+    which
+        0: where it first does. -1: where it last does.
 
     Returns
     -------
     float
         Index between samples, or NaN.
     """
-    return _crossing(signal, first, last, level, 0)
-
-
-def last_crossing(signal: FloatArray, first: int, last: int, level: float) -> float:
-    """Fractional index in first..last where `signal` (n,) last passes `level`; NaN where it does not.
-
-    Parameters
-    ----------
-    signal : (n,)
-        In any unit.
-    level
-        In that unit.
-
-    Returns
-    -------
-    float
-        Index between samples, or NaN.
-    """
-    return _crossing(signal, first, last, level, -1)
-
-
-def _crossing(signal: FloatArray, first: int, last: int, level: float, which: int) -> float:
     above = signal[first : last + 1] - level
     passes = np.flatnonzero((above[1:] > 0) != (above[:-1] > 0))
     if not len(passes):
@@ -80,7 +60,7 @@ def onset(signal: FloatArray, peak: int, rest: int, level: float) -> Onset:
         Index between samples.
     """
     first, last, which = (rest, peak, -1) if rest < peak else (peak, rest, 0)
-    low, high = (_crossing(signal, first, last, one, which) for one in (level, 2.0 * level))
+    low, high = (crossing(signal, first, last, one, which) for one in (level, 2.0 * level))
     if not np.isfinite(low):
         return Onset(float(rest), 0.0)
     reach = ONSET_RATIO * (low - high) if np.isfinite(high) else 0.0
