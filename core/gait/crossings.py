@@ -18,38 +18,12 @@ class Onset:
 
 
 def first_crossing(signal: FloatArray, first: int, last: int, level: float) -> float:
-    """Fractional index in first..last where `signal` (n,) first passes `level`; NaN where it does not.
-
-    Parameters
-    ----------
-    signal : (n,)
-        In any unit.
-    level
-        In that unit.
-
-    Returns
-    -------
-    float
-        Index between samples, or NaN.
-    """
+    """Give the fractional index in first..last where `signal` (n,) first passes `level`; NaN: nowhere."""
     return _crossing(signal, first, last, level, 0)
 
 
 def last_crossing(signal: FloatArray, first: int, last: int, level: float) -> float:
-    """Fractional index in first..last where `signal` (n,) last passes `level`; NaN where it does not.
-
-    Parameters
-    ----------
-    signal : (n,)
-        In any unit.
-    level
-        In that unit.
-
-    Returns
-    -------
-    float
-        Index between samples, or NaN.
-    """
+    """Give the fractional index in first..last where `signal` (n,) last passes `level`; NaN: nowhere."""
     return _crossing(signal, first, last, level, -1)
 
 
@@ -63,22 +37,7 @@ def _crossing(signal: FloatArray, first: int, last: int, level: float, which: in
 
 
 def onset(signal: FloatArray, peak: int, rest: int, level: float) -> Onset:
-    """Where a signal (n,) that is next to zero at index `rest` begins to grow towards its peak.
-
-    Extrapolated from where it passes `level` and its double.
-
-    Parameters
-    ----------
-    signal : (n,)
-        In any unit.
-    level
-        In that unit.
-
-    Returns
-    -------
-    Onset
-        Index between samples.
-    """
+    """Give where a signal (n,), near zero at `rest`, begins to grow, extrapolated from `level` and its double."""
     first, last, which = (rest, peak, -1) if rest < peak else (peak, rest, 0)
     low, high = (_crossing(signal, first, last, one, which) for one in (level, 2.0 * level))
     if not np.isfinite(low):

@@ -115,16 +115,5 @@ class Pairing:
 
 
 def cubic_weights(share: FloatArray) -> FloatArray:
-    """Weights (n, 4) of the samples around a place that lies `share` (n,) after the second: `at_positions` offline.
-
-    Parameters
-    ----------
-    share : (n,)
-        0 to 1 of the interval between the second and the third sample.
-
-    Returns
-    -------
-    (n, 4)
-        Rows sum to 1.
-    """
+    """Give cubic weights (n, 4) at `share` (n,) after the second sample, as `at_positions`; rows sum to 1."""
     return share[:, None] ** POWERS @ CUBIC

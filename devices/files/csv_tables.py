@@ -19,10 +19,7 @@ OF_OTHERS = frozenset({"packetcounter", "sampletimefine"})  # Xsens and Movella:
 
 
 def is_csv(path: Path, head: bytes) -> bool:
-    """Whether a file is a table with acceleration and angular rates about three axes of one sensor or more.
-
-    Strict, so that no file of another program comes in by the way of its columns' names alone.
-    """
+    """Give whether a table has acceleration and rates about three axes; strict, so as to claim no other files."""
     if not head or b"\0" in head:
         return False
     try:
@@ -35,18 +32,7 @@ def is_csv(path: Path, head: bytes) -> bool:
 
 
 def csv_trial(files: Sequence[Path], rate_hz: float | None = None) -> ImportedTrial:
-    """The sensors of one trial, in one file or in several.
-
-    Parameters
-    ----------
-    rate_hz
-        Samples per second where the files hold no times.
-
-    Raises
-    ------
-    FileRefusedError
-        What `tables` and `named_columns` refuse of the only file.
-    """
+    """Read one trial's sensors, from one file or several; raises FileRefusedError if the only file is refused."""
     return trial_of_tables("csv", files, lambda path: [_table(path)], rate_hz)
 
 

@@ -55,18 +55,7 @@ class _Group:
 
 
 def matlab_trial(files: Sequence[Path], rate_hz: float | None = None) -> ImportedTrial:
-    """The sensors of one trial, in one file or in several.
-
-    Parameters
-    ----------
-    rate_hz
-        Samples per second where the files hold neither times nor a rate.
-
-    Raises
-    ------
-    FileRefusedError
-        What `matlab_variables` and `named_columns` refuse of the only file, and one whose tables are objects.
-    """
+    """Read one trial's sensors, from one file or several; raises FileRefusedError, also for tables as objects."""
     return trial_of_tables("matlab", files, _tables, rate_hz)
 
 

@@ -32,18 +32,7 @@ def is_parquet(path: Path, head: bytes) -> bool:
 
 
 def parquet_trial(files: Sequence[Path], rate_hz: float | None = None) -> ImportedTrial:
-    """The sensors of one trial, in one file or in several.
-
-    Parameters
-    ----------
-    rate_hz
-        Samples per second where the files hold no times.
-
-    Raises
-    ------
-    FileRefusedError
-        What `tables` and `named_columns` refuse of the only file.
-    """
+    """Read one trial's sensors, from one file or several; raises FileRefusedError if the only file is refused."""
     return trial_of_tables("parquet", files, lambda path: [_table(path)], rate_hz)
 
 
