@@ -135,11 +135,11 @@ def disagreement(forces: JointForces, heading: FloatArray, unknowns: FloatArray)
     one = forces.terms_1[6] - np.tensordot(unknowns[[0, 1, 2, 6, 7, 8]], forces.terms_1[:6], 1)
     two = turned[6] - np.tensordot(unknowns[[3, 4, 5, 9, 10, 11]], turned[:6], 1)
     gravity = np.array([[0.0], [0.0], [GRAVITY_M_S2]])
-    felt = sum(_loss(terms[6] - gravity) for terms in (forces.terms_1, forces.terms_2))
-    return _loss(one - two) / max(felt, 1e-12)
+    felt = sum(mean_cost(terms[6] - gravity) for terms in (forces.terms_1, forces.terms_2))
+    return mean_cost(one - two) / max(felt, 1e-12)
 
 
-def _loss(error: FloatArray) -> float:
+def mean_cost(error: FloatArray) -> float:
     """Mean robust loss of vectors (3, n)."""
     return float(2 * np.mean(np.sqrt(1 + np.sum(error**2, axis=0) / SCALE_M_S2**2) - 1))
 

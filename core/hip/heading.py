@@ -163,11 +163,6 @@ def fit_knots(forces: Forces, knots_rad: FloatArray, steps: int = STEPS) -> tupl
     return knots_rad, unknowns, design[12] - np.tensordot(unknowns, design[:12], 1)
 
 
-def mean_cost(error: FloatArray) -> float:
-    """Compute the mean robust loss of residuals (3, n), m/s2."""
-    return float(2 * np.mean(np.sqrt(1 + np.sum(error**2, axis=0) / SCALE_M_S2**2) - 1))
-
-
 def _shares(data: Datasets) -> FloatArray:
     """How much each knot counts in each sample's heading (n, k)."""
     share = np.zeros((len(data), data.knots))

@@ -8,8 +8,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from core.calibration.coincidence import distal_terms
-from core.hip.heading import Forces, fit_knots, forces_of, mean_cost, scan_heading
+from core.calibration.coincidence import distal_terms, mean_cost
+from core.hip.heading import Forces, fit_knots, forces_of, scan_heading
 from core.hip.results import ClockStatus, LegClock
 from core.samples import FloatArray
 from core.signal.pair import Pair

@@ -138,11 +138,7 @@ class Excitation:
         self._is_closed = False
         shank = joint.distal if joint.is_knee else joint.proximal
         self._missing = Missing(shank, Movement.CIRCLE)  # which moves what lies above and below it, too
-        self._state = self._judged()
-
-    @property
-    def state(self) -> ExcitationState:
-        return self._state
+        self.state = self._judged()
 
     @property
     def heading_rad(self) -> float | None:
@@ -153,15 +149,15 @@ class Excitation:
         """Take samples of both sensors, any number of either; the state after the last whole tenth of a second."""
         for _ in self.states(proximal, distal):
             pass
-        return self._state
+        return self.state
 
     def states(self, proximal: OrientedSamples, distal: OrientedSamples) -> Iterator[ExcitationState]:
         """The same, telling the state after every tenth of a second."""
         for is_new in self._collector.feed(proximal, distal):
             if is_new:
                 is_refitted = self._add()
-                self._state = self._judged(is_refitted)
-            yield self._state
+                self.state = self._judged(is_refitted)
+            yield self.state
 
     def _add(self) -> bool:
         """Take the newest set; whether the best hypothesis was determined again."""

@@ -66,19 +66,15 @@ class LiveStanding(Generic[Sensor]):
         self._bouts = _Bouts()
         self._rest_of = np.inf, np.inf
         self._found: Mapping[Sensor, Rest] = {}
-        self._state: StandingState[Sensor] = StandingState(0.0, required_s)
-
-    @property
-    def state(self) -> StandingState[Sensor]:
-        return self._state
+        self.state: StandingState[Sensor] = StandingState(0.0, required_s)
 
     def update(self, blocks: Mapping[Sensor, ImuBlock]) -> StandingState[Sensor]:
         """Take new samples of some or all sensors; KeyError for a sensor not announced."""
         for sensor, block in blocks.items():
             for start_s, end_s in self._watches[sensor].feed(block):
                 self._bouts.add(start_s, end_s)
-        self._state = self._state_now()
-        return self._state
+        self.state = self._state_now()
+        return self.state
 
     def _state_now(self) -> StandingState[Sensor]:
         watches = self._watches
@@ -86,7 +82,7 @@ class LiveStanding(Generic[Sensor]):
         silent = tuple(s for s, w in watches.items() if w.is_stuck or not latest_s - w.received_s <= SILENT_S)
         begun_s = min((watch.begun_s for watch in watches.values()), default=np.inf)
         state = replace(
-            self._state,
+            self.state,
             movement={sensor: w.movement for sensor, w in watches.items() if np.isfinite(w.received_s)},
             restarts=self._bouts.count_after(begun_s + SAME_BOUT_S),
         )
@@ -98,7 +94,7 @@ class LiveStanding(Generic[Sensor]):
         since_s = max(watch.still_since_s for watch in watches.values())
         until_s = min(watch.judged_s for watch in watches.values())
         still_s = until_s - since_s
-        rest = self._rest(since_s, still_s, watches) if still_s >= self._state.required_s else {}
+        rest = self._rest(since_s, still_s, watches) if still_s >= self.state.required_s else {}
         moved = tuple(sensor for sensor, watch in watches.items() if watch.is_moving)
         return replace(state, still_s=max(0.0, still_s), moved=moved, silent=silent, rest=rest)
 
@@ -106,8 +102,8 @@ class LiveStanding(Generic[Sensor]):
         self, since_s: float, still_s: float, watches: "Mapping[Sensor, _StillnessWatch]"
     ) -> Mapping[Sensor, Rest]:
         """What all read while still since an instant, as of the last whole second after the required time."""
-        whole_s = np.floor((still_s - self._state.required_s) / REST_EVERY_S) * REST_EVERY_S
-        until_s = since_s + self._state.required_s + float(whole_s)
+        whole_s = np.floor((still_s - self.state.required_s) / REST_EVERY_S) * REST_EVERY_S
+        until_s = since_s + self.state.required_s + float(whole_s)
         from_s = max(since_s, until_s - KEPT_S + REST_EVERY_S)
         if (from_s, until_s) != self._rest_of:
             self._rest_of = from_s, until_s

@@ -98,14 +98,9 @@ def _likeness(track: Track, time_s: FloatArray) -> FloatArray:
     middle = len(rates) // 2
     template = rates[middle - half : middle + half]
     product = sum(np.correlate(rates[:, k], template[:, k], "valid") for k in range(3))
-    energy = moving_sum(np.sum(rates**2, axis=1), 2 * half)
+    total = np.concatenate([[0.0], np.cumsum(np.sum(rates**2, axis=1))])
+    energy = total[2 * half :] - total[: -2 * half]
     return np.asarray(product / np.sqrt(np.maximum(energy * np.sum(template**2), 1e-9)))
-
-
-def moving_sum(values: FloatArray, width: int) -> FloatArray:
-    """Give the sums (n - width + 1,) over `width` adjacent values."""
-    total = np.concatenate([[0.0], np.cumsum(values)])
-    return total[width:] - total[:-width]
 
 
 def _followed(one: FloatArray, two: FloatArray, width: int, step: int) -> list[tuple[int, float]]:

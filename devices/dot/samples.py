@@ -93,7 +93,7 @@ class DotFramer:
 
     def __init__(self, info: SourceInfo) -> None:
         self.received = Received()
-        self._frames, self._damaged = NotificationFrames(KNOWN), 0
+        self._frames = NotificationFrames(KNOWN)
         mode = info.settings.get("mode")
         self._mode = MODES.get(mode) if isinstance(mode, int) else None
         self._unwrapping, self._before_s = Unwrapping(TIME_BITS, TICK_HZ), 0.0
@@ -107,11 +107,11 @@ class DotFramer:
                 self._take(self._mode.sample(payload), host_s)
             else:
                 self.received.skipped += 1
-        self._count_damaged()
+        self.received.damaged += self._frames.newly_damaged()
 
     def flush(self) -> None:
         self._frames.flush()
-        self._count_damaged()
+        self.received.damaged += self._frames.newly_damaged()
 
     def _take(self, sample: DotSample | None, host_s: float) -> None:
         if sample is None:
@@ -124,10 +124,6 @@ class DotFramer:
         self.received.rows.append((device_s, *sample.rate, *sample.force))
         if sample.orientation:
             self.received.orientations.append((device_s, *sample.orientation))
-
-    def _count_damaged(self) -> None:
-        self.received.damaged += self._frames.damaged - self._damaged
-        self._damaged = self._frames.damaged
 
 
 class FileFramer:

@@ -233,17 +233,13 @@ class DotSource:
 
     def __init__(self, sensor: DotSensor, group: DotGroup) -> None:
         self.sensor, self.group = sensor, group
-        self._info = SourceInfo(DRIVER, VERSION, sensors=(sensor.name,))
+        self.info = SourceInfo(DRIVER, VERSION, sensors=(sensor.name,))
         self._framer: DotFramer | None = None
         self._clock, self._clock_name = LiveClock(), ""
         self._was_open = False
         self._clock_begun = 0  # so often its own clock is known to have begun again
         self._keeps_link = False
         self._turn = -1
-
-    @property
-    def info(self) -> SourceInfo:
-        return self._info
 
     @property
     def sent(self) -> Sequence[bytes]:
@@ -300,10 +296,10 @@ class DotSource:
             self._clock = LiveClock(group.line_of(sensor.name))
         self._clock.begin()
         self._clock_name = name
-        self._info = SourceInfo(
+        self.info = SourceInfo(
             DRIVER, VERSION, info.serial, (sensor.name,), settings, is_simulated=info.model == EMULATED
         )
-        self._framer = DotFramer(self._info)
+        self._framer = DotFramer(self.info)
 
     def read(self, keep: Keep) -> Sequence[ImuBlock]:
         radio, framer = self.group.radio, self._framer

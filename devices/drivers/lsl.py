@@ -212,20 +212,16 @@ class LslSource:
         now_ns: Callable[[], int] = host_time_ns,
     ) -> None:
         self._stream, self._given, self._now_ns = stream, sensors, now_ns
-        self._sensors: tuple[LslSensor, ...] = ()
+        self.sensors: tuple[LslSensor, ...] = ()
+        """Known once it is open."""
         self._inlet: Any = None
         self._clock = LiveClock()
 
     @property
     def info(self) -> SourceInfo:
-        names = tuple(sensor.name for sensor in self._sensors)
+        names = tuple(sensor.name for sensor in self.sensors)
         settings = {"stream": self._stream.name, "host": self._stream.host, "rate_hz": self._stream.rate_hz}
         return SourceInfo(DRIVER, VERSION, self._stream.source, names, settings)
-
-    @property
-    def sensors(self) -> tuple[LslSensor, ...]:
-        """Known once it is open."""
-        return self._sensors
 
     def open(self) -> None:
         pylsl = _library()
@@ -249,7 +245,7 @@ class LslSource:
                 "Restart it in the sending program",
                 name=self._stream.name,
             ) from problem
-        self._sensors, self._inlet = tuple(sensors), inlet
+        self.sensors, self._inlet = tuple(sensors), inlet
 
     def read(self, keep: Keep) -> Sequence[ImuBlock]:
         if self._inlet is None:
@@ -275,7 +271,7 @@ class LslSource:
                 rows[:, sensor.rate] * sensor.rate_scale,
                 rows[:, sensor.force] * sensor.force_scale,
             )
-            for sensor in self._sensors
+            for sensor in self.sensors
         ]
 
     def close(self) -> None:
@@ -285,7 +281,7 @@ class LslSource:
 
     def details(self) -> Mapping[str, SensorDetails]:
         one = SensorDetails(model=self._stream.kind, serial=self._stream.source, rate_hz=self._stream.rate_hz)
-        return {sensor.name: one for sensor in self._sensors}
+        return {sensor.name: one for sensor in self.sensors}
 
     def identify(self, sensor: str) -> bool:
         return False

@@ -4,7 +4,8 @@ One sensor in each file, or all side by side. The header is the first line that 
 follow. Our own session's columns are among those that are understood. It is asked last of all formats.
 """
 
-from collections.abc import Collection, Sequence
+from collections.abc import Collection
+from functools import partial
 from pathlib import Path
 
 from devices.files.column_names import is_unit, sensor_columns
@@ -12,7 +13,6 @@ from devices.files.named_columns import trial_of_tables
 from devices.files.named_table import NamedTable, named_table_of
 from devices.files.refusal import FileRefusedError
 from devices.files.tables import Table, TextShape, read_csv, shape_of
-from devices.files.trial import ImportedTrial
 
 COMMENT, DELIMITERS = "#", ",;\t"
 OF_OTHERS = frozenset({"packetcounter", "sampletimefine"})  # Xsens and Movella: what their ticks are differs by program
@@ -31,12 +31,7 @@ def is_csv(path: Path, head: bytes) -> bool:
     return bool(sensors) and not has_others and (not shape.first or len(shape.first) == len(shape.names))
 
 
-def csv_trial(files: Sequence[Path], rate_hz: float | None = None) -> ImportedTrial:
-    """Read one trial's sensors, from one file or several; raises FileRefusedError if the only file is refused."""
-    return trial_of_tables("csv", files, lambda path: [_table(path)], rate_hz)
-
-
-def _table(path: Path) -> NamedTable:
+def _tables(path: Path) -> list[NamedTable]:
     shape = _shape(path)
 
     def read(required: Collection[str]) -> Table:
@@ -51,7 +46,10 @@ def _table(path: Path) -> NamedTable:
             decimal=shape.decimal,
         )
 
-    return named_table_of(path, shape.names, shape.units, read)
+    return [named_table_of(path, shape.names, shape.units, read)]
+
+
+csv_trial = partial(trial_of_tables, "csv", _tables)
 
 
 def _shape(path: Path) -> TextShape:

@@ -10,6 +10,7 @@ Held against files that MATLAB itself wrote (of versions 5 to 7.3, small ones, w
 
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
+from functools import partial
 from itertools import takewhile
 from pathlib import Path
 from typing import Any
@@ -29,7 +30,6 @@ from devices.files.matlab_variables import ClosedObject, Variable, read_matlab
 from devices.files.named_columns import trial_of_tables
 from devices.files.named_table import NamedTable
 from devices.files.refusal import FileRefusedError, quoted
-from devices.files.trial import ImportedTrial
 
 OF_THREE_AXES = (Quantity.ACC, Quantity.FREE_ACC, Quantity.GYR, Quantity.MAG)
 OF_ALL = (Quantity.TIME, Quantity.COUNTER)  # what a structure may give for those that it holds
@@ -52,11 +52,6 @@ class _Group:
     rate_hz: float | None = None
     left_out: list[str] = field(default_factory=list)
     inner: list[tuple[str, Mapping[str, Variable]]] = field(default_factory=list)
-
-
-def matlab_trial(files: Sequence[Path], rate_hz: float | None = None) -> ImportedTrial:
-    """Read one trial's sensors, from one file or several; raises FileRefusedError, also for tables as objects."""
-    return trial_of_tables("matlab", files, _tables, rate_hz)
 
 
 def _tables(path: Path) -> Sequence[NamedTable]:
@@ -93,6 +88,9 @@ def _tables(path: Path) -> Sequence[NamedTable]:
         )
         for number, (one, called) in enumerate(zip(found, calls, strict=True), start=1)
     ]
+
+
+matlab_trial = partial(trial_of_tables, "matlab", _tables)
 
 
 def _groups(path: tuple[str, ...], variables: Mapping[str, Variable], around: _Group) -> Iterator[_Group]:

@@ -58,7 +58,10 @@ def sensors_of_table(table: NamedTable, rate_hz: float | None) -> list[ImportedS
 
 
 def trial_of_tables(
-    format_name: str, files: Sequence[Path], read: Callable[[Path], Sequence[NamedTable]], rate_hz: float | None
+    format_name: str,
+    read: Callable[[Path], Sequence[NamedTable]],
+    files: Sequence[Path],
+    rate_hz: float | None = None,
 ) -> ImportedTrial:
     """Read the sensors of several files of one trial; raises FileRefusedError if the only file is refused."""
     tables, unread = read_each(

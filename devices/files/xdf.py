@@ -57,7 +57,7 @@ def is_xdf(_path: Path, head: bytes) -> bool:
 def xdf_trial(files: Sequence[Path], rate_hz: float | None = None) -> ImportedTrial:
     """Read one trial's sensors, stamps held to the rate; raises FileRefusedError if the only file is refused."""
     started: list[str] = []
-    trial = trial_of_tables("xdf", files, lambda path: _tables(path, started), rate_hz)
+    trial = trial_of_tables("xdf", lambda path: _tables(path, started), files, rate_hz)
     sensors = tuple(_on_own_clocks(trial.sensors))
     return replace(trial, sensors=sensors, started=min(filter(None, started), default=""))
 

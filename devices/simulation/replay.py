@@ -130,7 +130,7 @@ class ReplaySource:
             for site, name in self._names.items()
         }
         self._steps_s = {name: 1.0 / details.rate_hz for name, details in self._details.items() if details.rate_hz}
-        self._info = SourceInfo(DRIVER, VERSION, name, tuple(self._names.values()), is_simulated=True)
+        self.info = SourceInfo(DRIVER, VERSION, name, tuple(self._names.values()), is_simulated=True)
         self._chance = {name: np.random.default_rng([faults.seed, k]) for k, name in enumerate(self._details)}
         self._lock = threading.Lock()  # of all below, which is changed from any thread
         self._clips: list[_Clip] = []
@@ -139,10 +139,6 @@ class ReplaySource:
         self.is_open = self._is_away = False
         self._silenced: frozenset[str] = frozenset()
         self._shaken_s: dict[str, float] = {}
-
-    @property
-    def info(self) -> SourceInfo:
-        return self._info
 
     def open(self) -> None:
         with self._lock:

@@ -75,7 +75,7 @@ class SerialPort:
     def __init__(
         self, port: PortInfo, baud: int = 115200, list_all: Callable[[], Sequence[PortInfo]] = list_ports
     ) -> None:
-        self._port, self._baud, self._list_all = port, baud, list_all
+        self._port, self.baud, self._list_all = port, baud, list_all
         self._opened: Serial | None = None
         self._looked_s = 0.0
 
@@ -87,15 +87,11 @@ class SerialPort:
     def serial(self) -> str:
         return self._port.serial
 
-    @property
-    def baud(self) -> int:
-        return self._baud
-
     def open(self) -> None:
         self._find()
         exclusive = True if os.name == "posix" else None  # elsewhere a port always is
         try:
-            self._opened = Serial(self._port.device, self._baud, timeout=READ_S, write_timeout=0.5, exclusive=exclusive)
+            self._opened = Serial(self._port.device, self.baud, timeout=READ_S, write_timeout=0.5, exclusive=exclusive)
         except (OSError, ValueError) as problem:  # the library's own error is an OSError
             raise _refusal(self._port.device, problem) from problem
 
