@@ -34,11 +34,7 @@ def begin_frozen() -> None:
 
 
 def _keep_own_libraries() -> None:
-    """Leave the system's programs that we start (players, the viewer, the desktop's) their own libraries.
-
-    What started us put ours before the system's for all processes to come; this one has looked there already. Ours get
-    them again, when they are asked to begin as the first one did.
-    """
+    """Restore the system's library path for the programs this one starts; it has loaded its own by now."""
     before = os.environ.pop(LIBRARIES_BEFORE, None)
     os.environ.pop(LIBRARIES, None)
     if before:

@@ -184,8 +184,7 @@ class MainWindow(QWidget):
         self._fit()
 
     def eventFilter(self, watched: QObject, event: QEvent) -> bool:
-        """Receive what the user does, from the window of the desktop: of the application's every event, a hundred times
-        as many would be received."""
+        """Filter user events of the desktop's window only; the application has a hundred times as many."""
         if event.type() in ACTIVITY:
             self.idle.note_activity()
         return False
@@ -545,16 +544,7 @@ class _DropFrame(QWidget):
 
 
 def open_window(argv: list[str], language: str = "") -> int:
-    """Open the application, with the session folder named in `argv` if one is, and stay until it is closed.
-
-    Parameters
-    ----------
-    argv
-        What stood behind the program's name.
-    language
-        What to speak from now on, as "de"; empty: what was chosen last. Another one chosen in the settings opens the
-        window again, for every word of the old one was written in the language before; who is logged in stays so.
-    """
+    """Open the application until closed, again after a change of language; `language` empty: chosen last."""
     signal.signal(signal.SIGINT, signal.SIG_DFL)  # Ctrl-C in the terminal ends it; Python would wait for the event loop
     sys.setswitchinterval(SWITCH_S)
     QGuiApplication.setHighDpiScaleFactorRoundingPolicy(Qt.HighDpiScaleFactorRoundingPolicy.PassThrough)

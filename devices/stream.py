@@ -110,24 +110,7 @@ def decoded(
     clock: tuple[str, float] | None = None,
     again: Collection[int] = (),
 ) -> DecodedSensor:
-    """Put what was received of one sensor in order, its rows having arrived at `host_s` (n,); see `put_in_order`.
-
-    Parameters
-    ----------
-    host_s : (n,)
-        When each row arrived, by the host's clock.
-    step_s
-        Between two samples, where it is known.
-    clock
-        The name of the clock that it shares with other sensors, and after how many seconds it begins again.
-    again
-        See `put_in_order`.
-
-    Returns
-    -------
-    DecodedSensor
-        SI units, sensor axes, stamps by the host's clock.
-    """
+    """Order what was received of one sensor (rows arrived at `host_s`); SI, sensor axes, host stamps."""
     rows = np.array(received.rows, dtype=float).reshape(-1, COLUMNS)
     arrived_s = np.array(host_s, dtype=float)
     ordered = put_in_order(rows[:, 0], arrived_s, step_s, begins, again)
@@ -295,35 +278,13 @@ class ByteSource:
 
 
 def ask(channel: Channel, framer: Framer, command: bytes, is_answer: Callable[[bytes], bool], within_s: float) -> bytes:
-    """Send a command and wait for its answer; empty where none comes. What is received meanwhile stays with the framer.
-
-    Parameters
-    ----------
-    within_s
-        How long to wait.
-
-    Returns
-    -------
-    bytes
-        The answer, or none.
-    """
+    """Send a command and await its answer, empty on timeout; other bytes stay with the framer."""
     channel.write(command)
     return listen(channel, framer, lambda received: next(filter(is_answer, received.replies), b""), within_s)
 
 
 def listen(channel: Channel, framer: Framer, found: Callable[[Received], bytes], within_s: float) -> bytes:
-    """Read until `found` finds something in what was received, for so long at most.
-
-    Parameters
-    ----------
-    within_s
-        How long at most.
-
-    Returns
-    -------
-    bytes
-        What `found` gave, or none.
-    """
+    """Read until `found` finds something in what was received, empty on timeout."""
     until_s = time.monotonic() + within_s
     while time.monotonic() < until_s:
         framer.feed(channel.read(), time.monotonic())

@@ -250,10 +250,7 @@ def _paint_letters(painter: QPainter, theme: Theme, frame: Frame, chart: StrideC
 
 
 def _letters(theme: Theme, frame: Frame, curves: Sequence[StrideCurve]) -> list[tuple[StrideCurve, QPointF, QPointF]]:
-    """The centre of each curve's letter, and the point of the curve where it is read: where they lie furthest apart.
-
-    The circles stand above one another in the order of the curves, beside them, inside the plot.
-    """
+    """Give each curve's letter centre and its point on the curve, where the curves lie furthest apart."""
     if not curves:
         return []
     means = np.array([curve.angle_deg for curve in curves])

@@ -179,11 +179,7 @@ def line_of(frame: Frame, percent: FloatArray, angle_deg: FloatArray) -> FloatAr
 def place_mark(
     ground: ChartGround, ends: Sequence[tuple[float, float]], sizes: Sequence[tuple[float, float]], usual_percent: float
 ) -> MarkPlace:
-    """The place that covers least for the bar between two `ends` (x, y), and for the words beside it.
-
-    `sizes` are width and height of the words with one line, two lines and so on; as many are kept as have room. The
-    place is taken from then on.
-    """
+    """Place the bar's words where they cover least; `sizes` (w, h) by number of lines, as many as fit."""
     top, bottom = sorted(y for _, y in ends)
     usual_x = float(ground.frame.x(usual_percent))
     all_x = map(float, ground.frame.x(CANDIDATES_PERCENT))
@@ -213,11 +209,7 @@ def place_labels(
     are_above: Sequence[bool],
     dot: float,
 ) -> list[Box | None]:
-    """The room of each label beside its point that covers least: inside the frame, over nothing that is there.
-
-    The higher of two curves has its label above its point or level with it, the other beneath. None where there is no
-    room near the point.
-    """
+    """Place each label by its point, inside the frame and where it covers least; None where there is no room."""
     frame = ground.frame
     inside = Box(frame.left, frame.top, frame.right, frame.bottom)
     dots = [Box(x, y, x, y).grown(dot) for x, y in points]

@@ -49,13 +49,7 @@ class LibrarySession:
 
     @classmethod
     def parsed(cls, text: str) -> "LibrarySession":
-        """Read an id, with its prefix or without.
-
-        Raises
-        ------
-        ArgumentTypeError
-            It is none.
-        """
+        """Parse an id with or without its prefix; raises ArgumentTypeError."""
         try:
             return cls(UUID(text.removeprefix(PREFIX)))
         except ValueError:

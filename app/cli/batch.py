@@ -41,13 +41,7 @@ def run(args: argparse.Namespace, report: Report) -> Iterator[str]:
 
 
 def _check_apart(args: argparse.Namespace) -> None:
-    """See that what leaves a library stays out of it, and is not sent in the clear.
-
-    Raises
-    ------
-    FileRefusedError
-        OUT lies in the library, or the cluster is elsewhere and not reached by TLS.
-    """
+    """Raise FileRefusedError if OUT lies in the library or the cluster is remote without TLS."""
     out, library = args.out.resolve(), args.library.resolve()
     if out == library or library in out.parents:
         raise FileRefusedError(

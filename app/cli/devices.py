@@ -35,14 +35,7 @@ def run(args: argparse.Namespace, _report: Report) -> Iterator[str]:
 
 
 def list_devices(streams_in: str = "") -> Iterator[str]:
-    """What is received now, at which port nothing is, how drivers and readers of files were tested; takes a second or
-    two.
-
-    Parameters
-    ----------
-    streams_in
-        By which of this computer's addresses streams are asked for; empty: they are not.
-    """
+    """List received devices, silent ports and drivers' tests; takes 1 to 2 s. `streams_in` empty: no streams."""
     found = search(columns=known_columns(), radio=own_radio())
     if streams_in:
         try:
@@ -78,18 +71,7 @@ def list_devices(streams_in: str = "") -> Iterator[str]:
 def emulate(
     kind: str, count: int, seconds: float, show_message: Callable[[str], None], asked: Iterable[str] = ()
 ) -> None:
-    """Play so many sensors at pseudo-terminals until interrupted or `seconds` are over; reports their ports first.
-
-    Parameters
-    ----------
-    asked
-        Lines, whenever they come, of what the patient is to do; see `MOVEMENTS`.
-
-    Raises
-    ------
-    OSError
-        There are no pseudo-terminals on this system.
-    """
+    """Emulate sensors at pseudo-terminals, ports first, until `seconds` are over; `asked`: see `MOVEMENTS`."""
     patient = EmulatedPatient(session_for(count))
     with _emulations(patient, kind, count) as emulations:
         places = [emulation.place for emulation in emulations]

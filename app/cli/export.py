@@ -61,13 +61,7 @@ def run(args: argparse.Namespace, report: Report) -> list[str]:
 
 
 def _chosen(option: str, stated: str, known: Sequence[str], what: str) -> list[str]:
-    """The words of an option, each once.
-
-    Raises
-    ------
-    FileRefusedError
-        One is not known.
-    """
+    """Split an option into its words, each once; raises FileRefusedError for an unknown one."""
     names = list(dict.fromkeys(filter(None, stated.split(","))))
     for name in names:
         if name not in known:

@@ -31,13 +31,7 @@ from devices.files.refusal import FileRefusedError, one_line
 
 @contextmanager
 def opened_library(args: argparse.Namespace, *, is_to_be_moved: bool = False) -> Iterator[OpenedLibrary]:
-    """Open `required.library` for as long as is needed; `is_to_be_moved`: to a clinic's server, or back.
-
-    Raises
-    ------
-    FileRefusedError
-        It does not open, or it refused what was done with it.
-    """
+    """Open the library, its refusals as FileRefusedError; `is_to_be_moved`: to a clinic's server, or back."""
     folder: Path = args.library
     try:
         passphrase = _passphrase(args.passphrase_file, folder)
@@ -56,13 +50,7 @@ def opened_library(args: argparse.Namespace, *, is_to_be_moved: bool = False) ->
 
 
 def read_library_session(args: argparse.Namespace, session: LibrarySession, report: Report) -> Session:
-    """A session with its samples; that it was read is noted in the library's audit.
-
-    Raises
-    ------
-    FileRefusedError
-        The library does not open, there is no such session, or a recording cannot be read.
-    """
+    """Read a session with its samples, noting that in the audit; raises FileRefusedError."""
     with opened_library(args) as opened:
         visit = opened.library.sessions.view(session.id)
         read = session_with_samples(opened, visit, DECODERS, report)

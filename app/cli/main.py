@@ -27,13 +27,7 @@ MODULES = {"import": "import_files"}  # of the others it has the subcommand's na
 
 
 def main(argv: Sequence[str] | None = None) -> int:
-    """Do what the command line asks for and give the exit code.
-
-    Raises
-    ------
-    SystemExit
-        After `--help` (0) and on bad usage (2).
-    """
+    """Run the command line and give the exit code; raises SystemExit after `--help` (0) or bad usage (2)."""
     # numpy is not imported yet: many small matrices are slower on many threads, and another program may want the cores
     os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
     for stream in (sys.stdout, sys.stderr):

@@ -23,15 +23,7 @@ def run(args: argparse.Namespace, _report: Report) -> tuple[()]:
 
 
 def query(args: argparse.Namespace) -> Iterator[str]:
-    """Answer the question and give the lines for the terminal, as they come.
-
-    Raises
-    ------
-    FileRefusedError
-        The table cannot be read, the question cannot be answered, or something else is at --out.
-    OSError
-        The CSV file cannot be written.
-    """
+    """Answer the question and give terminal lines as they come; raises FileRefusedError or OSError."""
     if bool(args.sql.strip()) == args.columns:
         what = "a question and --columns at once" if args.columns else "nothing is asked"
         raise FileRefusedError("SQL", what, "Give a SELECT in quotes, or --columns")

@@ -44,27 +44,13 @@ def record_beside(visit: SimulatedVisit) -> Session:
 
 
 def add_patients(opened: OpenedLibrary, patients: tuple[SimulatedPatient, ...]) -> None:
-    """Add them without their visits, the first of them last: of equal ones the list has the latest first.
-
-    Raises
-    ------
-    LibraryError
-        A code is taken.
-    """
+    """Add patients without visits, the first last, as lists show the latest first; raises LibraryError."""
     for patient in reversed(patients):
         opened.library.patients.create(patient.details)
 
 
 def take_in(opened: OpenedLibrary, visit: SimulatedVisit, session: Session) -> UUID:
-    """Write what was recorded into journals of the library, as the next visit of its patient.
-
-    That its report was written is only noted, not done: nobody is to look for a file.
-
-    Raises
-    ------
-    LibraryError, JournalRefusedError, OSError
-        As of `import_session`.
-    """
+    """Write a visit into the library's journals, its report only noted; raises as `import_session`."""
     known = opened.library.patients.find(visit.code)
     reported = replace(session, patient=known.details) if known is not None else session
     session_id = import_session(opened, reported, _silent, visit.code, limits=visit.limits).session_id

@@ -28,10 +28,7 @@ MINE, THEIRS = 0, 1
 class EditDialog(QDialog):
     """Nothing is chosen to begin with, so that Enter pressed a moment too late decides nothing.
 
-    Signals
-    -------
-    settled
-        The fields of which our own value is to hold, a frozenset; closed with Escape, there are none.
+    `settled`: the fields of which our own value is to hold, a frozenset; closed with Escape, there are none.
     """
 
     settled = Signal(object)

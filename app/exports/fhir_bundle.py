@@ -59,20 +59,13 @@ GENDERS = ("male", "female", "other")
 
 
 def write_bundle(session: Session, analysis: Analysis, path: Path) -> None:
-    """Write one Bundle (JSON).
-
-    Raises
-    ------
-    OSError
-        The file cannot be written.
-    """
+    """Write one FHIR Bundle as JSON; raises OSError."""
     text = json.dumps(bundle(session, analysis), indent=2, ensure_ascii=False, allow_nan=False)
     path.write_text(text + "\n", encoding="utf-8", errors="backslashreplace", newline="\n")
 
 
 def bundle(session: Session, analysis: Analysis) -> dict[str, Any]:
-    """A Bundle of kind collection: the patient, as far as is reported, what was agreed, and an Observation per
-    figure."""
+    """Give a collection Bundle: the patient as reported, the goals agreed, and an Observation per figure."""
     patient_url = _url(session, "patient")
     resources = [(patient_url, _patient(session)), *_age(session, patient_url)]
     resources += [(_url(session, "goal", *goal.key), _goal(goal, patient_url)) for goal in agreed_with(session).held]

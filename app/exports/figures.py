@@ -59,10 +59,7 @@ def unit_of(name: str) -> str:
 
 
 def walk_figures(analysis: Analysis) -> Iterator[WalkFigure]:
-    """Every average over strides, walk by walk: those that are known, not reported, or were not measured.
-
-    What can be read and has no figure all the same, as a peak that no stride has, is no figure.
-    """
+    """Yield every mean over strides by walk, reported or not; without peaks that no stride has."""
     for recording in analysis.recordings:
         if recording.kind is RecordingKind.WALKING:
             yield from (one for one in _of_walk(recording) if one.mean is not None or not one.assessment.is_reported)

@@ -31,13 +31,7 @@ OF_MEAN = ("recording", "side", "measure", "n", "mean", "sd", "error", "unverifi
 
 
 def write_fitting_strides(recording: RecordingAnalysis, folder: Path) -> None:
-    """Write `fitting.csv`; without gait it holds its heading only.
-
-    Raises
-    ------
-    OSError
-        The file cannot be written.
-    """
+    """Write `fitting.csv`; without gait, its heading only; raises OSError."""
     header = ["side", "start_s", *FITTING, "used", *STATUS_OF]
     write_table(header, _strides(recording), folder / PER_STRIDE)
 

@@ -44,13 +44,7 @@ HIP_PEAKS = ("hip_flexion_peak_percent", "hip_extension_peak_percent")
 
 
 def write_gait(recording: RecordingAnalysis, folder: Path) -> None:
-    """Write `events.csv`, `strides.csv` and `cycles.csv`; without gait they hold their headings only.
-
-    Raises
-    ------
-    OSError
-        A file cannot be written.
-    """
+    """Write `events.csv`, `strides.csv` and `cycles.csv`; without gait, their headings only; raises OSError."""
     for name, (header, rows) in gait_tables(recording).items():
         write_table(header, rows, folder / f"{name}.csv")
 

@@ -38,10 +38,7 @@ def goals_of_walk(analysis: Analysis, walk: RecordingAnalysis, agreed: AgreedGoa
 
 
 def goal_figures(found: GoalFigure, agreed: AgreedGoals) -> dict[str, str | float | bool | None]:
-    """A goal and what was measured of it, by the names of the table; None where there is none.
-
-    Of a goal that was not agreed before the day nothing is stated but the value.
-    """
+    """Give a goal and its measured figure by table column; one agreed too late has standing NOT_JUDGED."""
     goal, is_before = found.goal, found.goal in agreed.reported
     return {
         "measure": goal.column,

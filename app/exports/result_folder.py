@@ -61,15 +61,7 @@ TAKEN = tuple(
 
 
 def write_results(session: Session, analysis: Analysis, folder: Path) -> None:
-    """Write every table of an analysis and its summary into `folder`, which is there.
-
-    Raises
-    ------
-    FileRefusedError
-        A recording's folder would stand where one of these files or the session is.
-    OSError
-        The disk is full or cannot be written to.
-    """
+    """Write every table of an analysis and its summary into `folder`; raises FileRefusedError or OSError."""
     for recording in analysis.recordings:
         if PurePosixPath(recording.folder).parts[:1] in TAKEN:
             what = f"its folder {recording.folder} has the name of one of the results"
@@ -93,13 +85,7 @@ def write_results(session: Session, analysis: Analysis, folder: Path) -> None:
 
 
 def describe_tables(analysis: Analysis, folder: Path) -> None:
-    """Write what the columns of the tables of an analysis mean; again, where a table was added since.
-
-    Raises
-    ------
-    OSError
-        A table cannot be read, or one of these files not written.
-    """
+    """Write the meanings of the tables' columns, again after a table was added; raises OSError."""
     recordings = [recording.folder for recording in analysis.recordings]
     write_columns(folder, recordings)
     write_metadata(folder, recordings)
@@ -116,13 +102,7 @@ def _write_comparisons(session: Session, analysis: Analysis, folder: Path) -> No
 
 
 def check_place(out: Path, session: Path) -> None:
-    """See whether the results of `session` may stand at `out`.
-
-    Raises
-    ------
-    FileRefusedError
-        `out` lies inside the session, holds other recordings, or is something else than an analysis.
-    """
+    """Raise FileRefusedError where the results of `session` may not stand at `out`."""
     out, session = out.resolve(), session.resolve()
     if out == session or session in out.parents:
         what = "this lies inside the session, which stays as it was recorded"
@@ -135,13 +115,7 @@ def check_place(out: Path, session: Path) -> None:
 
 
 def check_demonstration_place(out: Path) -> None:
-    """See whether a demonstration may stand at `out`: nothing is there, or only a demonstration.
-
-    Raises
-    ------
-    FileRefusedError
-        Something else is there.
-    """
+    """Raise FileRefusedError where anything but a demonstration is at `out`."""
     out = out.resolve()
     if is_free(out):
         return
@@ -169,15 +143,8 @@ def session_of(place: Path) -> Path:
 
 @contextmanager
 def written_beside(out: Path, *, keeps_session: bool = False, within: Path | None = None) -> Iterator[Path]:
-    """Give a folder to write into, and put it in the place of `out` when all is written.
-
-    Whatever is raised inside leaves `out` as it was. With `keeps_session` the recordings in `out` stay in it.
-    `within`: a folder of the same disk to write in until then, in place of the one that holds `out`.
-
-    Raises
-    ------
-    OSError
-        The folder cannot be made or renamed.
+    """Yield a folder to write into that replaces `out` at the end; an exception leaves `out` as it was.
+    `keeps_session`: recordings in `out` stay; `within`: a folder of the same disk to write in meanwhile.
     """
     out = out.resolve()
     out.parent.mkdir(parents=True, exist_ok=True)

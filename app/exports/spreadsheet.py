@@ -48,13 +48,7 @@ SHOWN = "0.00###"  # of the digits that a cell holds
 
 
 def write_spreadsheet(session: Session, analysis: Analysis, path: Path) -> None:
-    """Write one workbook (Office Open XML).
-
-    Raises
-    ------
-    OSError
-        The file cannot be written.
-    """
+    """Write one workbook (Office Open XML); raises OSError."""
     book = Workbook(write_only=True)
     book.properties.creator, book.properties.created = "gaitwright", NO_TIME
     _sheet(book, "About", ["what", "value"], _about(session, analysis))

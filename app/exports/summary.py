@@ -54,13 +54,7 @@ SYMMETRIC = tuple(quantity.column for quantity in REGISTRY if quantity.has_index
 def write_summary(
     analysis: Analysis, path: Path, recordings: Sequence[Recording] = (), agreed: AgreedGoals = NO_GOALS
 ) -> None:
-    """Write `summary.json`; `recordings` are the session's, whose alignments are reported beside their walks.
-
-    Raises
-    ------
-    OSError
-        The file cannot be written.
-    """
+    """Write `summary.json`; `recordings` are the session's, for alignments; raises OSError."""
     text = json.dumps(summarise(analysis, recordings, agreed), indent=2, ensure_ascii=False, allow_nan=False)
     # a file's name may hold bytes that are no text: what replaces them is an escape of JSON too
     path.write_text(text + "\n", encoding="utf-8", errors="backslashreplace", newline="\n")
@@ -70,11 +64,8 @@ def summarise(
     analysis: Analysis, recordings: Sequence[Recording] = (), agreed: AgreedGoals = NO_GOALS
 ) -> dict[str, Any]:
     """Give the content of `summary.json`; `joints` holds each joint's last calibration.
-
-    A walk before which a prosthesis was changed has `alignment`: since which condition, and each part's figures. One
-    that is a timed test has `timed_test`. Where goals had been agreed by the session's day, each walk has `goals`, by
-    the columns of goals.csv. With `recordings`, `conditions` has the figures of report and screen, over the strides of
-    all walks of a condition.
+    Walks have `alignment` after a prosthesis change, `timed_test`, `goals` if agreed by the session's day.
+    With `recordings`, `conditions` has the report's figures over the strides of all walks of a condition.
     """
     changed = {one.name: alignment_table(one.alignment) for one in recordings if one.alignment is not None}
     calibrations = [{"walks": list(span.walks), "joints": _joints(span.joints)} for span in analysis.calibrations]
@@ -170,10 +161,7 @@ def _difference_deg(recording: RecordingAnalysis, kind: str) -> float:
 
 
 def _side_difference(part: Part, name: str, sides: tuple[Side, Side]) -> dict[str, Any] | None:
-    """Give by how much an angle differs between the sides, and whether that exceeds the measurement error.
-
-    None where either side has no such angle, or it is not reported.
-    """
+    """Give an angle's difference of the sides and whether it exceeds the error; None if one has no figure."""
     if not all(part.value(side, name).n for side in sides):
         return None
     found = compare_legs(part, name, sides)

@@ -48,14 +48,9 @@ class HelpReader(QTextBrowser):
 
     A film plays once when its page is opened; Space or a click on it stops it and plays it again. Where less
     motion is asked for its scenes stand side by side instead.
-
-    Signals
-    -------
-    page_required
-        The name of another page that a link leads to.
     """
 
-    page_required = Signal(str)
+    page_required = Signal(str)  # the name of another page that a link leads to
 
     def __init__(self) -> None:
         super().__init__()

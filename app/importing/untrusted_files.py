@@ -16,13 +16,7 @@ from devices.files.trial import Gathered, ImportedTrial
 
 
 def read_foreign_session(folder: Path, waiting: Waiting) -> Session:
-    """Read a session folder as `devices.files.session_folder.read_session` does.
-
-    Raises
-    ------
-    FileRefusedError
-        The folder is not what it claims to be, or cannot be read within the limits.
-    """
+    """Read as `devices.files.session_folder.read_session`, within limits; raises FileRefusedError."""
     reading = LimitedReading(the_reader(), waiting)
     try:
         return read_session(folder, reading)
@@ -31,63 +25,29 @@ def read_foreign_session(folder: Path, waiting: Waiting) -> Session:
 
 
 def write_over_session(session: Session, folder: Path) -> None:
-    """Write a session folder as `devices.files.session_folder.write_session` does, over one that others may have made.
-
-    Raises
-    ------
-    FileRefusedError
-        Something else is there.
-    OSError
-        The disk is full or cannot be written to.
-    """
+    """Write as `devices.files.session_folder.write_session` over an untrusted folder; raises FileRefusedError."""
     write_session(session, folder, LimitedReading(the_reader(), _nobody_waits))
 
 
 def read_foreign_trial(
     format_name: str, files: Sequence[Path], rate_hz: float | None, waiting: Waiting
 ) -> ImportedTrial:
-    """What the files of one trial of another program hold, as its reader in `devices.files` gives it.
-
-    `format_name` empty: recognised by the content.
-
-    Raises
-    ------
-    FileRefusedError
-        The files are not what they should be, or cannot be read within the limits.
-    """
+    """Read a trial by its reader in `devices.files`; `format_name` empty: by content; raises FileRefusedError."""
     return LimitedReading(the_reader(), waiting).read_trial(format_name, files, rate_hz)
 
 
 def read_foreign_reference(path: Path, waiting: Waiting) -> ReferenceFile:
-    """What a file of an optical system holds, as `devices.files.references.reading.read_reference` reads it.
-
-    Raises
-    ------
-    FileRefusedError
-        It is no reference, or cannot be read within the limits.
-    """
+    """Read as `devices.files.references.reading.read_reference`, within limits; raises FileRefusedError."""
     return LimitedReading(the_reader(), waiting).read_reference(path)
 
 
 def gather_foreign(paths: Sequence[Path], waiting: Waiting) -> Gathered:
-    """Which of these files and folders belong together, as `devices.files.gathering.gather` returns them.
-
-    Raises
-    ------
-    FileRefusedError
-        There are too many, or they cannot be looked at within the limits.
-    """
+    """Group files and folders as `devices.files.gathering.gather`, within limits; raises FileRefusedError."""
     return LimitedReading(the_reader(), waiting).gather(paths)
 
 
 def ask_foreign_parquet(path: Path, sql: str, is_typed: bool) -> tuple[tuple[str, ...], list[Columns]]:
-    """Answer a question over a Parquet, as `devices.files.parquet_questions.answer` does.
-
-    Raises
-    ------
-    FileRefusedError
-        The Parquet cannot be read, or the question cannot be answered within the limits.
-    """
+    """Query as `devices.files.parquet_questions.answer`, within limits; raises FileRefusedError."""
     return LimitedReading(the_reader(), _nobody_waits).ask_parquet(path, sql, is_typed)
 
 

@@ -33,18 +33,10 @@ def choices() -> tuple[Choice, ...]:
 
 
 class ControlsCard(Card):
-    """No target is proposed: there is none until one is typed. It is of a measure, and stays as the side changes.
+    """No target is proposed: there is none until one is typed. It is of a measure, and stays as the side changes."""
 
-    Signals
-    -------
-    target_set
-        Target, or None where nothing that fits is typed.
-    metronome_pressed
-        Its rate in steps per minute; 0: be silent.
-    """
-
-    target_set = Signal(object)
-    metronome_pressed = Signal(int)
+    target_set = Signal(object)  # target, or None where nothing that fits is typed
+    metronome_pressed = Signal(int)  # its rate in steps per minute; 0: be silent
 
     def __init__(self) -> None:
         super().__init__()

@@ -40,20 +40,12 @@ WIDEST = 16_777_215  # Qt's own
 
 
 class CourseCard(Card):
-    """Passive. The arrow keys and the mouse go from visit to visit, Enter and a click open one.
-
-    Signals
-    -------
-    visit_opened
-        The id of its session.
-    computing_requested
-        The visits that have no figures yet are to be evaluated.
-    """
+    """Passive. The arrow keys and the mouse go from visit to visit, Enter and a click open one."""
 
     accessible_role = QAccessible.Role.Chart
 
-    visit_opened = Signal(object)
-    computing_requested = Signal()
+    visit_opened = Signal(object)  # the id of its session
+    computing_requested = Signal()  # the visits that have no figures yet are to be evaluated
 
     def __init__(self) -> None:
         super().__init__(spacing=0.5)  # a pixel, at any size

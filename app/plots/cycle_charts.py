@@ -63,23 +63,14 @@ class CycleCharts(QWidget):
         self.hip.setVisible(any(joint.is_hip for joint in cycles))
 
     def set_band(self, reference: ReferenceCurves | None, names: Sequence[str] | None = None, source: str = "") -> None:
-        """Draw this group's band, or none where none may stand beside the walk.
-
-        Parameters
-        ----------
-        names
-            Of the band, or that there is none: the key shows the first that has room. None: as for any other.
-        source
-            Whose band it is, or why there is none: for the info button.
-        """
+        """Draw a group's band or none; `names`: for the key (first that fits), `source`: for the info button."""
         default = (tr("Reference"),) if reference is not None else ()
         for frame in self._frames:
             frame.chart.band = Band(*reference.mean_and_sd_deg(frame.kind)) if reference is not None else None
             frame.show_reference(names if names is not None else default, source)
 
     def show_beside(self, found: Comparison | None, words: str = "", thin_sides: frozenset[Side] = frozenset()) -> None:
-        """Draw thin what the walk is compared with, or say why nothing; marks and labels are to be shown again, the
-        next walk is without. `thin_sides`: the legs that have a thin line, where not both."""
+        """Draw the comparison thin, or state why not, until the next walk; marks and labels must be set again."""
         for frame in self._frames:
             frame.show_beside(found, words, thin_sides)
 

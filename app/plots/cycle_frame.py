@@ -90,10 +90,7 @@ class CycleFrame(Card):
         self.show_beside(None)
 
     def show_beside(self, found: Comparison | None, words: str = "", thin_sides: frozenset[Side] = frozenset()) -> None:
-        """Draw the walk again, thin beside it what it is compared with, or say in `words` why nothing is.
-
-        `thin_sides`: the legs that have a thin line, where not both.
-        """
+        """Redraw the walk with its comparison thin, or `words` why there is none; `thin_sides`: if not both."""
         cycles, verdicts, is_simulated = self._walk
         doubts = {side: why for side, judged in verdicts.items() if side in cycles and (why := doubt_in(judged))}
         reasons = {side: why_in_words(judged) for side, judged in verdicts.items() if side in cycles}

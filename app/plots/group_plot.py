@@ -55,13 +55,7 @@ class GroupPlot(Painted):
 
     @property
     def axis(self) -> tuple[float, float, float]:
-        """The round values at both ends of the axis, and the step between its ticks.
-
-        Returns
-        -------
-        (float, float, float)
-            In the unit of the means.
-        """
+        """Give the round ends of the axis and the tick step, in the means' unit."""
         ends = [
             line.mean + sign * (line.half if math.isfinite(line.half) else 0.0)
             for line in self.lines

@@ -89,15 +89,7 @@ class JointCharts(QWidget):
     def show_recording(
         self, name: str, time_s: FloatArray, is_simulated: bool, gait: Mapping[Side, SideGait] = NO_GAIT
     ) -> None:
-        """Make the charts ready for another recording, all of it in sight; `show_joints` then draws.
-
-        Parameters
-        ----------
-        time_s : (n,)
-            The recording's clock.
-        gait
-            Of the legs that walked, whose phases stand under the curves.
-        """
+        """Prepare the charts for a recording, all in sight; `time_s` (n,), `gait`: of walking legs."""
         self._time_s = time_s
         self.phases.show_gait(time_s, gait, is_simulated)
         rows = [row for lane in self.phases.lanes.lanes.values() for row in lane.event_rows]

@@ -78,13 +78,7 @@ class StrideLegs(Card):
         knee_deg: Mapping[Side, FloatArray | None],
         thin: Mapping[Side, ThinBend] | None = None,
     ) -> None:
-        """Show the legs of another walk, where the cursor was.
-
-        Parameters
-        ----------
-        knee_deg
-            What is read beside each leg that was measured (101,); None where it is not reported.
-        """
+        """Show another walk's legs at the cursor's place; `knee_deg`: (101,) by side, None where not reported."""
         self.stop()
         self.picture.legs, self.picture.thin = legs, thin or {}
         self.picture.sides = [side for side in Side if side in knee_deg]

@@ -54,11 +54,8 @@ class _SharperAgreement:
 class AgreementController(QObject):
     """Works for one page; newer references take the older ones' place.
 
-    Signals
-    -------
-    writing
-        The folder that was chosen, and the call that writes the files into it: whoever shows the page knows on which
-        thread, and who must be notified of an export.
+    `writing`: the folder that was chosen, and the call that writes the files into it: whoever shows the page knows on
+    which thread, and who must be notified of an export.
     """
 
     writing = Signal(object, object)

@@ -64,15 +64,9 @@ NOTHING = {
 
 
 class ComparePage(QWidget):
-    """`kinds` and `bases` are placed by the page around it, where room is short `view` is as well.
+    """`kinds` and `bases` are placed by the page around it, where room is short `view` is as well."""
 
-    Signals
-    -------
-    visits_requested
-        The earlier visits are requested, and not known yet: `show_visits` is to follow.
-    """
-
-    visits_requested = Signal()
+    visits_requested = Signal()  # the earlier visits are requested, and not known yet: `show_visits` is to follow
 
     def __init__(self) -> None:
         super().__init__()
@@ -148,10 +142,7 @@ class ComparePage(QWidget):
             self.visits_requested.emit()
 
     def show_visits(self, visits: Sequence[ComparedVisits], walked: str = "", every: Sequence[Part] = ()) -> None:
-        """Show the conditions that visits up to this one share; `walked` states which of them each visit has.
-
-        `every`: all conditions of all visits, any two or more of which can be chosen.
-        """
+        """Show the conditions that visits up to this one share; `every`: all of all visits, free to choose."""
         self._visits, self._walked, self._is_reading = tuple(visits), walked, False
         self._every = tuple(every)
         self._offer_kinds()
@@ -163,10 +154,7 @@ class ComparePage(QWidget):
         self.side_charts.set_band_shown(is_shown)
 
     def set_room(self, is_compact: bool, is_spacious: bool, has_two_charts: bool, *, has_view: bool) -> None:
-        """Make curves and differences views of their own where room is short; where there is plenty all stand there.
-
-        Without `has_view` the page around places the choice of views.
-        """
+        """Split curves and differences if short of room; without `has_view` the owner places the choice."""
         was_compact, was_spacious = self._is_compact, self._is_spacious
         self._is_compact, self._is_spacious, self._has_view = is_compact, is_spacious, has_view
         self.view.set_offered(CURVES, is_compact)
@@ -326,10 +314,7 @@ class ComparePage(QWidget):
         self._show()
 
     def choose_pair(self, number: int, *, is_second: bool) -> None:
-        """Show two alone: the one of this number from 0 against the one it was changed from, or the first.
-
-        `is_second`: this one is what the one shown is compared with.
-        """
+        """Show part `number` (from 0) beside its base, or the first; `is_second`: as base of the part shown."""
         parts = self._parts()
         if self.kind is Contrast.SIDES or not 0 <= number < len(parts) or len(parts) < 2:
             return

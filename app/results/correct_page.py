@@ -45,10 +45,8 @@ class JointLine:
 class CorrectPage(QWidget):
     """Each correction is emitted at once; the page is then shown what came of it.
 
-    Signals
-    -------
-    condition_typed, kept_turned, sign_turned
-        A walk's key and its condition or whether it counts; a joint and whether its sign is turned.
+    `condition_typed`, `kept_turned`, `sign_turned`: a walk's key and its condition or whether it counts; a joint and
+    whether its sign is turned.
     """
 
     condition_typed = Signal(str, str)

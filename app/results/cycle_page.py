@@ -72,15 +72,7 @@ class CyclePage(QWidget):
         self.by_hand.setVisible(is_shown and bool(self.by_hand.text()))
 
     def show_walk(self, part: Part, walk: RecordingAnalysis, is_simulated: bool, who: AgeAndHeight) -> None:
-        """Show the strides of a condition, each side on its own stride; nothing where it has none.
-
-        Parameters
-        ----------
-        walk
-            One of its walks, whose single strides can be looked at.
-        who
-            Choose the band, with the speed of the walks.
-        """
+        """Show a condition's strides, each side on its own stride; `walk`: single ones, `who`: for the band."""
         bands, sides_of_band = bands_of(part, who), sides_with_band(part)
         curves, values = (bands.curves, bands.values) if sides_of_band else (None, None)
         joints = [joint for side in part.sides for joint in part.joints if joint.side is side]

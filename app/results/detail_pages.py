@@ -28,19 +28,12 @@ HOW_FOUND, AGREEMENT = "how-found", "agreement"  # what is exported, as the libr
 class DetailPages(QObject):
     """Two pages in the stack of whoever shows the results.
 
-    Signals
-    -------
-    refused
-        What could not be shown, and what follows.
-    closed
-        Somebody is done with the page in sight.
-    writing
-        Which figures are to be saved, the folder that was chosen, and the call that writes them into it. Whoever
-        shows the page knows on which thread, and calls `show_saved` when it is done.
+    `writing`: which figures are to be saved, the folder that was chosen, and the call that writes them into it. Whoever
+    shows the page knows on which thread, and calls `show_saved` when it is done.
     """
 
-    refused = Signal(str, str)
-    closed = Signal()
+    refused = Signal(str, str)  # what could not be shown, and what follows
+    closed = Signal()  # somebody is done with the page in sight
     writing = Signal(str, object, object)
 
     def __init__(

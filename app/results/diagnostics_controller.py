@@ -33,16 +33,11 @@ WHAT = "how-found"  # in the name of the folder that is proposed
 class DiagnosticsController(QObject):
     """Works for one page; a newer question takes the older one's place.
 
-    Signals
-    -------
-    refused
-        What could not be shown, and what follows.
-    writing
-        The folder that was chosen, and the call that writes the files into it: whoever shows the page knows on which
-        thread, and who must be notified of an export.
+    `writing`: the folder that was chosen, and the call that writes the files into it: whoever shows the page knows on
+    which thread, and who must be notified of an export.
     """
 
-    refused = Signal(str, str)
+    refused = Signal(str, str)  # what could not be shown, and what follows
     writing = Signal(object, object)
 
     def __init__(self, page: FoundPage, background: Background, parent: QObject) -> None:

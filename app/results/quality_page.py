@@ -89,17 +89,7 @@ class QualityPage(QWidget):
         *,
         can_repeat: bool = False,
     ) -> None:
-        """Say it of one walk.
-
-        Parameters
-        ----------
-        joints
-            Of each joint that was measured the verdict of its shape.
-        strides
-            How many were used and left out, in words.
-        can_repeat
-            Whether sensors are worn, so that a free motion can be repeated now.
-        """
+        """Show one walk's quality; `joints`: verdicts of shape, `strides`: used and left out, in words."""
         self.first.setText(found.first)
         self.then.setText(found.then)
         self.then.setVisible(bool(found.then))

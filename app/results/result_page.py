@@ -109,16 +109,8 @@ class ResultPage(QWidget):
         is_live: bool = False,
         course: tuple[CourseVisit, ...] = (),
     ) -> None:
-        """Show the recording that was on the screen, if `visit` has it, else the walk of a report or the first.
-
-        Parameters
-        ----------
-        can_choose
-            Whether somebody keeps which strides are left out: see `strides`.
-        is_live
-            Whether the sensors are still worn, so that a free motion can be repeated.
-        course
-            The patient's visits in order of time, this one the last: the answer reports the changes since.
+        """Show the recording in sight if `visit` has it, else a report's walk or the first.
+        `course`: in time order; `can_choose`: strides may be left out; `is_live`: free motion repeatable.
         """
         self._visit, self._can_choose, self._is_live, self._course = visit, can_choose, is_live, course
         session, analysis = visit.session, visit.analysis
@@ -148,10 +140,7 @@ class ResultPage(QWidget):
             self._show_thin()
 
     def set_room(self, width: float, height: float) -> None:
-        """Fold the page as far as its room, in px of the design, asks for it.
-
-        Where there is little room curves and table are shown one at a time, and legs take the place of the ankle.
-        """
+        """Fold the page to its room in design px: curves or table, legs in the ankle's place, if little."""
         room = PageRoom.of(width, height)
         self._width, self._height = width, height
         if not self._has_chosen_legs and self.show_legs.isChecked() is room.is_compact:

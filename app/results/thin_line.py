@@ -84,13 +84,7 @@ class ThinLineChoice(Choice):
         return (self._shown, chosen) if isinstance(chosen, str) else ()
 
     def compared(self, facts: Facts, visits: Sequence[ComparedVisits] | None) -> tuple[Comparison | None, str]:
-        """The walk's condition with what was chosen, or why there is no thin line.
-
-        Parameters
-        ----------
-        visits
-            Those of the patient; None while they are being read.
-        """
+        """Give the walk's condition with the choice, or why there is no thin line; `visits` None: being read."""
         chosen, visit = self.currentData(), self._visit
         if visit is None or self._shown not in self._walks or chosen in (None, ThinLine.NOTHING):
             return None, ""

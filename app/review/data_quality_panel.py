@@ -81,10 +81,7 @@ def name_of_view(analysis: Analysis, joint: Joint) -> str:
 
 
 def document(analysis: Analysis, timelines: Mapping[str, str]) -> str:
-    """Every verdict with its reasons, a table per recording, in Markdown; recordings are called as their timelines.
-
-    Walks come first.
-    """
+    """Give every verdict with reasons as Markdown, a table per recording named as its timeline, walks first."""
     lines = ["# Data quality", "", PURPOSE]
     walks = {recording.name for recording in analysis.recordings if recording.kind is RecordingKind.WALKING}
     in_order = sorted(all_that_is_stated(analysis), key=lambda one: one.recording not in walks)

@@ -68,13 +68,7 @@ DRAWN = "Legs: drawn, not measured"
 
 
 def write_log(session: Session, analysis: Analysis, path: Path) -> None:
-    """Write raw signals, angles by each method and their certainty, phases and events, with a layout for the viewer.
-
-    Raises
-    ------
-    OSError
-        The file cannot be written.
-    """
+    """Write raw signals, angles, certainty, phases, events and a layout as a Rerun log; raises OSError."""
     path.touch()  # Rerun reports an unwritable file in its own words, and not always
     timelines = _timelines(session)
     steps = {timelines[r.name]: found for r in analysis.recordings if (found := steps_of(r)) is not None}

@@ -14,10 +14,7 @@ MARGIN, LEAST_DEG = 0.05, 10.0  # round what is shown, of its range; so that noi
 
 
 def range_of(analysis: Analysis, kind: JointKind) -> tuple[float, float] | None:
-    """Lowest and highest degree of an axis that holds a joint of both legs, with its certainty and its phases.
-
-    Of walks, where there is one. None where no curve is shown.
-    """
+    """Give lowest and highest degree over both legs with certainty and phases; None if no curve is shown."""
     walks = [r for r in analysis.recordings if r.kind is RecordingKind.WALKING] or analysis.recordings
     shown = [part for r in walks for side in Side for part in _parts_deg(r, kind.of(side))]
     known = [part[np.isfinite(part)] for part in shown]

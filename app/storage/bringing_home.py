@@ -25,15 +25,7 @@ _log = logging.getLogger(__name__)
 
 
 def bring_home(opened: OpenedLibrary) -> frozenset[UUID]:
-    """Bring all segments home that nobody is writing; the recordings that something was brought of.
-
-    Raises
-    ------
-    LibraryGoneError
-        The library is not there.
-    OSError
-        A file cannot be read or written: it stays in the shelter, and those that were brought are in the library.
-    """
+    """Bring home all segments that nobody writes; give their recordings. Raises LibraryGoneError or OSError."""
     shelter = opened.shelter
     if shelter is None or not shelter.folder.is_dir():
         return frozenset()

@@ -33,13 +33,7 @@ class Courses:
         return found
 
     def keep(self, session_id: UUID, key: str, course: Course) -> None:
-        """Put what was found in the place of what was there; whoever may look at a session may keep it.
-
-        Raises
-        ------
-        LibraryError
-            There is no such session.
-        """
+        """Replace a session's kept course, as any reader of the session may; raises LibraryError."""
         content = course_in_json(course)
         with self._unit.reading() as session:
             row = session.get(CourseRow, session_id)

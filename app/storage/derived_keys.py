@@ -36,13 +36,7 @@ def derived_from(data_key: KeyMaterial | None) -> DerivedKeys:
 
 
 def derived_keys(session: OrmSession, data_key: KeyMaterial | None) -> DerivedKeys:
-    """Those of a library, as it keeps them.
-
-    Raises
-    ------
-    LibraryFaultError
-        They are damaged.
-    """
+    """Give the library's derived keys; raises LibraryFaultError if damaged."""
     row = session.get(SettingRow, SETTING) if data_key is not None else None
     if row is None:
         return derived_from(data_key)

@@ -16,13 +16,7 @@ BEYOND_ALL_BYTES = 1 << 40
 
 
 def replace_file(path: Path, content: bytes) -> None:
-    """Write `content` beside `path`, sync it and rename it over `path`: a crash leaves the old file or the new one.
-
-    Raises
-    ------
-    OSError
-        The folder cannot be written, or the disk is full; the old file is untouched.
-    """
+    """Write beside `path`, sync and rename: a crash leaves the old or the new file; raises OSError."""
     with replacing(path) as file:
         file.write(content)
 
@@ -56,17 +50,7 @@ def sync_folder(folder: Path) -> None:
 
 @contextmanager
 def held(path: Path) -> Iterator[None]:
-    """Be the one program that holds the file `path`, made if need be.
-
-    The operating system lets go of it when the program ends, however it ends.
-
-    Raises
-    ------
-    BlockingIOError
-        Another program holds it.
-    OSError
-        It cannot be made.
-    """
+    """Hold the file `path` alone, until the program ends at the latest; raises BlockingIOError or OSError."""
     descriptor = os.open(path, os.O_RDWR | os.O_CREAT, 0o600)
     try:
         hold(descriptor)
@@ -76,13 +60,7 @@ def held(path: Path) -> Iterator[None]:
 
 
 def hold(descriptor: int) -> None:
-    """Be the one who holds an open file, until it is closed; others can read it all the same.
-
-    Raises
-    ------
-    BlockingIOError
-        Somebody else holds it, be it in this program.
-    """
+    """Hold an open file alone until closed, still readable for others; raises BlockingIOError if it is held."""
     try:
         if sys.platform == "win32":
             place = os.lseek(descriptor, 0, os.SEEK_CUR)

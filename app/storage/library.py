@@ -92,15 +92,7 @@ class Library:
         operator: Operator,
         now: Callable[[], datetime.datetime] = now_utc,
     ) -> Self:
-        """Make an empty library in `folder` and log `operator` in, who becomes its first administrator.
-
-        One that was interrupted before is finished.
-
-        Raises
-        ------
-        LibraryError
-            There is a library already, or the folder cannot be written.
-        """
+        """Make an empty library, or finish making it, with `operator` as administrator; raises LibraryError."""
         try:
             folder.mkdir(mode=0o700, parents=True, exist_ok=True)
         except OSError as error:
@@ -123,14 +115,8 @@ class Library:
         *,
         is_to_be_moved: bool = False,
     ) -> Self:
-        """Open the library in `folder`. No `data_key`: it is a demonstration, and not encrypted.
-
-        `is_to_be_moved`: also one that is on its way to a clinic's server or back, to go on with that.
-
-        Raises
-        ------
-        LibraryError
-            There is none, it does not open with this key, it is damaged, or a later version has written it.
+        """Open the library, a demonstration without `data_key`; `is_to_be_moved`: also one on its way.
+        Raises LibraryError where there is none, the key is wrong, it is damaged or of a later version.
         """
         try:
             station = station_of(folder)
@@ -178,13 +164,7 @@ class Library:
         return self._unit.is_demonstration
 
     def begin(self, operator: Operator) -> Operator:
-        """Log the first operator of an empty library in, as its administrator.
-
-        Raises
-        ------
-        NotAllowedError
-            It has operators already.
-        """
+        """Log in the first operator as administrator; raises NotAllowedError where there are operators."""
         first = replace(operator, code=folded(operator.code), role=Role.ADMINISTRATOR, is_active=True)
         with self.database.writing() as session:
             if session.scalars(select(OperatorRow.code).limit(1)).first() is not None:
@@ -194,13 +174,7 @@ class Library:
         return self.log_in(first.code)
 
     def log_in(self, code: str, failed_before: int = 0) -> Operator:
-        """Let the operator work whose key slot was opened; `failed_before` counts the wrong passphrases before.
-
-        Raises
-        ------
-        NotAllowedError
-            This library does not know the operator, or no longer.
-        """
+        """Log in the operator of the opened slot; `failed_before`: wrong passphrases; raises NotAllowedError."""
         with self.database.writing() as session:
             if self.station is not None and not self.is_to_be_moved:
                 refuse_closed(session)
@@ -225,25 +199,13 @@ class Library:
         return self.database.faults()
 
     def take_back(self) -> None:
-        """Go on with the library in the folder that is there now, which is another than was opened, and its copy.
-
-        Raises
-        ------
-        OSError
-            The folder cannot be read.
-        """
+        """Go on with the copy of the library that is now in the folder; raises OSError."""
         if self.root is not None:
             self.root.take()
             self.database.close()
 
     def _take_root(self, folder: Path) -> None:
-        """Know the folder again, and from now on write nowhere else.
-
-        Raises
-        ------
-        LibraryError
-            It cannot be written.
-        """
+        """Identify the folder again and from now on write nowhere else; raises LibraryError."""
         try:
             self.root = root_of(folder, self.database)
         except OSError as error:
@@ -255,13 +217,7 @@ class Library:
         self.database.close()
 
     def write_journal_headers(self, recordings: Path) -> None:
-        """Finish what a change of the data key left to be done.
-
-        Raises
-        ------
-        OSError
-            A file cannot be written.
-        """
+        """Finish what a change of the data key left to be done; raises OSError."""
         write_headers(self.database, recordings)
 
     def close(self) -> None:

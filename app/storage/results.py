@@ -43,15 +43,7 @@ class Results:
     def keep(
         self, session_id: UUID, kind: ResultKind, inputs: AnalysisInputs, content_format: str, content: bytes
     ) -> StoredResult:
-        """Store what was computed, in the place of the eldest; what was computed again replaces what was there.
-
-        Whoever may look at a session may keep it, so that a viewer, too, waits for it once only.
-
-        Raises
-        ------
-        LibraryError
-            There is no such session.
-        """
+        """Store a result in place of the eldest or of the same inputs; viewers may, too; raises LibraryError."""
         key = key_of(inputs)
         with self._unit.writing(Role.VIEWER) as session:
             existing_session(session, session_id)

@@ -119,13 +119,7 @@ def names_of_files(joint: Joint, is_simulated: bool) -> dict[str, str]:
 
 
 def write_diagnostics(found: JointDiagnostics, is_simulated: bool, folder: Path) -> list[Path]:
-    """Write every number that the page draws or states into `folder`, which is made where it is missing.
-
-    Raises
-    ------
-    OSError
-        The folder or a file cannot be written.
-    """
+    """Write every number that the page shows to files in `folder`, created if missing; raises OSError."""
     folder.mkdir(parents=True, exist_ok=True)
     paths = {what: folder / name for what, name in names_of_files(found.joint, is_simulated).items()}
     _write_costs(found, paths[AXIS_COST])

@@ -75,10 +75,7 @@ def in_course(goal: Goal, walked: CourseCondition) -> GoalFigure:
 
 
 def reached_at(goals: Sequence[Goal], course: Course) -> tuple[GoalFigure, ...]:
-    """Goals that are reached in every condition of a visit that has them, each as where it is by least, surest first.
-
-    With an aid alone, or barefoot alone, it would be half of what was agreed.
-    """
+    """Give goals reached in every condition walked, each with its least favourable value, surest first."""
     found = []
     for goal in goals:
         is_of_test = goal.column in PROTOCOLS

@@ -90,10 +90,7 @@ def headline_of(facts: Facts) -> Headline:
 
 
 def order_of(facts: Facts, column: str, side: Side | None, found: Difference) -> tuple[bool, int, bool, float]:
-    """What comes first among differences of one rule is least: goals, the joints, stance and time, the foot, the ratio.
-
-    Where both sides changed, the affected one comes before the other.
-    """
+    """Give the sort key of differences of one rule: goals, joints, stance and time, foot; affected side first."""
     sides = tuple(Side) if side is None else (side,)
     is_of_other = side is not None and facts.affected not in (None, side)
     return not facts.part.agreed.is_chosen(column, sides), kind_of(column), is_of_other, -round(found.ratio, 1)
@@ -139,17 +136,7 @@ def _change_sentence_since(
     values: tuple[float, float],
     since: tuple[datetime.date, Sequence[datetime.date]],
 ) -> str:
-    """What a measure is, and by how much it is up or down since a day.
-
-    Parameters
-    ----------
-    difference
-        Subtracted before rounding; where rounded values disagree with it, all have a decimal more.
-    values
-        At that day and now.
-    since
-        The day, and all days of the visits, which have their years where they are of several.
-    """
+    """State a measure and its change since a day; values get a decimal more where rounding contradicts it."""
     day = day_in_words(*since)
     if column == STANCE and side is not None:
         before, now, size = rounded(column, (*values, abs(difference)))

@@ -94,17 +94,7 @@ OTHER_BESIDE = (
 
 
 def change_sentence(column: str, who: str, difference: float, now: Reported, before: Reported) -> str:
-    """What a measure is now, and by how much it is more or less than before: "Left knee flexes 54° in B, 5° more ..."
-
-    Parameters
-    ----------
-    who
-        The joint, or the leg of a measure of no joint; empty of one of the whole walk.
-    difference
-        Subtracted before rounding; where rounded figures disagree with that, all have a decimal more.
-    now, before
-        Where it was measured, as "in B" or "on 1 July", and its value.
-    """
+    """State a measure and its change: "Left knee flexes 54° in B, 5° more ..."; empty `who`: the whole walk."""
     decimals = _decimals(column, now.value, before.value, difference)
     value, size = _figures(column, (now.value, abs(difference)), decimals)
     other = fixed(before.value, decimals) + unit_and_decimals(column)[0]

@@ -92,10 +92,7 @@ def small_title(facts: Facts, kind: str, *, is_about_mean: bool = False) -> str:
 
 
 def band_of(facts: Facts, kind: str, sides: Sequence[Side]) -> Band | None:
-    """Mean and SD of band [1]; None where there is none for any of these legs, or nothing to compare.
-
-    At the hip its zero is another one, so it is drawn only where it is laid at the height of one curve.
-    """
+    """Give mean and SD of the reference group; None for hips, or without a group or a curve to compare."""
     group = facts.curves_group
     if group is None or kind == JointKind.HIP or facts.has_no_zero(kind) or facts.sides_with_band.isdisjoint(sides):
         return None

@@ -31,10 +31,7 @@ Place = Joint | Side | None
 def caveats(
     facts: Facts, of: Iterable[Verdict] = (Verdict.NOT_REPORTED, Verdict.CARE), *, is_of_joints: bool = False
 ) -> list[str]:
-    """Why something is not reported, or read with care, the gravest first; what holds alike of several places once.
-
-    `is_of_joints`: of the joints alone, not of the legs' timing and distance.
-    """
+    """Give why something is not reported or read with care, gravest first; `is_of_joints`: joint angles only."""
     if not facts.gait:
         return [tr("No foot or shank sensor showed a stride.")]
     return [f"{one.where}: {one.stated}" for one in causes(facts, of, is_of_joints=is_of_joints)]
@@ -66,10 +63,7 @@ class Cause:
 def causes(
     facts: Facts, of: Iterable[Verdict] = (Verdict.NOT_REPORTED, Verdict.CARE), *, is_of_joints: bool = False
 ) -> list[Cause]:
-    """Every reason of a walk with one of these verdicts, in their order.
-
-    `is_of_joints`: of the joints alone, not of the legs' timing and distance.
-    """
+    """Give each reason of a walk with one of these verdicts, in order; `is_of_joints`: joint angles only."""
     places: dict[tuple[str, GateWords], dict[Place, Verdict]] = {}
     for place, reason in _reasons(facts.verdicts):
         if isinstance(place, Joint) or not is_of_joints:

@@ -127,10 +127,7 @@ def printed_findings(facts: Facts, comparison: Comparison | None) -> list[Candid
 
 
 def ranked_findings(facts: Facts, comparison: Comparison | None, bands: tuple[str, str]) -> list[Candidate]:
-    """What is reported: changes first, then by kind, then what exceeds its error most; one per joint and direction.
-
-    `bands` names the cited groups of the curves and of time and distance, inside a sentence.
-    """
+    """Rank findings: changes first, then kind, then ratio to the error; one per joint and direction."""
     candidates = [
         *_changes(facts, comparison),
         *_since_visits(facts),

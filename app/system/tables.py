@@ -13,13 +13,7 @@ FORMULA = ("=", "+", "-", "@")
 
 
 def write_table(header: Sequence[str], rows: Iterable[Sequence[str]], path: Path) -> None:
-    """Write a small table of cells that are texts already.
-
-    Raises
-    ------
-    OSError
-        The file cannot be written.
-    """
+    """Write rows of text cells as a small CSV table; raises OSError."""
     with path.open("w", encoding="utf-8", errors="backslashreplace", newline="") as file:
         csv.writer(file, lineterminator="\n").writerows([header, *rows])
 

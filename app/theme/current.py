@@ -121,13 +121,7 @@ def _scale_again(one: QWidget | QLayout) -> None:
 
 
 def load_fonts() -> None:
-    """Make the bundled fonts known to Qt.
-
-    Raises
-    ------
-    FileNotFoundError
-        The installation is incomplete.
-    """
+    """Register the bundled fonts with Qt; raises FileNotFoundError where the installation is incomplete."""
     folder = files("resources") / "fonts"
     for name in FONT_FILES:
         QFontDatabase.addApplicationFontFromData(QByteArray((folder / name).read_bytes()))

@@ -84,18 +84,12 @@ class BarState:
 
 
 class ActionBar(QWidget):
-    """Grows by a line where a narrow window or a long language leaves no room; nothing in it is ever cut.
-
-    Signals
-    -------
-    pressed
-        The BarAction that is to be run: whether it is, who shows it decides.
-    """
+    """Grows by a line where a narrow window or a long language leaves no room; nothing in it is ever cut."""
 
     accessible_role = QAccessible.Role.ToolBar
 
     back_pressed = Signal()
-    pressed = Signal(object)
+    pressed = Signal(object)  # the BarAction that is to be run: whether it is, who shows it decides
     sound_pressed = Signal()
     recording_changed = Signal(bool)
 
@@ -302,10 +296,7 @@ _NOTHING = BarAction("", lambda: None)
 class VerbButton(Button):
     """A button whose word, key and kind follow what can be done now; hidden while it is nothing.
 
-    Attributes
-    ----------
-    verb
-        What it does, nothing while it is hidden; its key holds though there may be no room for the cap.
+    `verb`: what it does, nothing while it is hidden; its key holds though there may be no room for the cap.
     """
 
     def __init__(self, parent: QWidget, is_primary: bool = False) -> None:

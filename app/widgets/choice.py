@@ -37,10 +37,7 @@ class Choice(QComboBox):
         self.updateGeometry()
 
     def let_shrink(self, least: float, most: float) -> None:
-        """For words that somebody typed, of any length: cut them short where room is short, their whole in a tooltip.
-
-        Nothing is cut in fewer than `least` px, and the box grows to no more than `most`.
-        """
+        """Shorten long typed texts, with a tooltip; not below `least` px, and the box not above `most` px."""
         self._least, self._most = least, most
         self.setSizePolicy(QSizePolicy.Policy.Maximum, QSizePolicy.Policy.Fixed)
         self.updateGeometry()
@@ -75,11 +72,7 @@ class Choice(QComboBox):
         return super().event(event)
 
     def showPopup(self) -> None:
-        """Open below the box, above it where there is no room below, and as the style does where there is none at all.
-
-        The style lays the chosen line over the box, so that what comes before it covers what is above: the tabs.
-        What is cut in the box is whole in its list.
-        """
+        """Open below the box, or above it without room below; the style's place covers what is above."""
         if self._least is not None:
             widest = self.screen().availableGeometry().width()
             self.view().setMinimumWidth(min(self.view().sizeHintForColumn(0), widest))

@@ -100,11 +100,7 @@ def gauge_face(joint: Joint, found: ExcitationState | None, required: Required, 
 
 
 def _is_loose(joint: Joint, found: ExcitationState, required: Required) -> bool:
-    """Whether a joint that is one axis by construction turns across it as living ones do.
-
-    An axis that is merely not certain yet does not make it so, and of an ankle's, which walking finds, nothing is
-    known here.
-    """
+    """Check whether a knee that is one axis by construction turns across it as much as a human knee does."""
     floor_rad = math.sqrt(max(found.axis_sd_with_floor_rad**2 - found.axis_sd_rad**2, 0.0))
     return required.is_hinge and joint.is_knee and floor_rad > AXIS_FLOOR_HUMAN_RAD
 

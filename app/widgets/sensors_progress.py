@@ -53,14 +53,9 @@ class ProgressShown:
 
 
 class SensorsProgress(QWidget):
-    """
-    Signals
-    -------
-    stop_pressed
-        It is to be left.
-    """
+    """"""
 
-    stop_pressed = Signal()
+    stop_pressed = Signal()  # it is to be left
 
     def __init__(self) -> None:
         super().__init__()

@@ -108,17 +108,11 @@ class Sheets(QWidget):
 
 
 class SmallSheets(Painted):
-    """A column of small pages. A click, or the arrow keys, go to one; the page that is read has a bar beside it.
-
-    Signals
-    -------
-    requested
-        The number of a page, from 0.
-    """
+    """A column of small pages. A click, or the arrow keys, go to one; the page that is read has a bar beside it."""
 
     accessible_role = QAccessible.Role.List
 
-    requested = Signal(int)
+    requested = Signal(int)  # the number of a page, from 0
 
     def __init__(self) -> None:
         super().__init__()

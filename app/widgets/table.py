@@ -120,17 +120,10 @@ class CellTable(QTableView):
     A list (`is_list`) scrolls, has rows of one height, and one of them may be chosen: by mouse, arrows, Home and End.
     Every column has what its widest cell needs; what is left is shared. Lengths are in px of the design: `row` and
     `head` (0: none) the heights, `padding` at both sides of a cell, `edge` before the first column.
-
-    Signals
-    -------
-    chosen
-        The key of the row in force, or None.
-    opened
-        The key of the row at which Enter was pressed.
     """
 
-    chosen = Signal(object)
-    opened = Signal(object)
+    chosen = Signal(object)  # the key of the row in force, or None
+    opened = Signal(object)  # the key of the row at which Enter was pressed
 
     def __init__(
         self,

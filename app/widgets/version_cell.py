@@ -18,18 +18,10 @@ ARROWS = {
 
 
 class VersionCell(QAbstractButton):
-    """As high as its words need; the one that is chosen has a filled mark and a bold edge.
+    """As high as its words need; the one that is chosen has a filled mark and a bold edge."""
 
-    Signals
-    -------
-    moved
-        An arrow was pressed: columns to the right, rows down.
-    confirmed
-        Enter was pressed.
-    """
-
-    moved = Signal(int, int)
-    confirmed = Signal()
+    moved = Signal(int, int)  # an arrow was pressed: columns to the right, rows down
+    confirmed = Signal()  # enter was pressed
 
     def __init__(self, field: str, value: str, whose: str) -> None:
         super().__init__()

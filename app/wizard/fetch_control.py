@@ -17,14 +17,9 @@ if TYPE_CHECKING:
 
 
 class FetchControl(QObject):
-    """
-    Signals
-    -------
-    changed
-        Something else is shown, or can be done.
-    """
+    """"""
 
-    changed = Signal()
+    changed = Signal()  # something else is shown, or can be done
 
     def __init__(self, recordings: "SessionRecordings", sensors: "WornSensors", parent: QObject) -> None:
         super().__init__(parent)

@@ -56,17 +56,10 @@ class SyncView:
 
 
 class SensorSync(QObject):
-    """
-    Signals
-    -------
-    changed
-        Something else is shown.
-    done
-        The sensors are ready.
-    """
+    """"""
 
-    changed = Signal()
-    done = Signal()
+    changed = Signal()  # something else is shown
+    done = Signal()  # the sensors are ready
 
     def __init__(self, parent: QObject) -> None:
         super().__init__(parent)

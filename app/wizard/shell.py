@@ -40,11 +40,8 @@ class StripMode(Enum):
 class WizardShell(QWidget):
     """Passive: it lays out what it holds, and knows nothing of what a page is for.
 
-    Signals
-    -------
-    room_changed
-        Whether the window is compact, and the width and height that a page has, in px of the design. Emitted when the
-        room or the page is another one.
+    `room_changed`: whether the window is compact, and the width and height that a page has, in px of the design.
+    Emitted when the room or the page is another one.
     """
 
     room_changed = Signal(bool, float, float)
@@ -281,10 +278,7 @@ class WizardShell(QWidget):
             self.header.fold.setChecked(True)
 
     def _on_recording_changed(self, is_recording: bool) -> None:
-        """Keep the banner's place free while recording: what is read then must not jump.
-
-        A page that has a place of its own for messages while recording needs no second one.
-        """
+        """Reserve the banner's place while recording so that nothing jumps, unless the page has its own place."""
         policy = self.banner.sizePolicy()
         policy.setRetainSizeWhenHidden(is_recording and not getattr(self.page, "keeps_place_for_messages", False))
         self.banner.setSizePolicy(policy)

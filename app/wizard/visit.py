@@ -60,30 +60,18 @@ DEMO = "DEMO"  # how the codes of patients begin that simulated recordings are k
 class Visit(QObject):
     """`session` is None until the patient is known. Nothing of it is lost when this object goes: all is in the library.
 
-    Signals
-    -------
-    changed
-        The session's row, or what is known of zero and standing.
-    resumed
-        A session of the library has been read, with its recordings.
-    earlier_read
-        The patient's visits before this one, each as the session without samples and its analysis, in order of time.
-    refused
-        What the library or a source refused, and what to do.
-    merged
-        What another station changed of the same meanwhile, in two sentences.
-    asked
-        An EditQuestion: what both changed; it is answered by `settle`.
+    `earlier_read`: the patient's visits before this one, each as the session without samples and its analysis, in order
+    of time.
     """
 
-    changed = Signal()
+    changed = Signal()  # the session's row, or what is known of zero and standing
     changed_elsewhere = Signal()  # by another station of the clinic: what is held here is as it was before
     deleted_elsewhere = Signal(str, str)
-    resumed = Signal()
+    resumed = Signal()  # A session of the library has been read, with its recordings
     earlier_read = Signal(object)
-    refused = Signal(str, str)
-    merged = Signal(str, str)
-    asked = Signal(object)
+    refused = Signal(str, str)  # what the library or a source refused, and what to do
+    merged = Signal(str, str)  # what another station changed of the same meanwhile, in two sentences
+    asked = Signal(object)  # an EditQuestion: what both changed; it is answered by `settle`
 
     def __init__(
         self,

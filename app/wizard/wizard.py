@@ -124,10 +124,7 @@ class Wizard(QWidget):
         self._go_to(StepId.PATIENT)
 
     def show_session(self, session_id: UUID, *, is_for_report: bool = False) -> None:
-        """Look at what came of a session, or go on with it where nothing has come of it yet.
-
-        `is_for_report`: its report is to be written, where that can be.
-        """
+        """Show a session's results, or resume it where there are none yet; `is_for_report`: go to the report."""
         self._begin_visit()
         self._to_resume, self._is_for_report = session_id, is_for_report
         self._on_resume_due()

@@ -99,10 +99,7 @@ class LibraryController(QObject):
         failed: Failed | None,
         owner: QObject,
     ) -> None:
-        """Let the thread make `call`, then call `done(result)` or `failed(what, remedy)` as long as `owner` is there.
-
-        Both are bound methods. Without `failed` a refusal is reported by the signal `refused`.
-        """
+        """Run `call` on the thread, then `done(result)` or `failed(what, remedy)`, bound, while `owner` lives."""
         self._ask(self._calls, Job.of(lambda: call(self._holder.library), done, failed, owner))
 
     def record(
@@ -112,10 +109,7 @@ class LibraryController(QObject):
         failed: Failed | None,
         owner: QObject,
     ) -> None:
-        """As `run`, for beginning and ending recordings: whatever else the library is asked is not waited for.
-
-        The `Future` that `call` is given is done when all that was asked before has been.
-        """
+        """As `run`, for beginning and ending recordings, without waiting; the `Future`: earlier calls done."""
         if self._state is None:
             self._show_refusal(Job.of(nothing, None, failed, owner), *nothing_open())
             return
@@ -133,11 +127,7 @@ class LibraryController(QObject):
         *,
         is_quiet: bool = False,
     ) -> None:
-        """Do what takes long, an import or a backup, beside the calls; one at a time, and `stop_long` ends it.
-
-        Nothing more is received from what was stopped. Quiet work, which nobody asked for, waits for the other, and
-        gives way to it: it begins again afterwards.
-        """
+        """Run long work beside the calls, one at a time; `stop_long` ends it, quiet work yields and restarts."""
         job = Job.of(nothing, done, failed, owner, progressed)
         begin = partial(self._begin_long, work, job, is_quiet=is_quiet)
         if self._is_locked:
@@ -153,10 +143,7 @@ class LibraryController(QObject):
         self._long_job = None
 
     def lock(self) -> None:
-        """Take the data key out of memory until `unlock`; what is asked meanwhile is done after it.
-
-        A recording goes on: its journal has a key of its own. Long work is waited for.
-        """
+        """Drop the data key until `unlock`; calls wait, long work ends first, recordings have their own key."""
         if self._state is None or self._state.is_demonstration:
             return
         self._is_to_be_locked = self._is_locked = True
@@ -230,11 +217,7 @@ class LibraryController(QObject):
         self._calls.ask(Job(lambda: self._holder.end()))
 
     def finish(self, *, must_keep: bool = False) -> KeptLogIn | None:
-        """Close, and wait for all threads: for the end of the program.
-
-        `must_keep`: or of a window that another one follows. Gives what opens the library again there, unless it is
-        locked.
-        """
+        """Close and await all threads at the end; `must_keep`: give what reopens it, None while locked."""
         self._must_keep = must_keep and not self._is_locked
         self._ask_held()  # a recording is ended under a lock too; its row follows at the next start
         self._end_library()

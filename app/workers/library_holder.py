@@ -219,10 +219,7 @@ class LibraryHolder:
         return self._reopened_after(lambda: bring_back_here(library, report))
 
     def join(self, folder: Path, address: str, password: str, place: str) -> Joined:
-        """Make a new folder that of a station of the library at a clinic's server; nothing is opened.
-
-        `password` goes into the address; `place` names the shared place of recordings, where it has another name here.
-        """
+        """Make a folder a station of a clinic server's library; `place`: the shared place's name here."""
         try:
             join(folder, with_password(address, password), place)
         except Exception as error:  # reported where the server was named
@@ -404,13 +401,7 @@ def _is_passphrase_given(library: OpenedLibrary, operator: Operator) -> bool:
 
 
 def _begin_station(library: OpenedLibrary) -> tuple[int, Refusal | None]:
-    """What a clinic's station does first.
-
-    Returns
-    -------
-    brought, refusal
-        How many sessions that were made without the server are on it now, and why others are still here.
-    """
+    """Start up a clinic's station; give how many away sessions reached the server, and why others did not."""
     if library.shared is None:
         return 0, None
     brought, refusal = 0, None

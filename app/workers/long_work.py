@@ -6,17 +6,10 @@ from app.workers.library_controller import LibraryController
 
 
 class LongWork(QObject):
-    """
-    Signals
-    -------
-    working
-        It began: its title.
-    progressed
-        The share that is done, and what is being done.
-    """
+    """"""
 
-    working = Signal(str)
-    progressed = Signal(float, str)
+    working = Signal(str)  # it began: its title
+    progressed = Signal(float, str)  # the share that is done, and what is being done
 
     def __init__(self, controller: LibraryController, parent: QObject) -> None:
         super().__init__(parent)

@@ -41,10 +41,7 @@ def is_preloaded() -> bool:
 
 
 def preload(report: Report) -> None:
-    """Work for a `Background`. A module is imported whole or not at all; between two it may be stopped.
-
-    No garbage is collected meanwhile: this is not the thread on which widgets may end.
-    """
+    """Import modules as work of a `Background`, stoppable between two; without collection on this thread."""
     was_collecting = gc.isenabled()
     gc.disable()
     try:

@@ -18,22 +18,7 @@ class Onset:
 
 
 def crossing(signal: FloatArray, first: int, last: int, level: float, which: int = 0) -> float:
-    """Fractional index in first..last where `signal` (n,) passes `level`; NaN where it does not.
-
-    Parameters
-    ----------
-    signal : (n,)
-        In any unit.
-    level
-        In that unit.
-    which
-        0: where it first does. -1: where it last does.
-
-    Returns
-    -------
-    float
-        Index between samples, or NaN.
-    """
+    """Give the fractional index in first..last where `signal` (n,) first (`which` -1: last) passes `level`; or NaN."""
     above = signal[first : last + 1] - level
     passes = np.flatnonzero((above[1:] > 0) != (above[:-1] > 0))
     if not len(passes):
@@ -43,22 +28,7 @@ def crossing(signal: FloatArray, first: int, last: int, level: float, which: int
 
 
 def onset(signal: FloatArray, peak: int, rest: int, level: float) -> Onset:
-    """Where a signal (n,) that is next to zero at index `rest` begins to grow towards its peak.
-
-    Extrapolated from where it passes `level` and its double.
-
-    Parameters
-    ----------
-    signal : (n,)
-        In any unit.
-    level
-        In that unit.
-
-    Returns
-    -------
-    Onset
-        Index between samples.
-    """
+    """Give where a signal (n,), near zero at `rest`, begins to grow, extrapolated from `level` and its double."""
     first, last, which = (rest, peak, -1) if rest < peak else (peak, rest, 0)
     low, high = (crossing(signal, first, last, one, which) for one in (level, 2.0 * level))
     if not np.isfinite(low):

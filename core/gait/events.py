@@ -106,18 +106,11 @@ class FootEvents:
 
     Heel rise and full contact are NaN where they are not known.
 
-    Attributes
-    ----------
-    length_m, height_m, climb_m, turn_rad
-        How far the swing carried the foot over the floor, how high the sensor (not the toe) rose, how much higher the
-        foot came to stand, how far it turned about the vertical; NaN from a shank.
-    is_certain
-        False where the contacts themselves are in doubt: the foot's pitch contradicts its way.
-    is_measured
-        False where samples were missing between heel rise and full contact.
-    source, sd_s : (k, 4)
-        What gave each event, an index into SOURCES, and its standard deviation; columns as EVENTS, NaN where
-        unknown.
+    `length_m`, `height_m`, `climb_m`, `turn_rad`: how far the swing carried the foot over the floor, how high the
+    sensor (not the toe) rose, how much higher the foot came to stand, how far it turned about the vertical; NaN from a
+    shank.
+    `source`, `sd_s`: (k, 4): what gave each event, an index into SOURCES, and its standard deviation; columns as
+    EVENTS, NaN where unknown.
     """
 
     heel_rise_s: FloatArray
@@ -128,8 +121,8 @@ class FootEvents:
     height_m: FloatArray
     climb_m: FloatArray
     turn_rad: FloatArray
-    is_certain: BoolArray
-    is_measured: BoolArray
+    is_certain: BoolArray  # False where the contacts themselves are in doubt: the foot's pitch contradicts its way
+    is_measured: BoolArray  # False where samples were missing between heel rise and full contact
     source: IntArray
     sd_s: FloatArray
     is_from_shank: bool = False
@@ -173,20 +166,7 @@ def gait_of(foot: OrientedTrack, is_rigid: bool = False) -> FootEvents:
 
 
 def detect_events(motion: FootMotion, is_measured: BoolArray, is_rigid: bool = False) -> FootEvents:
-    """Events of every swing of `motion`.
-
-    Parameters
-    ----------
-    is_measured : (n,)
-        As `Track.is_measured`.
-    is_rigid
-        As `gait_of`.
-
-    Returns
-    -------
-    FootEvents
-        One row per swing, seconds on the clock of `motion`.
-    """
+    """Detect the events of every swing, s on the motion's clock; `is_measured` (n,) as in `Track`."""
     rate, swings, sole = motion.pitch_rate_rad_s, motion.swings, travel_of(motion)
     spans = list(zip(swings.anchor_before.tolist(), swings.fastest.tolist(), swings.anchor_after.tolist(), strict=True))
     leaving = [rate[a : m + 1] for a, m, _ in spans]
@@ -337,15 +317,7 @@ def _even_out_others(
 
 
 def without_stray_toe_offs(timing: Timing, fastest: IntArray, step_s: float) -> None:
-    """Time a toe-off that lies far from where the foot's others lie before the swing is fastest as they do; in place.
-
-    A sensor that shakes on its foot shows other peaks than that of push-off.
-
-    Parameters
-    ----------
-    fastest : (k,)
-        Index of the sample in each swing at which the foot is fastest.
-    """
+    """Move stray toe-offs to the foot's usual time before the fastest sample, `fastest` (k,); in place."""
     if len(fastest) < LEAST_SWINGS:
         return
     before = fastest - timing.index[:, TOE_OFF]

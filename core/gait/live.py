@@ -51,56 +51,31 @@ class LiveEventSettings:
     Sources are named where one is on record. Where none is, the value is a choice of this project whose reason is all
     that was written down; `tests/benchmarks/live_gait.py` measures how the events do with all of them.
 
-    Attributes
-    ----------
-    max_delay_s
-        Longest time from an event to the sample that reports it, unless it is late. Source: the display, which draws
-        every 33 ms and so shows an event when it is 0.13 s old at most.
-    memory
-        Steps whose peaks and times say what is usual.
-    passed_share
-        Of its peak: a rate that has fallen so far has passed it.
-    sure_ratio
-        Of the rate of rest: a heel that turns so fast has risen.
-    early_ratio
-        Of the rate of rest: enough for a heel rise where waiting for the double would be too late.
-    growth
-        The pitch rate grows as this power of time after heel rise. Source: `ONSET_RATIO` in `core.gait.crossings`.
-    min_flat_s
-        A foot stays flat longer than this; a loading shock does not.
-    standing_s
-        A foot flat for longer is standing. Source: at 0.3 m/s, the slowest, a foot is flat for 0.7 s of each stride.
-    max_push_s
-        From the end of push-off until the foot has speed; after longer the heel was lifted on the spot.
-    first_load_share
-        Peak of loading as a share of the peak of push-off, until a loading has been seen.
-    min_swing_s
-        An earlier fall of the toes is not the landing. Source: a third of the swing at 2 m/s.
-    sway_ratio
-        A heel rise is so many times faster than the sways of the last stances.
-    sway_memory
-        Share of the fastest sway that is remembered after one step.
-    max_swing_s
-        After longer the landing was missed. Source: more than twice the swing at 0.3 m/s.
-    landing_share
-        Of its greatest speed in this swing: a foot that is faster is in mid-swing.
+    `max_delay_s`: longest time from an event to the sample that reports it, unless it is late. Source: the display,
+    which draws every 33 ms and so shows an event when it is 0.13 s old at most.
+    `early_ratio`: of the rate of rest: enough for a heel rise where waiting for the double would be too late.
+    `growth`: the pitch rate grows as this power of time after heel rise. Source: `ONSET_RATIO` in
+    `core.gait.crossings`.
+    `standing_s`: a foot flat for longer is standing. Source: at 0.3 m/s, the slowest, a foot is flat for 0.7 s of each
+    stride.
+    `max_push_s`: from the end of push-off until the foot has speed; after longer the heel was lifted on the spot.
     """
 
     max_delay_s: float = 0.095
-    memory: int = 5
-    passed_share: float = 0.6
-    sure_ratio: float = 5.0
+    memory: int = 5  # steps whose peaks and times say what is usual
+    passed_share: float = 0.6  # of its peak: a rate that has fallen so far has passed it
+    sure_ratio: float = 5.0  # of the rate of rest: a heel that turns so fast has risen
     early_ratio: float = 1.8
     growth: float = 1.75
-    min_flat_s: float = 0.06
+    min_flat_s: float = 0.06  # A foot stays flat longer than this; a loading shock does not
     standing_s: float = 1.5
     max_push_s: float = 0.3
-    first_load_share: float = 0.7
-    min_swing_s: float = 0.12
-    sway_ratio: float = 2.0
-    sway_memory: float = 0.85
-    max_swing_s: float = 1.5
-    landing_share: float = 0.7
+    first_load_share: float = 0.7  # peak of loading as a share of the peak of push-off, until a loading has been seen
+    min_swing_s: float = 0.12  # an earlier fall of the toes is not the landing. Source: a third of the swing at 2 m/s.
+    sway_ratio: float = 2.0  # A heel rise is so many times faster than the sways of the last stances
+    sway_memory: float = 0.85  # share of the fastest sway that is remembered after one step
+    max_swing_s: float = 1.5  # after longer the landing was missed. Source: more than twice the swing at 0.3 m/s.
+    landing_share: float = 0.7  # of its greatest speed in this swing: a foot that is faster is in mid-swing
 
 
 SETTINGS = LiveEventSettings()

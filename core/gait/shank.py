@@ -24,15 +24,7 @@ CONTACT_AFTER_S = 0.034  # 30 ms at 2 m/s and 40 at 0.3, on the simulated walker
 
 
 def gait_of_shank(shank: OrientedTrack) -> FootEvents:
-    """Initial contact and toe-off of one leg over one stretch without gaps, in any mounting; the rest is NaN.
-
-    The gyroscope's bias must have been removed.
-
-    Returns
-    -------
-    FootEvents
-        One row per swing, seconds on the track's clock; heel rise and full contact NaN.
-    """
+    """Detect initial contact and toe-off (k,) of a leg from its bias-free shank, without gaps; the rest NaN."""
     track = shank.track
     gyr, step_s = track.gyr_rad_s, track.step_s
     axis = _swing_axis(gyr)

@@ -151,10 +151,7 @@ class LiveAngle:
         return not calibration.joint.is_knee and calibration.axis_source is AxisSource.FREE_MOTION
 
     def recalibrate(self, calibration: JointCalibration) -> None:
-        """Go over to another calibration of the same joint, from the next sample on.
-
-        The angle goes on from where it is and reaches what the new calibration gives after BLEND_S, on half a cosine.
-        """
+        """Blend to another calibration of the joint within BLEND_S, on half a cosine, from the next sample on."""
         old, new = self._geometry, JointGeometry(calibration)
         if (new.j1 @ old.j1) * (new.j2 @ old.j2) < 0:  # paired the other way round: so are the headings
             self._heading.turn(np.pi)

@@ -78,10 +78,7 @@ class LiveHip:
         self._coming.extend(states)
 
     def update(self, pelvis: OrientedSamples, thigh: OrientedSamples) -> AngleSamples:
-        """Take what is new of both sensors, in order; returns the angle as far as both of them have reached.
-
-        Its stamps are on the thigh's clock.
-        """
+        """Take new samples of both sensors in order; give the angle up to both, on the thigh's clock."""
         rows = self._pairing.update(pelvis, thigh)
         angle, sd = followed_by_beats(rows, self._per_beat, self._follow)
         return AngleSamples(rows.tick, rows.time_s - self._pairing.lag_s, angle, sd)

@@ -58,13 +58,7 @@ _SHAPES = ((3,), (3,), (3,), (2,), (3,), (3, 3), (3, 3), (3, 3, 3), (3, 3), (3, 
 
 
 def parabola(lag_s: float) -> tuple[FloatArray, FloatArray]:
-    """Shares (3,) of the three instants in what was `lag_s` earlier, and their slopes (3,) by the lag.
-
-    Returns
-    -------
-    (3,) and (3,)
-        Without unit, and 1/s.
-    """
+    """Give shares (3,) of the three instants `lag_s` earlier, and their slopes (3,), 1/s."""
     at = -lag_s / NODE_S
     return (
         np.array([0.5 * at * (at - 1), 1 - at**2, 0.5 * at * (at + 1)]),
@@ -88,18 +82,7 @@ _PRODUCTS_TO_MATRIX = _products_to_matrix()
 
 
 def matrices_of(q: FloatArray) -> FloatArray:
-    """Rotation matrices of quaternions of about unit length; for one, ten times as fast as SciPy.
-
-    Parameters
-    ----------
-    q : (n, 4)
-        Scalar first.
-
-    Returns
-    -------
-    (n, 3, 3)
-        Takes vectors as the quaternion does.
-    """
+    """Give rotation matrices (n, 3, 3) of near-unit quaternions (n, 4), scalar first; for one, fast."""
     products = q[:, :, None] * (q / np.sum(q**2, axis=1, keepdims=True))[:, None, :]
     return (products.reshape(-1, 16) @ _PRODUCTS_TO_MATRIX).reshape(-1, 3, 3)
 

@@ -30,30 +30,19 @@ Sensor = TypeVar("Sensor", bound=str)
 class StandingState(Generic[Sensor]):
     """How far the standing has come.
 
-    Attributes
-    ----------
-    still_s
-        How long all sensors have given samples and been still.
-    moved
-        Sensors that moved in the last window of any; the count has restarted after them.
-    silent
-        Sensors without samples for half a second, or that repeat one value; without them nothing counts.
-    rest
-        Bias and specific force of each sensor, once all were still for the required time.
-    movement
-        Of each sensor in its last window, as a share of the limit: from 1 on it moves. Infinite where too little was
-        received.
-    restarts
-        How often somebody who stood has moved.
+    `silent`: sensors without samples for half a second, or that repeat one value; without them nothing counts.
+    `rest`: bias and specific force of each sensor, once all were still for the required time.
+    `movement`: of each sensor in its last window, as a share of the limit: from 1 on it moves. Infinite where too
+    little was received.
     """
 
-    still_s: float
+    still_s: float  # how long all sensors have given samples and been still
     required_s: float
-    moved: tuple[Sensor, ...] = ()
+    moved: tuple[Sensor, ...] = ()  # sensors that moved in the last window of any; the count has restarted after them
     silent: tuple[Sensor, ...] = ()
     rest: Mapping[Sensor, Rest] = field(default_factory=dict)
     movement: Mapping[Sensor, float] = field(default_factory=dict)
-    restarts: int = 0
+    restarts: int = 0  # how often somebody who stood has moved
 
     @property
     def is_done(self) -> bool:
@@ -80,13 +69,7 @@ class LiveStanding(Generic[Sensor]):
         self.state: StandingState[Sensor] = StandingState(0.0, required_s)
 
     def update(self, blocks: Mapping[Sensor, ImuBlock]) -> StandingState[Sensor]:
-        """Take new samples of some or all sensors.
-
-        Raises
-        ------
-        KeyError
-            A sensor that was not announced.
-        """
+        """Take new samples of some or all sensors; KeyError for a sensor not announced."""
         for sensor, block in blocks.items():
             for start_s, end_s in self._watches[sensor].feed(block):
                 self._bouts.add(start_s, end_s)
@@ -197,18 +180,7 @@ class _Bouts:
 
 
 def movement(gyr: FloatArray, acc: FloatArray) -> float:
-    """How much a sensor moves in a window, against the limits of rest.
-
-    Parameters
-    ----------
-    gyr, acc : (n, 3)
-        rad/s and m/s2, in sensor axes.
-
-    Returns
-    -------
-    float
-        Share of the limits that is reached, the worst of three; infinite for less than two samples.
-    """
+    """Give the worst share of the limits of rest, (n, 3) rad/s and m/s2; infinite for under two samples."""
     if len(gyr) < 2:
         return float("inf")
     spread = [float(np.sqrt(np.sum(np.var(values, axis=0)))) for values in (gyr, acc)]

@@ -80,38 +80,12 @@ def _standing_force(tracks: SensorTracks, site: Site) -> FloatArray | None:
 
 
 def exchanged_sites(tracks: Tracks, standing: Mapping[str, FloatArray]) -> list[tuple[Site, ...]]:
-    """Groups of sites whose sensors the motion wants exchanged; none where the labels may be right.
-
-    Whole legs cannot be distinguished, so two exchanged legs are not found.
-
-    Parameters
-    ----------
-    tracks
-        Of a free motion or a walk, by site; every site with an adjacent one among them.
-    standing
-        Mean specific force (3,) in standing, by site.
-
-    Returns
-    -------
-    list of tuple of Site
-        One item per group.
-    """
+    """Give groups of sites whose sensors the motion wants exchanged; two exchanged whole legs are not found."""
     return groups_of(at_once(detected_in_steps(tracks, standing)))
 
 
 def detected_in_steps(tracks: Tracks, standing: Mapping[str, FloatArray]) -> Generator[None, None, dict[Site, Site]]:
-    """Where the motion puts each sensor that `exchanged_sites` doubts, in steps.
-
-    Parameters
-    ----------
-    standing
-        Mean specific force (3,) in standing, m/s2, in sensor axes, by site.
-
-    Returns
-    -------
-    dict of Site to Site
-        When the steps are over: by the site that a sensor is declared to be at, the one that it is detected at.
-    """
+    """Give, in steps, the site detected for each declared site that `exchanged_sites` doubts."""
     smoothed = (yield from smoothed_in_steps(tracks)) if tracks else None
     adjacent = (yield from adjacent_in_steps(smoothed, standing)) if smoothed else None
     if adjacent is None:

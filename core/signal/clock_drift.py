@@ -33,13 +33,7 @@ SIGMAS = 5.0
 
 
 def clock_drifts(tracks: SensorTracks) -> dict[tuple[str, Site], float]:
-    """How much faster than its leg's a clock runs, percent, by walk and site; those that do not are missing.
-
-    Returns
-    -------
-    dict
-        Percent, by the walk's name and the site.
-    """
+    """Give how much faster than its leg's a clock runs, percent, by walk and site; only clocks that drift."""
     return {
         (recording.name, site): 100.0 * drift
         for recording in tracks.span
@@ -50,18 +44,7 @@ def clock_drifts(tracks: SensorTracks) -> dict[tuple[str, Site], float]:
 
 
 def about_clocks(drifts: Mapping[tuple[str, Site], float]) -> list[Finding]:
-    """A finding for every sensor whose clock runs away from the others of its leg in a walk.
-
-    Parameters
-    ----------
-    drifts
-        As `clock_drifts` gives them, percent.
-
-    Returns
-    -------
-    list of Finding
-        Empty where no clock drifts.
-    """
+    """Give a finding for every sensor whose clock drifts from its leg's in a walk; `drifts` in percent."""
     return [
         Finding("clock_drifts", Severity.WARNING, f"{name}, {site}", {"drift_percent": round(percent, 1)})
         for (name, site), percent in drifts.items()
@@ -93,13 +76,7 @@ def _track(tracks: SensorTracks, recording: Recording, site: Site) -> Track | No
 
 
 def drift_between(one: Track, two: Track) -> float | None:
-    """How much faster the second clock runs, as a share of time; 0 where it does not, None where nothing shows it.
-
-    Returns
-    -------
-    float or None
-        A share of time without unit: 0.01 is 1 %.
-    """
+    """Give how much faster the second clock runs (0.01 is 1 %); 0 without drift, None where nothing shows it."""
     time_s = np.arange(max(one.start_s, two.start_s), min(one.end_s, two.end_s), STEP_S)
     width = round(WINDOW_S / STEP_S)
     # in a long walk windows stand apart, but so near that a clock runs off by less than a step's time between two

@@ -77,15 +77,7 @@ MIN_STRIDES_TO_SPLIT = 6  # halves of three strides, thirds of two: fewer say no
 def verdicts_of(
     recording: RecordingAnalysis, calibrated: Mapping[Joint, JointCalibration], stiff_sides: Collection[Side]
 ) -> Verdicts:
-    """The verdicts of one recording, from its angles, strides and calibration.
-
-    Parameters
-    ----------
-    calibrated
-        The calibrations that `recording` was measured with.
-    stiff_sides
-        Where a joint that hardly bends is no wonder.
-    """
+    """Make one recording's verdicts; stiff sides are those where a joint that hardly bends is expected."""
     joints = {
         joint: _joint_verdicts(recording, joint, calibrated[joint], joint.side in stiff_sides)
         for joint in recording.joints

@@ -15,10 +15,7 @@ Limits = tuple[float, float]
 
 
 def lost(recording: RecordingAnalysis, limits: Limits, *sites: Site) -> Iterator[GateReason]:
-    """How much of the strides used, of either sensor, lies in gaps too long to be bridged in silence.
-
-    A gap in which whole strides are missing leaves the others as they are.
-    """
+    """Check how much of the strides used lies in gaps too long to bridge; gaps of whole strides do not count."""
     percent = 0.0
     for site in (one for one in sites if one in recording.received):
         found = recording.received[site]

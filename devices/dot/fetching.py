@@ -52,24 +52,14 @@ class FileLostError(SourceLostError):
 
 @dataclass(frozen=True, slots=True)
 class FetchedFile:
-    """What came of one file.
-
-    Attributes
-    ----------
-    missing
-        Numbers of samples that could not be had, below the last that came.
-    is_end_known
-        Whether the sensor stated that nothing follows the last sample.
-    is_even
-        Whether the samples' times step evenly but for what is missing.
-    """
+    """What came of one file."""
 
     sensor: str
     file: RecordedFile
     samples: int
-    missing: tuple[range, ...]
-    is_end_known: bool
-    is_even: bool
+    missing: tuple[range, ...]  # numbers of samples that could not be had, below the last that came
+    is_end_known: bool  # whether the sensor stated that nothing follows the last sample
+    is_even: bool  # whether the samples' times step evenly but for what is missing
 
     @property
     def lost(self) -> int:
@@ -81,13 +71,7 @@ class FetchedFile:
 
 
 async def reached(sensor: DotSensor, within_s: float = AWAY_S) -> None:
-    """Connect, trying for so long.
-
-    Raises
-    ------
-    SourceLostError
-        It is out of reach.
-    """
+    """Connect, trying for `within_s`; raises SourceLostError where the sensor is out of reach."""
     loop = asyncio.get_running_loop()
     until_s = loop.time() + within_s
     while not sensor.is_up:
@@ -101,13 +85,7 @@ async def reached(sensor: DotSensor, within_s: float = AWAY_S) -> None:
 
 
 def from_now_s(within_s: float) -> float:
-    """When `within_s` are over.
-
-    Returns
-    -------
-    until_s
-        By the clock of the links' thread.
-    """
+    """Give when `within_s` are over, by the clock of the links' thread."""
     return asyncio.get_running_loop().time() + within_s
 
 
@@ -156,15 +134,7 @@ class Fetching:
         self._repairs_amid = True  # until the sensor refuses it
 
     async def fetch(self) -> FetchedFile:
-        """All of it, repaired up to `REPAIRS` times.
-
-        Raises
-        ------
-        FileLostError
-            The sensor is out of reach.
-        DotRefusedError
-            It sends nothing.
-        """
+        """Fetch it all, repaired up to `REPAIRS` times; raises FileLostError, or DotRefusedError if none came."""
         stuck, cut_before = 0, self._sensor.cut_notices
         while (required := self._required()) is not None and stuck <= STUCK:
             before = len(self.framer.samples), self._looks, self._asked.total()

@@ -129,10 +129,7 @@ class DotFramer:
 class FileFramer:
     """Samples of a file as they are fetched, some of them again. The first of each number is kept.
 
-    Attributes
-    ----------
-    next
-        The number after the highest that was received.
+    `next`: the number after the highest that was received.
     """
 
     def __init__(self) -> None:

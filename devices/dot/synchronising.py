@@ -217,20 +217,7 @@ class _Synchronising:
 async def synchronise(
     sensors: Sequence[DotSensor], rate_hz: int, profile: int, show_message: ShowMessage, *, must_stream: bool = True
 ) -> Synchronised:
-    """Bring sensors onto one clock, the first of them being the root: the one nearest to all others.
-
-    Parameters
-    ----------
-    must_stream
-        Else they are left idle, for a rate that nobody streams with.
-
-    Raises
-    ------
-    NotSynchronisedError
-        Some did not follow, twice; all are as if nothing had been begun, and may be tried again.
-    SourceRefusedError
-        One records in its memory, does not take its rate, or cannot synchronise.
-    """
+    """Bring sensors onto one clock, the first as root; raises NotSynchronisedError or SourceRefusedError."""
     trying = _Synchronising(sensors, rate_hz, profile, show_message)
     for _ in range(TRIES):
         if not await trying.has_succeeded():
@@ -250,15 +237,7 @@ async def synchronise(
 
 
 async def refuse_while_recording(sensor: DotSensor) -> None:
-    """Raise unless its memory is known to be idle: whatever is set while it records cuts the file.
-
-    Raises
-    ------
-    DotRefusedError
-        It records, or does not report whether it does.
-    SourceLostError
-        It is out of reach.
-    """
+    """Raise DotRefusedError unless the memory is known to be idle (settings cut a file), or SourceLostError."""
     state = await sensor.state()
     if state is DotAnswer.RECORDING:
         raise DotRefusedError(
@@ -336,10 +315,7 @@ async def _given_up(sensor: DotSensor) -> None:
 
 
 async def let_go(sensor: DotSensor, *, is_synchronised: bool) -> None:
-    """Let one that is connected send nothing, and have a clock of its own, which spares its battery.
-
-    One that records is let be. Never raises; its link stays.
-    """
+    """Let a connected sensor send nothing and have its own clock, unless it records; never raises."""
     with suppress(SourceLostError, SourceRefusedError):
         await refuse_while_recording(sensor)
         await sensor.stop_stream()

@@ -103,13 +103,7 @@ class _QueriedNetwork:
 
 
 def ask_in(address: str) -> None:
-    """Ask for streams in the network where this computer has this address, or on this computer only.
-
-    Raises
-    ------
-    SourceRefusedError
-        The library is not installed, or streams were asked for elsewhere before.
-    """
+    """Ask in the network of this address of ours, or on this computer alone; raises SourceRefusedError."""
     pylsl = _imported()
     with _QueriedNetwork.changing:
         if not _QueriedNetwork.address:
@@ -125,23 +119,7 @@ def ask_in(address: str) -> None:
 
 
 def find_streams(address: str, wait_s: float = SEARCH_S) -> tuple[LslStream, ...]:
-    """Ask for streams of numbers, see `ask_in`; raises as it does.
-
-    Parameters
-    ----------
-    wait_s
-        How long answers are waited for.
-
-    Returns
-    -------
-    tuple of LslStream
-        Those that hold numbers.
-
-    Raises
-    ------
-    SourceRefusedError
-        See `ask_in`.
-    """
+    """Find streams of numbers, see `ask_in`; raises SourceRefusedError."""
     ask_in(address)
     pylsl = _library()
     found = [one for one in pylsl.resolve_streams(wait_s) if one.channel_format() != pylsl.cf_string]
@@ -149,13 +127,7 @@ def find_streams(address: str, wait_s: float = SEARCH_S) -> tuple[LslStream, ...
 
 
 def announced_sensors(stream: LslStream) -> tuple[LslSensor, ...]:
-    """Ask a stream what its channels are.
-
-    Raises
-    ------
-    SourceRefusedError
-        It does not answer, or has no sensors that can be understood.
-    """
+    """Ask a stream what its channels are; raises SourceRefusedError without an answer or known sensors."""
     source = LslSource(stream)
     try:
         source.open()
@@ -165,16 +137,7 @@ def announced_sensors(stream: LslStream) -> tuple[LslSensor, ...]:
 
 
 def sensors_of(stream: str, labels: Sequence[str], units: Sequence[str]) -> tuple[LslSensor, ...]:
-    """The sensors among a stream's channels, by the labels and units of these.
-
-    A label holds the sensor's name (if there are several), the quantity and the axis: `Shimmer_5E3A_Gyro_X_CAL` or
-    `accZ`.
-
-    Raises
-    ------
-    SourceRefusedError
-        No channels of rate and force, or units that are not named.
-    """
+    """Give the sensors by channel labels (`Shimmer_5E3A_Gyro_X_CAL`, `accZ`); raises SourceRefusedError."""
     places: dict[tuple[str, str], dict[str, int]] = {}
     for column, label in enumerate(labels):
         if (found := _parsed(label)) is not None:

@@ -89,23 +89,7 @@ def checksum(data: bytes) -> bytes:
 
 
 def calibrating(block: bytes, scale: float) -> tuple[FloatArray, FloatArray]:
-    """Offset (3) and matrix (3, 3) that make `matrix @ (raw - offset)` of raw numbers.
-
-    Parameters
-    ----------
-    scale
-        What sensitivities are stored as multiples of.
-
-    Returns
-    -------
-    (3,) and (3, 3)
-        In raw numbers, and in the sensor's unit per raw number.
-
-    Raises
-    ------
-    ValueError
-        There is no calibration in these bytes.
-    """
+    """Give offset (3,) and matrix (3, 3) of `matrix @ (raw - offset)`; ValueError without a calibration."""
     numbers = np.array(CALIBRATION_SHAPE.unpack(block), dtype=float)
     offset, sensitivity, alignment = numbers[:3], numbers[3:6] / scale, numbers[6:].reshape(3, 3) / 100
     if not sensitivity.all() or abs(np.linalg.det(alignment)) < 0.1:

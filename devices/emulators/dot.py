@@ -61,11 +61,8 @@ class DotClock:
 class EmulatedDot:
     """An `EmulatedPeripheral` whose clocks run by `now_ns`; it measures whether or not a link is up.
 
-    Attributes
-    ----------
-    sent
-        Of every sample that it took while it streamed, lost or not: ticks without turns, values (10) in single
-        precision, and when it was taken by the host's clock, ns.
+    `sent`: of every sample that it took while it streamed, lost or not: ticks without turns, values (10) in single
+    precision, and when it was taken by the host's clock, ns.
     """
 
     def __init__(

@@ -56,15 +56,7 @@ def send(stream: IO[bytes], details: Details, arrays: Sequence[Array] = ()) -> N
 
 
 def receive(stream: IO[bytes]) -> tuple[Details, list[Array]]:
-    """What `send` sent.
-
-    Raises
-    ------
-    BrokenAnswerError
-        It is of another shape, or larger than any answer.
-    EOFError, OSError
-        Nobody is there any more.
-    """
+    """Receive what `send` sent; raises BrokenAnswerError, or EOFError and OSError where nobody is there."""
     (length,) = LENGTH.unpack(_exactly(stream, LENGTH.size))
     if length > MOST_ANSWER_BYTES:
         raise BrokenAnswerError(f"an answer of {length} bytes")
@@ -165,13 +157,7 @@ def details_of_document(value: object) -> object:
 
 
 def document_from(details: object) -> object:
-    """What `details_of_document` wrote, checked.
-
-    Raises
-    ------
-    BrokenAnswerError
-        It is something else.
-    """
+    """Give what `details_of_document` wrote, checked; raises BrokenAnswerError where it is something else."""
     with _whatever_is_wrong():
         match details:
             case ["table", dict(inner)]:

@@ -35,13 +35,7 @@ Columns = tuple[tuple[int, ...], ...]
 
 
 def is_apdm(path: Path, head: bytes) -> bool:
-    """Whether a file that begins so is one of these exports.
-
-    Raises
-    ------
-    FileRefusedError
-        It is HDF5 and cannot be looked into.
-    """
+    """Give whether a file that begins so is such an export; raises FileRefusedError for unreadable HDF5."""
     if is_hdf5(head):
         return is_apdm_hdf5(path)
     lines = head.decode("utf-8", "replace").lstrip("\ufeff").splitlines()
@@ -53,14 +47,7 @@ def is_apdm(path: Path, head: bytes) -> bool:
 
 
 def read_apdm(path: Path) -> tuple[RecordedOpal, ...]:
-    """Read one CSV.
-
-    Raises
-    ------
-    FileRefusedError
-        None of the dialects, sensors without acceleration or rates, other units, what is no number, times that step
-        back.
-    """
+    """Read one CSV; raises FileRefusedError where it cannot be read or its times step back."""
     where = path.name
     with path.open(encoding="utf-8-sig", newline="") as file:
         reader = csv.reader(file)
@@ -96,13 +83,7 @@ def read_apdm(path: Path) -> tuple[RecordedOpal, ...]:
 
 
 def apdm_trial(files: Sequence[Path], _rate_hz: float | None = None) -> ImportedTrial:
-    """The sensors of one trial, all in one file; they share its stamps, which give the rate.
-
-    Raises
-    ------
-    FileRefusedError
-        What `read_apdm` refuses, several files.
-    """
+    """Read one trial's sensors from its one file; shared stamps give the rate; raises FileRefusedError."""
     if len(files) != 1:
         raise FileRefusedError(
             ", ".join(path.name for path in files),

@@ -68,26 +68,14 @@ class _Layout:
 
 
 def is_apdm_hdf5(path: Path) -> bool:
-    """Whether an HDF5 file states that it is of these programs.
-
-    Raises
-    ------
-    FileRefusedError
-        It cannot be looked into.
-    """
+    """Give whether an HDF5 file states these programs; raises FileRefusedError where it cannot be opened."""
     with Hdf5File(path, path.name) as file:
         has_version = file.attribute("/", VERSION) is not None
         return has_version and (bool(file.texts("/", CASE_IDS)) or file.is_group(SENSORS))
 
 
 def read_apdm_hdf5(path: Path) -> tuple[RecordedOpal, ...]:
-    """The sensors of one file.
-
-    Raises
-    ------
-    FileRefusedError
-        Another version, sensors without times, acceleration or rates, other units, times that step back.
-    """
+    """Read the sensors of one file; raises FileRefusedError on other versions, units, or times stepping back."""
     with Hdf5File(path, path.name) as file:
         version = _number(file, "/", VERSION)
         if version not in VERSIONS:

@@ -19,10 +19,7 @@ OF_OTHERS = frozenset({"packetcounter", "sampletimefine"})  # Xsens and Movella:
 
 
 def is_csv(path: Path, head: bytes) -> bool:
-    """Whether a file is a table with acceleration and angular rates about three axes of one sensor or more.
-
-    Strict, so that no file of another program comes in by the way of its columns' names alone.
-    """
+    """Give whether a table has acceleration and rates about three axes; strict, so as to claim no other files."""
     if not head or b"\0" in head:
         return False
     try:

@@ -109,13 +109,7 @@ class LimitedReader:
         waiting: Waiting,
         most_bytes: int = MOST_FILE_BYTES,
     ) -> T:
-        """What is made of what the process reports and of the arrays that it names.
-
-        Raises
-        ------
-        FileRefusedError
-            What the process refused, a file that is too large, or a `ReadingEndedError`.
-        """
+        """Make an answer of what the process reports and of its arrays; raises FileRefusedError."""
         sizes = {path: path.stat().st_size for path in files if path.is_file()}
         for path, size in sizes.items():
             if size > most_bytes:
@@ -300,13 +294,7 @@ class LimitedReading:
         return self._reader.ask(task, [path], path.name, reference_from, self.waiting)
 
     def ask_parquet(self, path: Path, sql: str, is_typed: bool) -> tuple[tuple[str, ...], list[Columns]]:
-        """As `parquet_questions.answer` does; the columns' names, and the columns of each batch of rows.
-
-        Raises
-        ------
-        FileRefusedError
-            The Parquet cannot be read, the question cannot be answered, or takes more memory or time than it may.
-        """
+        """Answer as `parquet_questions.answer`: names, and columns per batch; raises FileRefusedError."""
         task = {"task": child.QUESTION, "path": str(path), "sql": sql, "is_typed": is_typed}
         try:
             return self._reader.ask(task, [path], path.name, _found_rows, self.waiting)

@@ -32,26 +32,7 @@ def check_magnitudes(
     gyr_unit: str = "rad/s",
     is_export: bool = True,
 ) -> None:
-    """Refuse samples whose sizes do not fit the units that they are given in. Missing ones show nothing.
-
-    Parameters
-    ----------
-    acc_m_s2 : (n, 3)
-        In SI units as the file states.
-    gyr_rad_s : (n, 3) or None
-        Likewise; None: derived here, or held to an orientation elsewhere.
-    sensor, where
-        By which a person finds the samples.
-    gyr_unit
-        In which the file states that its rates are.
-    is_export
-        A program wrote the file, and can write it again in another unit; else the sensor did.
-
-    Raises
-    ------
-    FileRefusedError
-        Another unit, or gravity was taken out.
-    """
+    """Refuse samples whose size does not fit their units or lacks gravity; raises FileRefusedError."""
     middle = middle_size(acc_m_s2)
     least, most = FELT_M_S2
     name, shown = quoted(sensor), f"{middle:.2f}"
@@ -95,18 +76,7 @@ def _check_rates(gyr_rad_s: FloatArray, sensor: str, where: str, gyr_unit: str, 
 
 
 def middle_size(vectors: FloatArray) -> float:
-    """The median length of vectors that are there.
-
-    Parameters
-    ----------
-    vectors : (n, 3)
-        In any unit.
-
-    Returns
-    -------
-    float
-        In the same; NaN where none is there.
-    """
+    """Give the median length of the vectors (n, 3) that are there; NaN where none is."""
     sizes = np.linalg.norm(vectors, axis=1)
     sizes = sizes[np.isfinite(sizes)]
     return float(np.median(sizes)) if len(sizes) else float(np.nan)
@@ -115,24 +85,7 @@ def middle_size(vectors: FloatArray) -> float:
 def times_the_turning(
     gyr_rad_s: FloatArray, q_earth_from_sensor: FloatArray, counter: Numbers, rate_hz: float
 ) -> float:
-    """How many times as fast as the orientation turns the rates are: 1 in rad/s, 57 where they are in deg/s.
-
-    Parameters
-    ----------
-    gyr_rad_s : (n, 3)
-        In sensor axes.
-    q_earth_from_sensor : (n, 4)
-        Unit quaternions, scalar first.
-    counter : (n,)
-        Ascending packet numbers.
-    rate_hz
-        Packets per second.
-
-    Returns
-    -------
-    float
-        The median while it turns; NaN where it does not.
-    """
+    """Give rates over the orientation's turning, median: 1 in rad/s, 57 in deg/s; NaN where it does not turn."""
     speed = np.linalg.norm(gyr_rad_s, axis=1)
     turned = np.linalg.norm(derive_rates(q_earth_from_sensor, counter, rate_hz), axis=1)
     is_turning = np.isfinite(speed) & (turned > TURNING_RAD_S)

@@ -62,13 +62,7 @@ def is_matlab(_path: Path, head: bytes) -> bool:
 
 
 def read_matlab(path: Path) -> dict[str, Variable]:
-    """All variables of one file by their names.
-
-    Raises
-    ------
-    FileRefusedError
-        It is damaged, of another version, or the library for version 7.3 is not installed.
-    """
+    """Read all variables by name; FileRefusedError if damaged, of other version, or without 7.3 library."""
     with path.open("rb") as file:
         head = file.read(HDF5_AT + len(SIGNATURE))
     if not is_matlab(path, head):

@@ -106,23 +106,13 @@ def is_movella_dot(path: Path, head: bytes) -> bool:
 
 
 def dot_recording(path: Path) -> str:
-    """What the names of a recording's files have in common: for those the app calls by tag, address and time, the time.
-
-    The milliseconds, at which each sensor's file was begun, are left out.
-    """
+    """Give what the names of a recording's files share: of the app's, the time, without milliseconds."""
     dated = re.fullmatch(r".*?(?:_[0-9A-F]{12}_(\d{8}_\d{6})|_(\d{8}_\d{6})_\d{3})", path.stem)
     return dated[1] or dated[2] if dated else without_site(path.stem)
 
 
 def read_dot(path: Path, asked_hz: float | None = None) -> DotFile:
-    """Read one file.
-
-    Raises
-    ------
-    FileRefusedError
-        None of these, no specific force and nothing to make it of, neither rates nor orientation, times that step
-        back, other units.
-    """
+    """Read one file; raises FileRefusedError without force or rates, with other units or times stepping back."""
     where = path.name
     settings, table = _read(path, where)
     ticks = unwrapped(table, TIME, TICKS_TURN_AT, where)
@@ -169,21 +159,7 @@ def read_dot(path: Path, asked_hz: float | None = None) -> DotFile:
 
 
 def movella_dot_trial(files: Sequence[Path], rate_hz: float | None = None) -> ImportedTrial:
-    """The files of one trial, one sensor in each.
-
-    Synchronised sensors share one clock, and their samples stand at its times. Others start together at zero, each
-    on a clock of its own: how far they are apart is for the motion to show.
-
-    Parameters
-    ----------
-    rate_hz
-        Samples per second where neither the files nor their times give it.
-
-    Raises
-    ------
-    FileRefusedError
-        What `read_dot` refuses of the only file.
-    """
+    """Read a trial, one sensor per file; unsynchronised sensors keep their own clock; raises FileRefusedError."""
     read, unread = read_each(files, lambda path: read_dot(path, rate_hz), _named)
     starts_s = _starts_s(read)
     is_one_grid = _is_one_grid(read, starts_s)

@@ -84,34 +84,13 @@ def is_mti_stream(path: Path, head: bytes) -> bool:
 
 
 def mti_trial(files: Sequence[Path], rate_hz: float | None = None) -> ImportedTrial:
-    """The sensors of one trial, each in a file of its own.
-
-    Parameters
-    ----------
-    rate_hz
-        Samples per second, for streams that contain a counter and no time.
-
-    Raises
-    ------
-    FileRefusedError
-        No motion was sent, or nothing that gives its time, in the only file.
-    OSError
-        A file cannot be read.
-    """
+    """Read one trial's sensors, a file each; raises FileRefusedError if the only file has no motion or time."""
     sensors, unread = read_each(files, lambda path: _sensor(path, rate_hz))
     return ImportedTrial(DRIVER, tuple(with_own_clocks(sensors)), tuple(unread))
 
 
 def read_mti_stream(path: Path) -> MtiStream:
-    """Read all messages of a stream; damaged stretches are passed over.
-
-    Raises
-    ------
-    FileRefusedError
-        It holds messages of the older kind alone, or none of motion.
-    OSError
-        The file cannot be read.
-    """
+    """Read a stream's messages, passing over damaged stretches; FileRefusedError if old ones, or no motion."""
     framer, rows = XbusFramer(_ANSWERS), _Rows()
     with path.open("rb") as file:
         while piece := file.read(PIECE):

@@ -40,19 +40,7 @@ NAME_THEM = (
 
 
 def sensors_of_table(table: NamedTable, rate_hz: float | None) -> list[ImportedSensor]:
-    """The sensors of a table: SI units, seconds on the clock of its stamps.
-
-    Parameters
-    ----------
-    rate_hz
-        Samples per second as somebody entered it; None: nobody did.
-
-    Raises
-    ------
-    FileRefusedError
-        No sensor, two columns that mean the same, units that do not match what is given or that cannot be
-        determined, neither times nor a rate, times that step back.
-    """
+    """Give a table's sensors, SI, seconds by its stamps; FileRefusedError for no sensor, bad units or times."""
     try:
         found = sensor_columns(list(table.columns), table.units)
     except FileRefusedError as refusal:
@@ -75,18 +63,7 @@ def trial_of_tables(
     files: Sequence[Path],
     rate_hz: float | None = None,
 ) -> ImportedTrial:
-    """The sensors of one trial, in one file or in several; `read` gives the tables of each.
-
-    Parameters
-    ----------
-    rate_hz
-        Samples per second where the files hold no times.
-
-    Raises
-    ------
-    FileRefusedError
-        What is refused of the only file that there is.
-    """
+    """Read the sensors of several files of one trial; raises FileRefusedError if the only file is refused."""
     tables, unread = read_each(
         files, lambda path: [(table.called, sensors_of_table(table, rate_hz)) for table in read(path)]
     )

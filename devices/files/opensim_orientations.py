@@ -48,13 +48,7 @@ def is_opensim_orientations(_path: Path, head: bytes) -> bool:
 
 
 def read_opensim_orientations(path: Path) -> OrientationTable:
-    """Read one file.
-
-    Raises
-    ------
-    FileRefusedError
-        No such table, a sensor twice, lines of another length, what is no number or no rotation, times that step back.
-    """
+    """Read one file; raises FileRefusedError for invalid tables, sensors twice or times that step back."""
     where = path.name
     names: list[str] = []
     rows: list[list[float]] = []
@@ -93,18 +87,7 @@ def read_opensim_orientations(path: Path) -> OrientationTable:
 
 
 def opensim_trial(files: Sequence[Path], rate_hz: float | None = None) -> ImportedTrial:
-    """The sensors of one trial, all in one file.
-
-    Parameters
-    ----------
-    rate_hz
-        Rows per second where there are too few to determine it.
-
-    Raises
-    ------
-    FileRefusedError
-        What `read_opensim_orientations` refuses, several files, uneven times, of which no rates can be derived.
-    """
+    """Read one trial's sensors, all in one file; raises FileRefusedError, also where times are uneven."""
     if len(files) != 1:
         raise FileRefusedError(
             ", ".join(path.name for path in files),

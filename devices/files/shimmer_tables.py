@@ -71,15 +71,7 @@ def is_shimmer(path: Path, head: bytes) -> bool:
 
 
 def shimmer_trial(files: Sequence[Path], rate_hz: float | None = None) -> ImportedTrial:
-    """The sensors of one trial, in one file or in several; the rate is that of their stamps.
-
-    Raises
-    ------
-    FileRefusedError
-        Of the only file: no calibrated accelerometer, gyroscope and time of one sensor, another unit, no numbers.
-    OSError
-        It cannot be read.
-    """
+    """Read one trial's sensors from files, rate by stamps; raises FileRefusedError, or OSError if unreadable."""
     tables: list[Path] = []
     of_cards: dict[tuple[Path, str], list[Path]] = {}
     for path in files:

@@ -50,22 +50,13 @@ class Table:
 class TextShape:
     """How a text of another program is laid out, beyond its header.
 
-    Attributes
-    ----------
-    names
-        Of the columns, in their order.
-    units
-        What a line of units below the header gives for each column; empty where there is no such line.
-    decimal
-        The decimal point: "," in files of some countries.
-    first
-        The cells of the first row of values; empty where there is none.
+    `units`: what a line of units below the header gives for each column; empty where there is no such line.
     """
 
-    names: tuple[str, ...]
+    names: tuple[str, ...]  # of the columns, in their order
     units: Mapping[str, str]
-    decimal: str
-    first: tuple[str, ...]
+    decimal: str  # the decimal point: "," in files of some countries
+    first: tuple[str, ...]  # the cells of the first row of values; empty where there is none
 
 
 def shape_of(path: Path, where: str, is_unit: Callable[[str], bool], *, comment: str, delimiters: str) -> TextShape:
@@ -92,31 +83,8 @@ def read_csv(
     decimal: str = ".",
     header_names: str = "",
 ) -> Table:
-    """Read a text with one header line.
-
-    Parameters
-    ----------
-    where
-        The file's name in messages.
-    numeric
-        Columns to be read as numbers, NaN where empty.
-    comment
-        Lines starting with it before the header are passed over.
-    delimiters
-        Of these, the one that divides the header most is taken.
-    keep_others
-        All other columns are kept as the text they are, or left out.
-    has_units
-        The line after the header holds units, see `shape_of`.
-    decimal
-        The decimal point.
-    header_names
-        The header is the first line that contains this; lines before it are passed over.
-
-    Raises
-    ------
-    FileRefusedError
-        Not a text, no header, a column twice, a line with too few or too many columns, a text that is not a number.
+    """Read a text with one header line; `numeric` columns are NaN where empty; raises FileRefusedError.
+    The delimiter is the one that divides the header most; the header is the first line with `header_names`.
     """
     with path.open("rb") as file:
         names, delimiter, header_line = _read_header(file, where, comment, delimiters, header_names)
@@ -148,13 +116,7 @@ def read_csv(
 
 
 def read_parquet(path: Path, where: str, numeric: Collection[str]) -> Table:
-    """Read a Parquet file as `read_csv` reads a text. Columns that are not asked for as numbers keep numeric types.
-
-    Raises
-    ------
-    FileRefusedError
-        Not Parquet, a column twice, a column that should hold numbers and does not.
-    """
+    """Read Parquet as `read_csv` reads a text; other columns keep numeric types; raises FileRefusedError."""
     import pyarrow.parquet  # here, not above: the window starts without it
 
     try:
@@ -187,13 +149,7 @@ def read_parquet(path: Path, where: str, numeric: Collection[str]) -> Table:
 def header_of(
     path: Path, where: str, *, comment: str | None = None, delimiters: str, header_names: str = ""
 ) -> tuple[list[str], list[str]]:
-    """The lines before the header, without the mark of a comment, and the names of the columns; as `read_csv`.
-
-    Raises
-    ------
-    FileRefusedError
-        Not a text, no header, a column twice.
-    """
+    """Give the lines before the header, less comment marks, and the columns' names; raises FileRefusedError."""
     with path.open("rb") as file:
         names, _, header_line = _read_header(file, where, comment, delimiters, header_names)
         file.seek(0)

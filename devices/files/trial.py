@@ -112,18 +112,7 @@ class Gathered:
 def read_each(
     files: Sequence[Path], read: Callable[[Path], T], ids: Callable[[Path], Sequence[str]] = lambda _path: ()
 ) -> tuple[list[T], list[UnreadFile]]:
-    """What was read of each file, and the files that were refused.
-
-    Parameters
-    ----------
-    ids
-        By which the sensor of a file may be called that cannot be read.
-
-    Raises
-    ------
-    FileRefusedError
-        The first refusal, where no file could be read.
-    """
+    """Give what was read of each file, and the refused ones; raises FileRefusedError where all are refused."""
     found: list[T] = []
     unread: list[UnreadFile] = []
     for path in files:

@@ -47,15 +47,7 @@ def is_ximu3(path: Path, head: bytes) -> bool:
 
 
 def ximu3_trial(files: Sequence[Path], rate_hz: float | None = None) -> ImportedTrial:
-    """The sensors of one trial, a file or a folder for each; the rate is that of their stamps.
-
-    Raises
-    ------
-    FileRefusedError
-        The only one holds no samples, or columns that are missing or no numbers.
-    OSError
-        It cannot be read.
-    """
+    """Read one trial's sensors, a file or folder each, rate by stamps; raises FileRefusedError or OSError."""
     sensors, unread = read_each(files, _sensor)
     return ImportedTrial(DRIVER, tuple(with_own_clocks(sensors)), tuple(unread))
 

@@ -62,21 +62,12 @@ class MtFile:
 
 
 def is_mtmanager(_path: Path, head: bytes) -> bool:
-    """Whether a file that begins so is one of these texts, with the comments MT Manager heads them with.
-
-    Columns alone are not enough: those of Movella DOT have the same names, and other ticks of time.
-    """
+    """Give whether a file begins with MT Manager's comments; its columns are named as Movella DOT's."""
     return head.lstrip(b"\xef\xbb\xbf").startswith(b"//") and COUNTER.encode() in head
 
 
 def read_mtmanager(path: Path) -> MtFile:
-    """Read one file.
-
-    Raises
-    ------
-    FileRefusedError
-        Not an MT Manager text, no acceleration, neither rates nor orientation, a counter that steps back, other units.
-    """
+    """Read one file; raises FileRefusedError without acceleration, rates or orientation, or other units."""
     where = path.name
     comments, names = header_of(path, where, comment="//", delimiters=DELIMITERS)
     if COUNTER not in names:
@@ -117,21 +108,7 @@ def read_mtmanager(path: Path) -> MtFile:
 
 
 def mtmanager_trial(files: Sequence[Path], rate_hz: float | None = None) -> ImportedTrial:
-    """The files of one trial, one sensor in each, aligned by their packet counters.
-
-    Time is the counter divided by the update rate, from the first packet that any of the files holds; packets that are
-    missing are gaps. Rates that a file lacks are derived from its orientation, see `derive_rates`.
-
-    Parameters
-    ----------
-    rate_hz
-        Update rate where the files do not give it.
-
-    Raises
-    ------
-    FileRefusedError
-        What `read_mtmanager` refuses of the only file, an update rate that is unknown or not the same everywhere.
-    """
+    """Read a trial aligned by packet counter over update rate, with gaps; raises FileRefusedError."""
     read, unread = read_each(files, read_mtmanager, sensor_ids)
     rate_hz = _common_rate(read, rate_hz)
     sensors = []

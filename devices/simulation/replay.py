@@ -59,17 +59,11 @@ DEMONSTRATION_NAMES = {
 class ReplayFaults:
     """What goes wrong on the way, by sensor.
 
-    Attributes
-    ----------
-    loss_share
-        Of all samples, each by chance.
-    lag_s
-        By how much later a sensor's samples come and are stamped than they were taken.
-    silent_s
-        From when to when a sensor sends nothing, since the source was first opened.
+    `lag_s`: by how much later a sensor's samples come and are stamped than they were taken.
+    `silent_s`: from when to when a sensor sends nothing, since the source was first opened.
     """
 
-    loss_share: float = 0.0
+    loss_share: float = 0.0  # of all samples, each by chance
     lag_s: Mapping[str, float] = field(default_factory=dict)
     silent_s: Mapping[str, tuple[float, float]] = field(default_factory=dict)
     seed: int = 0

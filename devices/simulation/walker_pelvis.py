@@ -86,13 +86,7 @@ class PelvisTruth:
 def with_pelvis(
     motions: Mapping[Side, LegMotion], rng: np.random.Generator
 ) -> tuple[PelvisMotion, dict[Side, LegMotion]]:
-    """The pelvis between two moving legs, and the legs as they hang from it.
-
-    Returns
-    -------
-    PelvisMotion, dict of Side to LegMotion
-        On the legs' fine clock, earth axes, z up.
-    """
+    """Give the pelvis between two moving legs and the legs as they hang from it; earth axes, z up."""
     left = motions[Side.LEFT]
     time_s, step_s = left.time_s, float(left.time_s[1] - left.time_s[0])
     thighs = [motion.rotations[0, :, :2, 0] for motion in motions.values()]
@@ -116,25 +110,13 @@ def with_pelvis(
 
 
 def hip_m(pelvis: PelvisMotion, side: Side) -> FloatArray:
-    """Where a hip's centre is.
-
-    Returns
-    -------
-    (n, 3)
-        m, earth axes.
-    """
+    """Give a hip's centre (n, 3), m, in earth axes."""
     outward = 1.0 if side is Side.LEFT else -1.0
     return pelvis.centre_m + outward * HALF_WIDTH_M * pelvis.rotations[:, :, 1]
 
 
 def hung(motion: LegMotion, at_m: FloatArray) -> LegMotion:
-    """A leg carried to where its hip is.
-
-    Parameters
-    ----------
-    at_m : (n, 3)
-        Where the hip's centre is, m, earth axes.
-    """
+    """Carry a leg to its hip's centre (n, 3) in earth axes."""
     return replace(motion, origins_m=motion.origins_m + (at_m - motion.origins_m[0]))
 
 
@@ -180,18 +162,7 @@ def _liveliness(leg: LegMotion) -> FloatArray:
 def lunge(
     legs: Mapping[Side, Leg], recording: FreeMotion, time_s: FloatArray, rng: np.random.Generator
 ) -> tuple[PelvisMotion, dict[Side, LegMotion]]:
-    """Lunges, left and right in turn, with a half turn of the body after every second one.
-
-    Parameters
-    ----------
-    time_s : (n,)
-        Fine clock, from the start of the recording.
-
-    Returns
-    -------
-    PelvisMotion, dict of Side to LegMotion
-        On the fine clock, earth axes, z up.
-    """
+    """Give lunges left and right in turn, with a half turn of the body after every second one."""
     count = max(1, int(recording.duration_s // LUNGE_S))
     down = {side: np.zeros_like(time_s) for side in Side}
     for k in range(count):
@@ -234,22 +205,7 @@ def pelvis_poses(
     strap: np.random.Generator,
     rng: np.random.Generator,
 ) -> tuple[FloatArray, FloatArray]:
-    """Earth from sensor (n, 3, 3) and its place (n, 3), m, on the fine clock.
-
-    Parameters
-    ----------
-    contacts_s : (k,)
-        Initial contacts of both feet, after which real tissue rings.
-    strap
-        Chance of how this strap rides, alike in every recording of one strapping.
-    rng
-        Chance of the rest.
-
-    Returns
-    -------
-    (n, 3, 3) and (n, 3)
-        Earth from sensor, and m in earth axes.
-    """
+    """Give earth from sensor (n, 3, 3) and place (n, 3), m; `strap` is alike in all recordings of a strapping."""
     if tissue is Tissue.RIGID:
         ridden = pelvis.rotations
     else:
@@ -271,15 +227,7 @@ def pelvis_poses(
 
 
 def thigh_on_tissue(motion: LegMotion, outward: float, strap: np.random.Generator) -> FloatArray:
-    """How real tissue turns a thigh's sensor against the bone for the thigh's own pitch (n, 3, 3), beside the knee's.
-
-    It stays behind the pitch by 7 to 15 %, rolls by 1.7 deg and turns about its length by 4 to 9 deg.
-
-    Returns
-    -------
-    (n, 3, 3)
-        Rotation of sensor and tissue against the thigh.
-    """
+    """Give the rotation (n, 3, 3) of a thigh's sensor by pitch: 7-15 % behind, rolled 1.7 and turned 4-9 deg."""
     pitch = -np.arcsin(np.clip(motion.rotations[0, :, 2, 0], -1.0, 1.0))
     share = pitch / max(float(np.std(pitch)), np.deg2rad(3.0))
     length_rad = strap.uniform(*REAL_THIGH_LENGTH_RAD) / 2.0

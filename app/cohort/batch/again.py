@@ -41,14 +41,8 @@ def analyse_again(
     workers: Workers,
     report: Report,
 ) -> SelectionResult[UUID]:
-    """Analyse sessions that this version has not analysed as they are described now; each is kept once it is done.
-
-    Parameters
-    ----------
-    read
-        Gives a session with its samples and what keeps the bytes that come of it; None: nothing is to be done.
-    report
-        What it raises ends the work; what was done until then is kept.
+    """Analyse sessions that lack an analysis as described now, keeping each when done; `report` may stop it.
+    `read` gives a session with its samples and what keeps the result, None: nothing to do.
     """
     result, keeps = SelectionResult[UUID](len(session_ids)), dict[UUID, Keep]()
 

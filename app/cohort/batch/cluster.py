@@ -53,13 +53,7 @@ class ClusterSize:
         self._asked_s = self._seen_s = monotonic() - COUNTED_S
 
     def __call__(self) -> int:
-        """At least one, though there may be none: it may come back.
-
-        Raises
-        ------
-        ClusterLostError
-            There has been none for long.
-        """
+        """Give at least 1, since workers may come back; raises ClusterLostError if there was none for long."""
         now_s = monotonic()
         if now_s - self._asked_s >= COUNTED_S:
             count = sum(self._client.nthreads().values())

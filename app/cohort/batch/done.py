@@ -59,23 +59,11 @@ class BatchFolder:
             return None
 
     def keep(self, name: str, record: DoneRecord) -> None:
-        """Keep that a session is done, whole or not at all.
-
-        Raises
-        ------
-        OSError
-            It cannot be written.
-        """
+        """Keep that a session is done, whole or not at all; raises OSError."""
         _replace(self._path(name), asdict(record))
 
     def forget(self, name: str) -> None:
-        """Keep nothing of a session that failed, so that the table has no rows of what it once held.
-
-        Raises
-        ------
-        OSError
-            It cannot be taken away.
-        """
+        """Keep nothing of a session that failed, so that the table has no old rows of it; raises OSError."""
         self._path(name).unlink(missing_ok=True)
 
     def _path(self, name: str) -> Path:
@@ -93,15 +81,7 @@ def read_mark(out: Path) -> str | None:
 
 @contextmanager
 def batch_at(out: Path) -> Iterator[BatchFolder]:
-    """The batch at `out`, or a new one there, as long as this program works at it.
-
-    Raises
-    ------
-    FileRefusedError
-        Something else is there, or another program works at it.
-    OSError
-        The folder cannot be written.
-    """
+    """Hold the batch at `out`, existing or new, alone; raises FileRefusedError for other content or users."""
     out = out.resolve()
     mark = read_mark(out)
     if mark is None:

@@ -94,13 +94,7 @@ class ProcessExecutor(Executor):
         self._own.process = self._started(None)
 
     def _ask(self, fn: Callable[..., R], args: tuple[object, ...], kwargs: dict[str, object]) -> R:
-        """Have this thread's process do it; one that ends before it has begun is no loss but its own.
-
-        Raises
-        ------
-        WorkerLostError
-            The process ended meanwhile, or none begins.
-        """
+        """Run it in this thread's process; raises WorkerLostError if that ends meanwhile or none starts."""
         for _ in range(MOST_STARTS):
             process: _WorkerProcess | None = getattr(self._own, "process", None)
             if process is None or not process.is_there or process.calls >= CALLS_EACH:
@@ -147,13 +141,7 @@ class _WorkerProcess:
         return self._process.is_alive()
 
     def give(self, what: Call) -> None:
-        """Say what is to do, and wait until it is begun: a new process has to import first what takes seconds.
-
-        Raises
-        ------
-        EOFError, OSError
-            It has ended.
-        """
+        """Send the call and wait until it begins (imports take seconds); raises EOFError or OSError if ended."""
         self.calls += 1
         self._pipe.send(what)
         self._pipe.recv()
@@ -176,10 +164,7 @@ class _WorkerProcess:
 
 
 def _fresh_processes(preloaded: tuple[str, ...]) -> BaseContext:
-    """How processes are started: never as copies of this one, which would take its threads and locks along.
-
-    Where there is one, a server that has imported what they need makes them: a killed worker is back in no time.
-    """
+    """Give a context that never forks this process with its threads and locks; a preloaded server if possible."""
     if "forkserver" not in multiprocessing.get_all_start_methods():
         return multiprocessing.get_context("spawn")
     context = multiprocessing.get_context("forkserver")

@@ -41,23 +41,11 @@ class LibrarySessions:
         return tuple(self._ids)
 
     def content(self, name: str) -> str:
-        """What the library holds of a session, in one word.
-
-        Raises
-        ------
-        FileRefusedError
-            It is gone.
-        """
+        """Give a digest of what the library holds of a session; raises FileRefusedError if it is gone."""
         return _content(self._visit(name))
 
     def session(self, name: str) -> GivenSession:
-        """A session with its samples; that it leaves the library is noted first.
-
-        Raises
-        ------
-        FileRefusedError
-            It is gone, cannot be read, or that cannot be noted.
-        """
+        """Note in the audit that a session leaves, then read it with samples; raises FileRefusedError."""
         visit, opened = self._visit(name), self._opened
         try:
             opened.library.audit.note(

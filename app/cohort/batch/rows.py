@@ -83,8 +83,7 @@ class ReportedOf:
 
 
 def reported_of_folder(session: Session, mark: str) -> ReportedOf:
-    """What distinguishes a batch's patients, keyed with its mark, until its table numbers them; and the session's
-    day."""
+    """Give what identifies a patient within the batch, keyed with its mark, and the session's day."""
     code = session.patient.code
     if not code:
         return ReportedOf("", session.started[:10])

@@ -46,15 +46,7 @@ class Batch:
         self.result = BatchResult(len(sessions.names))
 
     def run(self, workers: Workers, report: Report) -> None:
-        """Do all that is not done, then write the table; where something ends it early, of what is done.
-
-        Raises
-        ------
-        ClusterLostError
-            The workers are out of reach.
-        OSError
-            OUT cannot be written.
-        """
+        """Do what is not done, then write the table, also if ended early; raises ClusterLostError or OSError."""
         pace, result = Pace(monotonic()), self.result
         report(0.0, f"0 of {result.total} sessions")
         try:
@@ -85,13 +77,7 @@ class Batch:
             yield BatchTask(name, source, self._folder, self._choices, self._software, known, self._figures)
 
     def _take(self, name: str, outcome: SessionOutcome | Exception) -> None:
-        """Keep what came of a session.
-
-        Raises
-        ------
-        OSError
-            OUT cannot be written.
-        """
+        """Keep what came of a session; raises OSError where OUT cannot be written."""
         if isinstance(outcome, OSError):
             raise outcome
         if isinstance(outcome, Exception):
@@ -135,13 +121,7 @@ class Pace:
 
     @property
     def per_minute(self) -> float:
-        """Sessions a minute; NaN while nothing is finished.
-
-        Returns
-        -------
-        float
-            1/min.
-        """
+        """Give sessions per minute; NaN while nothing is finished."""
         took_s = self._finished_s[-1] - self._finished_s[0]
         return 60 * (len(self._finished_s) - 1) / took_s if took_s > 0 else math.nan
 

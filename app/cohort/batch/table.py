@@ -31,13 +31,7 @@ TYPES = {
 def write_tables(
     rows: Iterable[Row], beside: Path, folder: Path, columns: Mapping[str, CellKind] = MappingProxyType(dict(COLUMNS))
 ) -> int:
-    """Write both files into `beside` and rename them into `folder`; gives how many rows they have.
-
-    Raises
-    ------
-    OSError
-        The disk is full or cannot be written to.
-    """
+    """Write both files into `beside`, rename them into `folder`, give the number of rows; raises OSError."""
     count = 0
     schema = pa.schema([(name, TYPES[kind]) for name, kind in columns.items()])
     words = [name for name, kind in columns.items() if kind is CellKind.TEXT]

@@ -72,13 +72,7 @@ class _Hash(Protocol):
 
 
 def analyse_task(task: BatchTask) -> SessionOutcome:
-    """Analyse a session into its folder of results, unless these are what would come of it.
-
-    Raises
-    ------
-    OSError
-        There is no room, or OUT cannot be written at all.
-    """
+    """Analyse a session into its results folder, unless these are up to date; raises OSError."""
     try:
         with using(task.figures):  # which of a library only the process has that opened it
             return _analysed(task)
@@ -124,13 +118,7 @@ def _analysed(task: BatchTask) -> SessionOutcome:
 
 
 def _check_worker(task: BatchTask) -> None:
-    """See that this process has the software and sees the folders of whoever asks.
-
-    Raises
-    ------
-    FileRefusedError
-        It does not.
-    """
+    """Raise FileRefusedError where this process lacks the caller's software or folders."""
     here = one_line(socket.gethostname())
     if software() != task.software:
         what = "the worker here has another version of Gaitwright"
@@ -181,8 +169,7 @@ def _files(folder: Path) -> Iterator[Path]:
 
 
 def _add(path: Path, digest: _Hash) -> None:
-    """What cannot be read is noted as such: only some of these files are the session, and reading that refuses
-    them."""
+    """Hash a file; an unreadable one is hashed as such, since only reading the session can refuse it."""
     try:
         if path.is_symlink():
             digest.update(b"link\0" + os.fsencode(path.readlink()) + b"\0")

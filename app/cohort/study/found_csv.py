@@ -29,13 +29,7 @@ def csv_lines(columns: Sequence[str], rows: Iterable[Sequence[object]]) -> Itera
 
 
 def check_csv_place(out: Path, table: Path) -> None:
-    """See whether a CSV file may stand at `out`: nothing is there, or a file that is called so and is not the table.
-
-    Raises
-    ------
-    FileRefusedError
-        Something else is there.
-    """
+    """Raise FileRefusedError where anything but a CSV file, or the table itself, is at `out`."""
     if out.is_dir():
         raise FileRefusedError(str(out), "this is a folder", "Enter a file name, such as answer.csv")
     if out.exists() and (out.suffix.lower() != ".csv" or out.resolve() == table.resolve()):
@@ -43,13 +37,7 @@ def check_csv_place(out: Path, table: Path) -> None:
 
 
 def write_csv(columns: Sequence[str], rows: Iterable[Sequence[object]], out: Path) -> int:
-    """Write a CSV file beside `out` and put it in its place when it is whole; give the number of rows.
-
-    Raises
-    ------
-    OSError
-        The disk is full or cannot be written to; what was there stays.
-    """
+    """Write a CSV file whole or not at all, and give the number of rows; raises OSError, keeping the old file."""
     out.parent.mkdir(parents=True, exist_ok=True)
     handle, beside = tempfile.mkstemp(prefix=f".{out.name}-", dir=out.parent)
     count = -1  # the names of the columns are no row
@@ -66,8 +54,7 @@ def write_csv(columns: Sequence[str], rows: Iterable[Sequence[object]], out: Pat
 
 
 def aligned_lines(columns: Sequence[str], rows: Iterable[Sequence[object]]) -> Iterator[str]:
-    """Give the table for a terminal, numbers at the right, long texts cut; after `MOST_ON_TERMINAL` rows a note
-    follows."""
+    """Lay out a table for a terminal, cutting long texts and, with a note, rows after `MOST_ON_TERMINAL`."""
     left = iter(rows)
     shown = [tuple(row) for row in islice(left, MOST_ON_TERMINAL)]
     cells = [[_short(name) for name in columns], *([_short(value) for value in row] for row in shown)]

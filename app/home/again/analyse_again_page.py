@@ -89,15 +89,9 @@ class TickList(CellTable):
 
 
 class AnalyseAgainPage(QWidget):
-    """Knows lines and which of them are ticked.
+    """Knows lines and which of them are ticked."""
 
-    Signals
-    -------
-    changed
-        Other sessions are ticked.
-    """
-
-    changed = Signal()
+    changed = Signal()  # other sessions are ticked
 
     def __init__(self) -> None:
         super().__init__()

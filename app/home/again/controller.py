@@ -33,21 +33,11 @@ TABLE = "parameters.parquet"  # as app.cohort.batch.table has it
 
 
 class AnalysingAgain(LongWork):
-    """One selection at a time.
+    """One selection at a time."""
 
-    Signals
-    -------
-    changed
-        The bar shows something else.
-    done
-        It ended: what came of it, and what to do.
-    table_made
-        The path of a table over many sessions, to be asked.
-    """
-
-    changed = Signal()
-    done = Signal(str, str)
-    table_made = Signal(object)
+    changed = Signal()  # the bar shows something else
+    done = Signal(str, str)  # it ended: what came of it, and what to do
+    table_made = Signal(object)  # the path of a table over many sessions, to be asked
 
     def __init__(self, controller: LibraryController, parent: QObject) -> None:
         super().__init__(controller, parent)

@@ -31,19 +31,11 @@ MOST_DRAWN = 16  # groups; those with most sessions
 
 
 class QuestionsPage(QWidget):
-    """Signals
-    -------
-    table_requested
-        Another table is to be chosen.
-    making_requested
-        A table is to be made from the library.
-    question_changed
-        What is asked now, a `GroupQuestion`.
-    """
+    """"""
 
-    table_requested = Signal()
-    making_requested = Signal()
-    question_changed = Signal(object)
+    table_requested = Signal()  # another table is to be chosen
+    making_requested = Signal()  # A table is to be made from the library
+    question_changed = Signal(object)  # what is asked now, a `GroupQuestion`
 
     def __init__(self) -> None:
         super().__init__()

@@ -39,18 +39,10 @@ class GoalDraft:
 
 
 class GoalsPage(TallPage):
-    """Proposes nothing: the value is typed.
+    """Proposes nothing: the value is typed."""
 
-    Signals
-    -------
-    agreed
-        A `GoalDraft`: it is to hold from now on.
-    taken_back
-        The key of a goal that is to hold no longer.
-    """
-
-    agreed = Signal(object)
-    taken_back = Signal(object)
+    agreed = Signal(object)  # A `GoalDraft`: it is to hold from now on
+    taken_back = Signal(object)  # the key of a goal that is to hold no longer
 
     def __init__(self) -> None:
         super().__init__()

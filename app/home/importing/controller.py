@@ -55,22 +55,14 @@ class _Read:
 class Importing(LongWork):
     """What leads to the page that shows what is in files, and on from it: one session after the other.
 
-    Signals
-    -------
-    asked
-        Something is on the page, to be imported or not.
-    left
-        There is nothing more to be done here.
-    imported
-        The id of the patient, whose session is in the library now; None where only the list has to be read again.
-    reported
-        What came of it, and what to do.
+    `imported`: the id of the patient, whose session is in the library now; None where only the list has to be read
+    again.
     """
 
-    asked = Signal()
-    left = Signal()
+    asked = Signal()  # something is on the page, to be imported or not
+    left = Signal()  # there is nothing more to be done here
     imported = Signal(object)
-    reported = Signal(str, str)
+    reported = Signal(str, str)  # what came of it, and what to do
 
     def __init__(self, controller: LibraryController, parent: QObject) -> None:
         super().__init__(controller, parent)

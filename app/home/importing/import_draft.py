@@ -36,16 +36,10 @@ OPEN, ELSEWHERE = "open", "elsewhere"  # what has no site or kind: left open, an
 
 
 class DraftCards(QWidget):
-    """Signals
-    -------
-    changed
-        A choice was made.
-    placing_requested
-        The motion shall say where the sensors were.
-    """
+    """"""
 
-    changed = Signal()
-    placing_requested = Signal()
+    changed = Signal()  # A choice was made
+    placing_requested = Signal()  # the motion shall say where the sensors were
 
     def __init__(self, of_code: QWidget) -> None:
         super().__init__()
@@ -128,11 +122,7 @@ class DraftCards(QWidget):
         self._on_changed()
 
     def show_chains(self, chains: "Chains") -> bool:
-        """Take the legs that the motion gives: ask which of them is the left one, unless a site that was stated
-        gives it.
-
-        Returns whether they fit the sites that were stated.
-        """
+        """Take the legs found from motion and ask which is left unless sites show it; False: sites contradict."""
         stated = {key: site for key, site in self.sites.items() if site is not None}
         fitting = [side for side in Side if all(chains.sites(side).get(key) is site for key, site in stated.items())]
         if not fitting:

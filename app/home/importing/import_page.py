@@ -26,18 +26,14 @@ NARROW_BELOW = 900  # px of the design
 
 
 class ImportPage(QWidget):
-    """Signals
-    -------
-    code_changed, changed
-        What was typed or chosen.
-    files_requested, folder_requested
-        Something is to be chosen.
-    reading_requested
-        What could not be read is to be tried again at a rate, Hz.
+    """
+
+    `code_changed`, `changed`: what was typed or chosen.
+    `files_requested`, `folder_requested`: something is to be chosen.
     """
 
     changed = Signal()
-    reading_requested = Signal(float)
+    reading_requested = Signal(float)  # what could not be read is to be tried again at a rate, Hz
 
     def __init__(self) -> None:
         super().__init__()

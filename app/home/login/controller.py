@@ -68,11 +68,7 @@ class Entry(QObject):
         return self._new is not None or self._given is not None
 
     def begin(self) -> None:
-        """Show the page that comes first: where there is no library yet, how to make one.
-
-        One that was opened here before is missing, rather than to be made: its disk may not be connected. Where the
-        environment names the clinic's server, its library is joined.
-        """
+        """Show the first page: how to make a library, join the environment's server, or find a missing one."""
         self._new, self._given, self._key, self._cover_of, self._tried = None, None, "", "", ""
         if not (self._folder / KEYS).exists():
             if os.environ.get(DATABASE_VARIABLE):
@@ -99,10 +95,7 @@ class Entry(QObject):
             self.begin()
 
     def cover(self, code: str, is_recording: bool, *, is_asked_for: bool = False) -> None:
-        """Show nothing but the way back, for the operator who is logged in.
-
-        A recovery key that was in sight is forgotten: behind the cover it is asked for, or made again.
-        """
+        """Cover the screen for the logged-in operator; a recovery key in sight is forgotten."""
         self._cover_of = code
         if self._key:
             self._key = ""

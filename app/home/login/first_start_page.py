@@ -102,10 +102,7 @@ class FirstStartPage(EntryPage):
         return bool(self._missing)
 
     def show_missing(self, folder: str, waiting: int = 0) -> None:
-        """Say that the library which was in this folder is missing; none: how to make one.
-
-        `waiting` recordings are on this computer until their library is back.
-        """
+        """Report the library missing from `folder`, empty: how to make one; `waiting`: recordings still here."""
         self._missing, self.recovery_key, self._is_asking = folder, "", False
         reported = [tr("It was in {folder} and is no longer there.").format(folder=folder)]
         if waiting:

@@ -16,18 +16,10 @@ if TYPE_CHECKING:
 
 
 class ComputingCourses(LongWork):
-    """One computation at a time.
+    """One computation at a time."""
 
-    Signals
-    -------
-    left
-        It is over, however it ended.
-    reported
-        What could not be done, and what to do.
-    """
-
-    left = Signal()
-    reported = Signal(str, str)
+    left = Signal()  # it is over, however it ended
+    reported = Signal(str, str)  # what could not be done, and what to do
 
     def begin(self, missing: Sequence[UUID]) -> None:
         def work(opened: "OpenedLibrary", report: Report) -> int:

@@ -46,18 +46,10 @@ class _Answer(NamedTuple):
 
 
 class FillingDemonstration(QObject):
-    """One library at a time; another, or `stop`, ends what goes on for the one before.
+    """One library at a time; another, or `stop`, ends what goes on for the one before."""
 
-    Signals
-    -------
-    changed
-        A visit is ready.
-    reported
-        What could not be done, and what follows.
-    """
-
-    changed = Signal()
-    reported = Signal(str, str)
+    changed = Signal()  # A visit is ready
+    reported = Signal(str, str)  # what could not be done, and what follows
     _answered = Signal(object)  # from the threads that wait for the processes
 
     def __init__(self, controller: LibraryController, parent: QObject) -> None:

@@ -13,15 +13,10 @@ from app.workers.refusals import Refusal
 class LibraryNotices(QObject):
     """Two banners: `rollback`, of a library that is older than this computer has seen, and `away`.
 
-    Signals
-    -------
-    log_in_requested
-        The clinic's server answers again.
-    refused
-        Why the older state could not be accepted.
+    `log_in_requested`: the clinic's server answers again.
     """
 
-    refused = Signal(str, str)
+    refused = Signal(str, str)  # why the older state could not be accepted
 
     def __init__(self, controller: LibraryController, parent: QObject) -> None:
         super().__init__(parent)
@@ -101,8 +96,7 @@ class LibraryNotices(QObject):
 
 
 def still_away_words(why: Refusal) -> tuple[str, str]:
-    """What is stated about sessions that the clinic's server did not take; the reason and what to do about it come
-    last."""
+    """Give the words about sessions that the clinic's server refused: the reason, then the remedy."""
     what = tr("Offline sessions are still on this computer only.")
     then = tr("No data are lost. Each login tries again to send them to the server.")
     return what, f"{then} {why.what} {why.remedy}"

@@ -52,15 +52,9 @@ ICONS = {
 
 
 class PatientPanel(TallPage):
-    """Passive: it is shown visits, lines and what is next. It is as high as all of them, and whoever holds it scrolls.
+    """Passive: it shows visits, lines and what is next, as high as all of them; its holder scrolls."""
 
-    Signals
-    -------
-    next_requested
-        The next step, which is to be taken.
-    """
-
-    next_requested = Signal(object)
+    next_requested = Signal(object)  # the next step, which is to be taken
 
     def __init__(self) -> None:
         super().__init__()

@@ -28,21 +28,11 @@ if TYPE_CHECKING:
 
 
 class Repeatability(LongWork):
-    """One study at a time.
+    """One study at a time."""
 
-    Signals
-    -------
-    changed
-        The bar shows something else.
-    done
-        It ended.
-    chosen
-        Differences are judged by other figures from now on.
-    """
-
-    changed = Signal()
-    done = Signal()
-    chosen = Signal()
+    changed = Signal()  # the bar shows something else
+    done = Signal()  # it ended
+    chosen = Signal()  # differences are judged by other figures from now on
 
     def __init__(self, controller: LibraryController, parent: QObject) -> None:
         super().__init__(controller, parent)

@@ -107,13 +107,7 @@ OF_TABLES = {  # the other tables; of curves.csv as the left knee has them
 
 
 def write_study(study: AgreementStudy, folder: Path) -> None:
-    """Write every table of an agreement into `folder`, which is there.
-
-    Raises
-    ------
-    OSError
-        The disk is full or cannot be written to.
-    """
+    """Write every table of an agreement into the existing `folder`; raises OSError."""
     write_table(*agreement_table(study), folder / TABLE)
     if any(walk.events for walk in study.walks):
         write_table(*event_table(study), folder / EVENT_TABLE)

@@ -47,10 +47,8 @@ WITH_HIP_WIDTH = 44 * MM  # of three beside each other
 
 
 def comparison_of(request: ReportRequest) -> Comparison | None:
-    """What the report compares: with an earlier visit, else the conditions chosen; None where neither is.
-
-    A walk represents all walks of its condition, as on the screen, unless another of them was chosen beside it. Of an
-    earlier visit the same condition counts, as it was walked last; where it has no such, nothing is compared.
+    """Give what the report compares: an earlier visit, else the chosen conditions, else None.
+    A walk represents its condition unless another of its walks was chosen; of a visit the last walk counts.
     """
     visit, is_simulated = request.visit, request.visit.analysis.is_simulated
     if request.earlier is not None:

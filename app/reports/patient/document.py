@@ -31,13 +31,7 @@ TITLE_CODE_LENGTH = 24
 
 
 def make_report(request: ReportRequest) -> bytes:
-    """Make the report's PDF. The same request gives the same bytes.
-
-    Raises
-    ------
-    KeyError
-        A walk is not among those analysed.
-    """
+    """Make the report's PDF, the same bytes for the same request; raises KeyError for an unanalysed walk."""
     return set_pages(PAGES.read_bytes() + TEMPLATE.read_bytes(), report_data(request), request.made_at)
 
 

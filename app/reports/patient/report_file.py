@@ -22,13 +22,7 @@ PDF = b"%PDF-"
 
 
 def write_report(session: Session, analysis: Analysis, folder: Path, made_at: datetime, version: str) -> None:
-    """Write `report.pdf` into a folder of results; without a walk there is nothing to report.
-
-    Raises
-    ------
-    OSError
-        The disk is full or cannot be written to.
-    """
+    """Write `report.pdf` into a results folder, nothing without a walk; raises OSError."""
     visit = AnalysedVisit(session, analysis)
     walks = default_walks(visit)
     if walks:
@@ -37,13 +31,7 @@ def write_report(session: Session, analysis: Analysis, folder: Path, made_at: da
 
 
 def write_visits(request: ReportRequest, folder: Path) -> None:
-    """Write what a report with an earlier visit compares, as tables; without one, nothing.
-
-    Raises
-    ------
-    OSError
-        The disk is full or cannot be written to.
-    """
+    """Write the tables of a comparison with an earlier visit, nothing without one; raises OSError."""
     comparison = comparison_of(request)
     if comparison is not None and comparison.kind is Contrast.VISITS:
         write_differences(rows_of(comparison), folder / VISITS)
@@ -52,13 +40,7 @@ def write_visits(request: ReportRequest, folder: Path) -> None:
 
 
 def chosen_walks(visit: AnalysedVisit, required: list[str], session: str) -> tuple[str, ...]:
-    """Give the walks that were asked for, or those a report shows when none was.
-
-    Raises
-    ------
-    FileRefusedError
-        There is no such walk, or none at all.
-    """
+    """Give the walks asked for, else those a report shows; raises FileRefusedError where there is none."""
     names = visit.walk_names()
     for name in required:
         if name not in names:
@@ -73,13 +55,7 @@ def chosen_walks(visit: AnalysedVisit, required: list[str], session: str) -> tup
 
 
 def check_report_place(out: Path) -> None:
-    """See whether a report may stand at `out`.
-
-    Raises
-    ------
-    FileRefusedError
-        Something else than a PDF is there.
-    """
+    """Raise FileRefusedError where anything but a PDF is at `out`."""
     if out.is_dir():
         raise FileRefusedError(str(out), "this is a folder", "Give the report a file name, such as report.pdf")
     if out.exists():
@@ -90,13 +66,7 @@ def check_report_place(out: Path) -> None:
 
 
 def replace_report(pdf: bytes, out: Path) -> None:
-    """Put a report in its place, whole.
-
-    Raises
-    ------
-    OSError
-        The disk is full or cannot be written to.
-    """
+    """Put a report in its place, whole or not at all; raises OSError."""
     out.parent.mkdir(parents=True, exist_ok=True)
     handle, beside = tempfile.mkstemp(prefix=f".{out.name}-", dir=out.parent)
     try:

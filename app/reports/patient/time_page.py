@@ -141,10 +141,7 @@ def _mean_cell(facts: Facts, side: Side, column: str, value: MeanAndSd, decimals
 
 
 def _single_support_row(facts: Facts) -> list[Cell | str]:
-    """A leg is in single support while the other swings; each in % of the swinging leg's stride.
-
-    As with double support, both legs' timing has to be beyond doubt.
-    """
+    """Give each leg's single support in % of the swinging leg's stride, if both legs' timing is beyond doubt."""
     is_not_reported = bool(facts.time_distance[DOUBLE_SUPPORT].unknown_both)
     cells: list[Cell | str] = []
     for other in (Side.RIGHT, Side.LEFT):

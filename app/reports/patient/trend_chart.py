@@ -34,11 +34,7 @@ def trend_chart(
     goals: Sequence[tuple[float, str]] = (),
     least_span: float = 0.0,
 ) -> Picture:
-    """A line for each leg, or one for both; visits are numbered from 1 in order of time.
-
-    `goals` are values with the words that stand beside the title: what was agreed, and when. Of less than `least_span`
-    the axis is none: what nobody judges is not to look large.
-    """
+    """Draw a line per leg, or one for both, over visits from 1; the axis spans at least `least_span`."""
     reported = [one for values in lines.values() for one in values if math.isfinite(one.value)]
     reach = [
         one.value + sign * (one.whisker if math.isfinite(one.whisker) else 0.0) for one in reported for sign in (-1, 1)

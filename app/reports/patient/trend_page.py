@@ -33,13 +33,7 @@ BY_LENGTH = 16
 
 
 def trend_page(visits: Sequence[CourseVisit], condition: str, facts: Facts) -> list[Block]:
-    """A page of its own; nothing where fewer than two visits have a value under this condition.
-
-    Parameters
-    ----------
-    visits
-        In order of time; the last is that of the report.
-    """
+    """Make a page of trends; none under two visits with a value. `visits` in time order, the report's last."""
     walked = walked_visits(visits, condition)
     agreed = facts.part.agreed
     columns = trend_columns(agreed)

@@ -61,27 +61,13 @@ _log = logging.getLogger(__name__)
 
 
 def remember_operators(opened: OpenedLibrary) -> None:
-    """Keep who works at the clinic, for when its server does not answer.
-
-    Raises
-    ------
-    LibraryError
-        The server does not answer.
-    OSError
-        The station's folder cannot be written.
-    """
+    """Keep who works at the clinic, for when its server does not answer; raises LibraryError or OSError."""
     reported = [asdict(operator) for operator in opened.library.operators.list()]
     replace_file(opened.folder / OPERATORS, json.dumps(reported, indent=1).encode())
 
 
 def open_away(folder: Path, data_key: DataKey, code: str) -> OpenedLibrary:
-    """Open the library that the station in `folder` works with while the server does not answer, for an operator.
-
-    Raises
-    ------
-    LibraryError
-        Nobody of this code has worked at this station, or the folder cannot be written.
-    """
+    """Open a station's own library while the server is away; raises LibraryError (unknown code, no access)."""
     station, operator = station_of(folder), _remembered(folder, code)
     away = folder / AWAY
     if (away / DATABASE).exists():
@@ -104,17 +90,8 @@ def has_been_away(opened: OpenedLibrary) -> bool:
 
 
 def bring_away_home(opened: OpenedLibrary) -> int:
-    """Take to the server what was recorded while it did not answer; how many sessions that were.
-
-    Journals are then the station's own: recordings that were not stopped are found as any other, and all are handed
-    over. To be done before either is looked for.
-
-    Raises
-    ------
-    LibraryError
-        The server does not answer or does not take it, or somebody works without it still: it stays here.
-    OSError
-        A file cannot be read or moved.
+    """Send what was recorded while the server did not answer, and give the number of sessions.
+    To be done before interrupted recordings are searched for. Raises LibraryError (it stays here), OSError.
     """
     if opened.shared is None:
         return 0

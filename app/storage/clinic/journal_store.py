@@ -83,15 +83,7 @@ class JournalStore:
         self._root = str(Path(place)) if self._is_local else place.removeprefix(S3).rstrip("/")
 
     def refuse_missing(self) -> None:
-        """See that the place is there: a folder whose disk is not mounted is not made up for by another.
-
-        Raises
-        ------
-        PlaceMissingError
-            It is not.
-        LibraryFaultError
-            It does not answer.
-        """
+        """Raise PlaceMissingError where the folder is not there, LibraryFaultError where it does not answer."""
         try:
             with _reported():
                 # of a bucket only that it is there: a folder in it comes with its first journal
@@ -104,15 +96,7 @@ class JournalStore:
             ) from None
 
     def put(self, path: Path) -> str:
-        """Bring a journal there and read it back; returns its name there, as its bytes are now.
-
-        Raises
-        ------
-        LibraryFaultError
-            The place does not answer, is full, or gives back something else.
-        OSError
-            The file here cannot be read.
-        """
+        """Put a journal there, read it back, give its name there; raises LibraryFaultError or OSError."""
         self.refuse_missing()
         name = name_in_place(path)
         at, sha256 = self._at(name), name.removesuffix(SUFFIX)
@@ -133,15 +117,7 @@ class JournalStore:
         )
 
     def fetch(self, name: str, target: Path) -> None:
-        """Bring a journal here, beside its place first; its content matches its name, or it is not there.
-
-        Raises
-        ------
-        LibraryFaultError
-            The place does not answer, or does not have it as it was.
-        OSError
-            The file here cannot be written.
-        """
+        """Fetch a journal, verified against its name, whole or not at all; raises LibraryFaultError, OSError."""
         digest = hashlib.sha256()
         target.parent.mkdir(mode=0o700, parents=True, exist_ok=True)
         with replacing(target, target.with_name(f".fetching-{secrets.token_hex(8)}")) as here:
@@ -154,24 +130,12 @@ class JournalStore:
                 )
 
     def destroy(self, name: str) -> None:
-        """Remove a journal for good; versions and snapshots that the place keeps are whose it is.
-
-        Raises
-        ------
-        LibraryFaultError
-            The place does not answer, or refuses.
-        """
+        """Remove a journal, though not the place's versions or snapshots; raises LibraryFaultError."""
         with _reported(), contextlib.suppress(FileNotFoundError):
             self._files.rm_file(self._at(name))
 
     def tidy(self, now_s: Callable[[], float] = time.time) -> None:
-        """Remove what was left when a station was killed while it put a journal there.
-
-        Raises
-        ------
-        LibraryFaultError
-            The place does not answer, or refuses.
-        """
+        """Remove what stations killed while putting a journal left there; raises LibraryFaultError."""
         if not self._is_local:
             return  # an object that was not finished has no name
         with _reported():
@@ -203,13 +167,7 @@ class JournalStore:
 
 
 def name_in_place(path: Path) -> str:
-    """What a journal is called in the shared place, as its bytes are now.
-
-    Raises
-    ------
-    OSError
-        It cannot be read.
-    """
+    """Give a journal's name in the shared place, from its present bytes; raises OSError."""
     with path.open("rb") as here:
         return hashlib.file_digest(here, "sha256").hexdigest() + SUFFIX
 

@@ -71,13 +71,7 @@ class SharedKeySlots(KeySlots):
         self._known = content
 
     def _on_server(self) -> bytes | None:
-        """None: it does not answer.
-
-        Raises
-        ------
-        FileNotFoundError
-            It answers, and has no library.
-        """
+        """Read the server's slots; None: no answer; raises FileNotFoundError where it has no library."""
         try:
             with self._database.reading() as session:
                 content = _content_of(session)

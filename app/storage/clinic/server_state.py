@@ -34,13 +34,7 @@ def set_state(session: OrmSession, state: ServerState) -> None:
 
 
 def close_for(session: OrmSession, target: str) -> None:
-    """Close the library on the server, which goes to `target`.
-
-    Raises
-    ------
-    LibraryError
-        It went, or is going, to another place already.
-    """
+    """Close the library on the server, which goes to `target`; raises LibraryError if bound elsewhere."""
     before = SettingRow.of(session, TARGET_SETTING, target)
     if state_of(session) is ServerState.CLOSED and before != target:
         raise LibraryError(
@@ -55,13 +49,7 @@ def close_for(session: OrmSession, target: str) -> None:
 
 
 def refuse_closed(session: OrmSession) -> None:
-    """See that the library on the server is the one to be worked with.
-
-    Raises
-    ------
-    LibraryFaultError
-        It is not; what is being recorded goes on without its row, and waits here.
-    """
+    """Raise LibraryFaultError where the server's library is closed; recordings then wait here."""
     found = state_of(session)
     if found is ServerState.OPEN:
         return

@@ -9,13 +9,7 @@ NEWEST = "0014"
 
 
 def bring_up_to_date(database: Database) -> None:
-    """Take the steps that are missing, all or none; two stations may ask at once.
-
-    Raises
-    ------
-    LibraryError
-        A later version of Gaitwright has written the library, or the server's database does not hold all letters.
-    """
+    """Apply missing migrations, all or none; LibraryError: a later version's library, or not all letters fit."""
     if is_up_to_date(database):
         return
     from app.storage.database.steps import move, refuse_unknown  # Alembic, which only an update needs
@@ -29,13 +23,7 @@ def bring_up_to_date(database: Database) -> None:
 
 
 def is_up_to_date(database: Database) -> bool:
-    """Whether the tables are those of this version.
-
-    Raises
-    ------
-    LibraryError
-        The database cannot be read.
-    """
+    """Give whether the tables are this version's; raises LibraryError."""
     with database.reading() as session:
         return step_of(session.connection()) == NEWEST
 

@@ -71,29 +71,18 @@ REPORTED = {
 class Room:
     """How much of the disk has to be free.
 
-    Attributes
-    ----------
-    start_s, start_bytes
-        A recording begins only where there is room for so long and so much besides.
-    warn_s
-        Less than this left is reported.
-    kept_bytes
-        A recording stops, and is closed, before less than this is free: for the database, and for other programs.
+    `start_s`, `start_bytes`: a recording begins only where there is room for so long and so much besides.
+    `kept_bytes`: a recording stops, and is closed, before less than this is free: for the database, and for other
+    programs.
     """
 
     start_s: float = 600.0
     start_bytes: int = 500_000_000
-    warn_s: float = 300.0
+    warn_s: float = 300.0  # less than this left is reported
     kept_bytes: int = 100_000_000
 
     def check(self, folder: Path, bytes_per_s: float) -> None:
-        """Refuse to begin on a disk that is too full.
-
-        Raises
-        ------
-        JournalRefusedError
-            Less is free than `start_s` and `start_bytes` ask for, or the folder is not there.
-        """
+        """Raise JournalRefusedError where the folder is gone or lacks room for `start_s` and `start_bytes`."""
         needed = self.start_s * bytes_per_s + self.start_bytes
         try:
             free = shutil.disk_usage(folder).free

@@ -193,10 +193,7 @@ class _Question(QWidget):
         self.hide()
 
     def ask(self, what: str, then: str = "", answers: tuple[str, ...] = (), *, is_understood: bool = False) -> None:
-        """Say what the motion contradicts, or cannot show, and offer one or two answers; empty takes it back.
-
-        `is_understood`: it is no question but what was answered to one, and the second button takes that back.
-        """
+        """Show what the motion contradicts with up to two answers, or an answer with its undo; empty: hide."""
         offered = dict(enumerate(answers, start=int(is_understood)))
         for number, button in enumerate(self.buttons):
             button.setVisible(number in offered)

@@ -45,21 +45,11 @@ class PatientDraft:
 
 
 class PatientPage(QWidget):
-    """What was typed stays on the page, right or wrong.
+    """What was typed stays on the page, right or wrong."""
 
-    Signals
-    -------
-    edited
-        What is on the page, with every letter.
-    open_pressed
-        The patient whose code was typed is in the library: take that one.
-    same_set_up_pressed
-        As at the last visit, and on to the sensors.
-    """
-
-    edited = Signal(PatientDraft)
-    open_pressed = Signal(str)
-    same_set_up_pressed = Signal()
+    edited = Signal(PatientDraft)  # what is on the page, with every letter
+    open_pressed = Signal(str)  # the patient whose code was typed is in the library: take that one
+    same_set_up_pressed = Signal()  # as at the last visit, and on to the sensors
 
     def __init__(self, today: date | None = None) -> None:
         super().__init__()

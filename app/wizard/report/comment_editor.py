@@ -28,21 +28,11 @@ class CommentState(Enum):
 
 
 class CommentEditor(Themed):
-    """Shows words and what becomes of them.
+    """Shows words and what becomes of them."""
 
-    Signals
-    -------
-    edited
-        The words, once the typing pauses.
-    confirmed
-        The words as they are to be printed.
-    left
-        The words have been left by a key.
-    """
-
-    edited = Signal(str)
-    confirmed = Signal(str)
-    left = Signal()
+    edited = Signal(str)  # the words, once the typing pauses
+    confirmed = Signal(str)  # the words as they are to be printed
+    left = Signal()  # the words have been left by a key
 
     def __init__(self) -> None:
         super().__init__()

@@ -28,18 +28,10 @@ FIRST_CHOICE = ("csv", "rrd")
 
 
 class ReportPage(QWidget):
-    """Shown pages as pictures.
+    """Shown pages as pictures."""
 
-    Signals
-    -------
-    options_changed
-        Another paper, another visit to compare with, or other files beside the report.
-    sharper_required
-        There is room for finer pictures of the pages than those shown.
-    """
-
-    options_changed = Signal()
-    sharper_required = Signal()
+    options_changed = Signal()  # another paper, another visit to compare with, or other files beside the report
+    sharper_required = Signal()  # there is room for finer pictures of the pages than those shown
 
     def __init__(self) -> None:
         super().__init__()

@@ -13,13 +13,7 @@ from app.storage.stored import Action, LibraryError
 def saved_from_library(
     opened: OpenedLibrary, session_id: UUID, what: str, folder: Path, write: Callable[[], None]
 ) -> Path:
-    """Note an export of figures of a session and make it, on the library's thread; `what` is one of the WHATs.
-
-    Raises
-    ------
-    LibraryError
-        It cannot be noted, or the folder cannot be written.
-    """
+    """Note an export of figures `what`, then make it, on the library's thread; raises LibraryError."""
     opened.library.audit.note(Action.EXPORT, about("session", session_id), format=what)
     try:
         write()

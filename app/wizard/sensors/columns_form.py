@@ -58,14 +58,9 @@ class ColumnsReported:
 
 
 class ColumnsForm(QWidget):
-    """
-    Signals
-    -------
-    changed
-        Something else is entered.
-    """
+    """"""
 
-    changed = Signal()
+    changed = Signal()  # something else is entered
 
     def __init__(self) -> None:
         super().__init__()

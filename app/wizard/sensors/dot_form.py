@@ -113,20 +113,11 @@ class DotList(CellTable):
 
 
 class DotForm(QWidget):
-    """
-    Signals
-    -------
-    turned
-        The number of a sensor whose tick was turned.
-    identify_pressed
-        The number of the sensor whose light is to blink.
-    changed
-        They are to measure otherwise.
-    """
+    """"""
 
-    turned = Signal(int)
-    identify_pressed = Signal(int)
-    changed = Signal()
+    turned = Signal(int)  # the number of a sensor whose tick was turned
+    identify_pressed = Signal(int)  # the number of the sensor whose light is to blink
+    changed = Signal()  # they are to measure otherwise
 
     def __init__(self) -> None:
         super().__init__()

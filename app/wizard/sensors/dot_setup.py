@@ -35,20 +35,11 @@ class _RequiredError(Exception):
 
 
 class DotSetup(QObject):
-    """
-    Signals
-    -------
-    changed
-        Something else is shown, or can be done.
-    ready
-        A `SourceChoice` whose sensors are on one clock.
-    left
-        Other sources are asked for.
-    """
+    """"""
 
-    changed = Signal()
-    ready = Signal(object)
-    left = Signal()
+    changed = Signal()  # something else is shown, or can be done
+    ready = Signal(object)  # A `SourceChoice` whose sensors are on one clock
+    left = Signal()  # other sources are asked for
 
     def __init__(self, sensors: "WornSensors", parent: QObject) -> None:
         super().__init__(parent)

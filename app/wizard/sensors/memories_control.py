@@ -35,17 +35,10 @@ Asked = Callable[[DotMemories, Callable[[str], None], Callable[[], None]], objec
 
 
 class MemoriesControl(QObject):
-    """
-    Signals
-    -------
-    changed
-        Something else is shown, or can be done.
-    left
-        The sensors are asked for, and whether they were live before.
-    """
+    """"""
 
-    changed = Signal()
-    left = Signal(bool)
+    changed = Signal()  # something else is shown, or can be done
+    left = Signal(bool)  # the sensors are asked for, and whether they were live before
 
     def __init__(self, visit: "Visit", parent: QObject) -> None:
         super().__init__(parent)

@@ -50,19 +50,13 @@ class Way(StrEnum):
 
 class SensorsPage(QWidget):
     """
-    Signals
-    -------
-    assigned
-        A sensor's name, and the site it is worn at; None: nowhere. On a worn site the two change places.
-    way_chosen
-        A `Way`.
-    source_chosen
-        The key of a `SourceOption`.
+
+    `assigned`: a sensor's name, and the site it is worn at; None: nowhere. On a worn site the two change places.
     """
 
     assigned = Signal(str, object)
-    way_chosen = Signal(str)
-    source_chosen = Signal(str)
+    way_chosen = Signal(str)  # A `Way`
+    source_chosen = Signal(str)  # the key of a `SourceOption`
 
     def __init__(self) -> None:
         super().__init__()

@@ -40,13 +40,7 @@ MOST_LISTED = 100  # whoever wants an older one still exports it as a session fo
 
 
 def replay_of(session: "Session", name: str) -> SourceChoice:
-    """A stored session as a source, without what was discarded; `name` is what the user knows it by.
-
-    Raises
-    ------
-    LibraryError
-        Nothing of it can be played.
-    """
+    """Give a stored session as a source, without discarded parts; LibraryError where nothing can be played."""
     recordings = tuple(
         recording
         for recording in session.recordings
@@ -76,20 +70,11 @@ def offered(opened: "OpenedLibrary", without: UUID | None) -> list[SessionSummar
 
 
 class StoredReplay(QObject):
-    """
-    Signals
-    -------
-    changed
-        Something else is shown, or can be done.
-    read
-        A `SourceChoice` that plays what was chosen.
-    left
-        No session is asked for after all.
-    """
+    """"""
 
-    changed = Signal()
-    read = Signal(object)
-    left = Signal()
+    changed = Signal()  # something else is shown, or can be done
+    read = Signal(object)  # A `SourceChoice` that plays what was chosen
+    left = Signal()  # no session is asked for after all
 
     def __init__(self, visit: "Visit", parent: QObject) -> None:
         super().__init__(parent)

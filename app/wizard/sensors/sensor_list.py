@@ -25,19 +25,12 @@ TRACE_AT_LEAST = 48
 
 
 class SensorList(QWidget):
-    """
-    Signals
-    -------
-    assigned
-        A sensor's name and the site it is worn at; None: nowhere.
-    selected
-        The name of the sensor that keys mean from now on.
-    """
+    """"""
 
     accessible_role = QAccessible.Role.List
 
-    assigned = Signal(str, object)
-    selected = Signal(str)
+    assigned = Signal(str, object)  # A sensor's name and the site it is worn at; None: nowhere
+    selected = Signal(str)  # the name of the sensor that keys mean from now on
     identify_pressed = Signal(str)
     reconnect_pressed = Signal(str)
 

@@ -56,20 +56,11 @@ class PlaceShown:
 
 
 class SensorPlaces(QWidget):
-    """
-    Signals
-    -------
-    dropped
-        A sensor's name and the site it was let go over.
-    hovered
-        A sensor is being dragged over a site; "" and None: no longer.
-    pressed
-        The tile of a site.
-    """
+    """"""
 
-    dropped = Signal(str, Site)
-    hovered = Signal(str, object)
-    pressed = Signal(Site)
+    dropped = Signal(str, Site)  # A sensor's name and the site it was let go over
+    hovered = Signal(str, object)  # A sensor is being dragged over a site; "" and None: no longer
+    pressed = Signal(Site)  # the tile of a site
 
     def __init__(self) -> None:
         super().__init__()

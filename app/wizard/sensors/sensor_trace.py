@@ -26,12 +26,7 @@ class Trace(Painted):
         self.setAttribute(Qt.WidgetAttribute.WA_OpaquePaintEvent)  # so that the row is not painted ten times a second
 
     def show_values(self, values: FloatArray) -> None:
-        """
-        Parameters
-        ----------
-        values : (n,)
-            Angular rate, deg/s, oldest first, at even steps; NaN where nothing was received.
-        """
+        """Show angular rates (n,), deg/s, oldest first at even steps; NaN where nothing was received."""
         self._values = values
         self.update()
 

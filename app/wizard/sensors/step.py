@@ -203,10 +203,7 @@ class SensorsStep(Step):
             self._on_source_chosen(key)
 
     def _go_on_with_remembered(self) -> None:
-        """Leave the page by itself once all sensors of the last visit have been received at their places for a while.
-
-        Whoever comes back to it stays.
-        """
+        """Leave the page by itself once all remembered sensors were received for a while, but only once."""
         self._remembered_looks = self._remembered_looks + 1 if self._are_all_remembered else 0
         if self._remembered_looks >= REMEMBERED_LOOKS and not self._has_gone_on:
             self._has_gone_on = True

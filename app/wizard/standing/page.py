@@ -51,18 +51,8 @@ class StandPhase(Enum):
 class StandStillView:
     """What the standing looks like now.
 
-    Attributes
-    ----------
-    movement_deg_s
-        Of the worn sensors, by site, or by name where nobody knows the site yet: from the limit on they move.
-    moved
-        Who made the count begin again last.
-    silent
-        The sensors from which nothing is received.
-    restarts
-        How often it began again by itself.
-    is_read_back
-        Once it is done: whether what was recorded has been read back, and counts.
+    `movement_deg_s`: of the worn sensors, by site, or by name where nobody knows the site yet: from the limit on they
+    move.
     """
 
     phase: StandPhase = StandPhase.READY
@@ -70,15 +60,14 @@ class StandStillView:
     required_s: float = REQUIRED_S
     movement_deg_s: Mapping[str, float] = field(default_factory=dict)
     limit_deg_s: float = math.degrees(MAX_SPREAD_RAD_S)
-    moved: tuple[str, ...] = ()
-    silent: tuple[str, ...] = ()
-    restarts: int = 0
-    is_read_back: bool = True
+    moved: tuple[str, ...] = ()  # who made the count begin again last
+    silent: tuple[str, ...] = ()  # the sensors from which nothing is received
+    restarts: int = 0  # how often it began again by itself
+    is_read_back: bool = True  # once it is done: whether what was recorded has been read back, and counts
 
     @property
     def moving(self) -> tuple[str, ...]:
-        """Sensors that are beyond the limit as it is shown, and for a moment those that were: what is judged is what is
-        shown."""
+        """Sensors at or beyond the limit as shown, and for a moment those that were."""
         is_waiting = self.phase in (StandPhase.READY, StandPhase.COUNTING)
         named = self.moved if is_waiting and self.still_s < MOVED_FOR_S else ()
         now = (name for name, moves in self.movement_deg_s.items() if self.limit_deg_s <= moves < math.inf)
@@ -93,10 +82,7 @@ class StandStillView:
 class StandStillPage(QWidget):
     """Words go L then R.
 
-    Signals
-    -------
-    cannot_stand_pressed, can_stand_pressed
-        The patient cannot, or can after all.
+    `cannot_stand_pressed`, `can_stand_pressed`: the patient cannot, or can after all.
     """
 
     cannot_stand_pressed = Signal()

@@ -53,16 +53,10 @@ class AlignmentRow:
 
 
 class AlignmentCard(Card):
-    """Signals
-    -------
-    chosen
-        The number of an alignment from 0, and whether it is to stand beside the one shown.
-    reported
-        Something of the next change was entered: `entry` holds it.
-    """
+    """"""
 
-    chosen = Signal(int, bool)
-    reported = Signal()
+    chosen = Signal(int, bool)  # the number of an alignment from 0, and whether it is to stand beside the one shown
+    reported = Signal()  # something of the next change was entered: `entry` holds it
 
     def __init__(self, entry: ChangeEntry) -> None:
         super().__init__()

@@ -97,11 +97,7 @@ class BenchView(QWidget):
         self._arrange()
 
     def fit(self, room: int) -> None:
-        """Arrange the cards for this width, px of the screen.
-
-        It is the page's and not the bench's own: inside the page's scroll area the cards widen the bench, so an
-        arrangement that went by its width could widen or narrow it into the other one, and back, without end.
-        """
+        """Arrange the cards for the page's width, px; the bench's own width depends on the arrangement."""
         self._room = room
         self._arrange()
 

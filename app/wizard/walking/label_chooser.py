@@ -86,10 +86,7 @@ class LabelChooser(Wrapping):
         self.chosen.emit(label)
 
     def _mark(self) -> None:
-        """Mark the choice, and let the tabulator stop there, or at the first label.
-
-        The mouse leaves the focus where it is: Space must start the walk, not press the label again.
-        """
+        """Mark the choice and give it the tab stop, without focus: Space must start the walk."""
         chosen = [option for option in self._options if option.text() == self._choice]
         before, stops = self.stops, (chosen or self._options)[:1]
         for stop in stops:

@@ -54,15 +54,10 @@ ANY_WIDTH = 16777215  # what Qt calls no limit
 class WalkingPage(QWidget):
     """Its look follows the walks it is shown: none yet, one being recorded, or in between.
 
-    Signals
-    -------
-    label_chosen
-        What the next walk is called.
-    keep_pressed, discard_pressed
-        With the walk's id.
+    `keep_pressed`, `discard_pressed`: with the walk's id.
     """
 
-    label_chosen = Signal(str)
+    label_chosen = Signal(str)  # what the next walk is called
     keep_pressed = Signal(str)
     discard_pressed = Signal(str)
 
@@ -131,13 +126,7 @@ class WalkingPage(QWidget):
         self.figures.show_figures(dict.fromkeys(self.live.strides, 0), math.nan)
 
     def show_walks(self, rows: tuple[WalkRow, ...], facts: str = "") -> None:
-        """Show the walks of this session in the order of recording.
-
-        Parameters
-        ----------
-        facts
-            Of the walk that is asked about, in words: its length, its cadence.
-        """
+        """Show the session's walks in order of recording; `facts` describe the walk that is asked about."""
         was_recording, had_focus = self.is_recording, self._has_focus()
         self.rows = rows
         asked = [row for row in rows if row.state in (WalkState.ASKING, WalkState.RECOVERED)]
@@ -180,10 +169,7 @@ class WalkingPage(QWidget):
     def show_tests(
         self, protocol: TimedProtocol | None, state: TimedResult | None, before: Mapping[TimedProtocol, str]
     ) -> None:
-        """Show which test comes next, and what came of the latest in the place of the curves; None: it was no test.
-
-        `before`: what came of each at an earlier visit.
-        """
+        """Show the next test and the latest result in place of curves; `before`: results of an earlier visit."""
         self.next.test.show_before(before)
         self.next.test.show_choice(protocol)
         self._has_result = state is not None

@@ -202,10 +202,7 @@ def reasons_against(
     calibration: Mapping[Joint, JointCalibration],
     prosthetic_sides: frozenset[Side],
 ) -> dict[tuple[TargetMeasure, Side | None], str]:
-    """Why each measure that cannot be a target cannot, in sentences.
-
-    `rested` are the sites whose sensors have lain still: the live angle of others drifts with their bias.
-    """
+    """Give the reason why each measure cannot be a target; `rested`: sites whose sensor's bias is known."""
     reasons = {}
     for measure, side in choices():
         found = assess_target(measure, side, worn, calibration, prosthetic_sides)

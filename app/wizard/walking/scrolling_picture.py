@@ -30,10 +30,7 @@ class ScrollingPicture:
         return self._px_per_s
 
     def advance(self, now_s: float) -> int:
-        """Let the picture end at `now_s`, and give the first of its columns that shows nothing yet.
-
-        A clock that went back, or on by more than the picture holds, makes all of it new.
-        """
+        """Scroll the end to `now_s` and give the first empty column; a clock jump clears the whole picture."""
         last = math.floor(now_s * self._px_per_s)
         before, self._last_column = self._last_column, last
         if before is None or not 0 <= last - before < self.columns:
