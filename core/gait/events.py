@@ -22,7 +22,7 @@ from enum import StrEnum
 
 import numpy as np
 
-from core.gait.crossings import Onset, first_crossing, last_crossing, onset
+from core.gait.crossings import Onset, crossing, onset
 from core.gait.foot import FootMotion, follow
 from core.gait.rolling import LANDING_SHARES, LEAST_SWINGS, landing_marks, leaving_marks, sharpest, timed_by
 from core.gait.sole import SoleTravel, travel_of
@@ -263,7 +263,7 @@ def _leaving(rate: FloatArray, usual: Usual, begin: int = 0) -> tuple[Onset, Ons
     if -rate[push] <= MIN_ROLL_RAD_S:
         return Onset(np.nan, 0.0), Onset(np.nan, 0.0)
     rise = onset(-rate, push, 0, usual.still_rad_s)
-    off = first_crossing(rate, push, len(rate) - 1, TOE_OFF_SHARE * rate[push])
+    off = crossing(rate, push, len(rate) - 1, TOE_OFF_SHARE * rate[push])
     return Onset(rise.index + begin, rise.reach), Onset(off + begin, 0.0)
 
 
@@ -365,8 +365,8 @@ def _marks(pitch: FloatArray, rest: int, fastest: int, next_rest: int) -> tuple[
     lowest = rest + int(np.argmin(pitch[rest : fastest + 1]))
     highest = fastest + int(np.argmax(pitch[fastest : next_rest + 1]))
     return (
-        first_crossing(pitch, rest, lowest, 0.5 * pitch[lowest]),
-        last_crossing(pitch, highest, next_rest, 0.5 * pitch[highest]),
+        crossing(pitch, rest, lowest, 0.5 * pitch[lowest]),
+        crossing(pitch, highest, next_rest, 0.5 * pitch[highest], which=-1),
     )
 
 
@@ -389,8 +389,8 @@ def _mean_rate(rates: list[FloatArray], marks: FloatArray, usual: Usual) -> Mean
 
 def _contact(rate: FloatArray, load: int, level: float, step_s: float) -> float:
     """Where the rate, on its last way down to the peak of loading, reaches `level`, LANDED_S after its half at most."""
-    falls = last_crossing(rate, 0, load, 0.0)
+    falls = crossing(rate, 0, load, 0.0, which=-1)
     if not np.isfinite(falls):
         return float("nan")
-    half, whole = (first_crossing(rate, int(falls), load, share * level) for share in (0.5 / CONTACT_SHARE, 1.0))
+    half, whole = (crossing(rate, int(falls), load, share * level) for share in (0.5 / CONTACT_SHARE, 1.0))
     return float(np.fmin(whole, half + LANDED_S / step_s))

@@ -7,7 +7,7 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from core.gait.crossings import first_crossing, last_crossing
+from core.gait.crossings import crossing
 from core.samples import BoolArray, FloatArray
 from core.signal.robust import robust_sd
 
@@ -23,7 +23,7 @@ def leaving_marks(pitch: FloatArray, spans: Spans) -> FloatArray:
     marks = np.full(len(spans), np.nan)
     for k, (a, m, _) in enumerate(spans):
         lowest = a + int(np.argmin(pitch[a : m + 1]))
-        marks[k] = last_crossing(pitch, a, lowest, LEAVING_SHARE * pitch[lowest])
+        marks[k] = crossing(pitch, a, lowest, LEAVING_SHARE * pitch[lowest], which=-1)
     return marks
 
 
@@ -35,7 +35,7 @@ def landing_marks(
     for k, (_, m, b) in enumerate(spans):
         toes = None if lowered is None else lowered[k]
         extreme = m + int(np.argmax(pitch[m : b + 1])) if toes is None else toes + int(np.argmin(pitch[toes : b + 1]))
-        marks[k] = first_crossing(pitch, extreme, b, share * pitch[extreme])
+        marks[k] = crossing(pitch, extreme, b, share * pitch[extreme])
     return marks
 
 

@@ -8,7 +8,7 @@ from where the shank ceases to swing forward. What the foot does in between stay
 import numpy as np
 from scipy.signal import find_peaks
 
-from core.gait.crossings import first_crossing
+from core.gait.crossings import crossing
 from core.gait.events import SD_S, SOURCES, EventSource, FootEvents
 from core.gait.foot import MOVING_RAD_S
 from core.samples import FloatArray, IntArray
@@ -73,7 +73,7 @@ def _swings(rate: FloatArray, step_s: float) -> tuple[FloatArray, IntArray, Floa
     rows = []
     for peak in peaks.tolist():
         before = np.flatnonzero(smooth[max(0, peak - reach) : peak] < 0.0)
-        ceases = first_crossing(smooth, peak, min(peak + reach, len(smooth) - 1), 0.0)
+        ceases = crossing(smooth, peak, min(peak + reach, len(smooth) - 1), 0.0)
         on = ceases + CONTACT_AFTER_S / step_s
         if len(before) and on < len(smooth) - 1:  # not so where it never ceases
             rows.append((_trough_before(smooth, max(0, peak - reach) + int(before[-1])), peak, on))

@@ -9,7 +9,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from core.gait.crossings import Onset, first_crossing, onset
+from core.gait.crossings import Onset, crossing, onset
 from core.gait.foot import FootMotion
 from core.samples import BoolArray, FloatArray
 
@@ -81,7 +81,7 @@ def _landing(share: FloatArray, shock: FloatArray, fastest: int, ahead: int) -> 
     if hardest > least:
         return Onset(near + float(np.argmax(felt > max(least, SHOCK_ONSET_SHARE * hardest))), 0.0)
     soft = onset(share, fastest, len(share) - 1, TRAVEL_SHARE)
-    latest = first_crossing(share, fastest, len(share) - 1, LANDED_SHARE) + 2.0 * ahead
+    latest = crossing(share, fastest, len(share) - 1, LANDED_SHARE) + 2.0 * ahead
     return soft if soft.index < latest else Onset(latest, 2.0 * ahead)
 
 

@@ -320,14 +320,16 @@ def _plans(tables: object) -> tuple[Plan, ...]:
         values, unknown = _take(table, RECORDING, where)
         sensors = _site_texts(unknown.get("sensors"))
         rates_derived = _site_list(unknown.get("rates_derived"))
-        unknown = {key: value for key, value in unknown.items() if not (key == "sensors" and sensors)}
-        unknown = {key: value for key, value in unknown.items() if not (key == "rates_derived" and rates_derived)}
         left_out_s = _left_out(unknown.get("strides_left_out"))
-        unknown = {key: value for key, value in unknown.items() if not (key == "strides_left_out" and left_out_s)}
-        alignment = alignment_of_table(unknown.get("alignment"))
-        unknown = {key: value for key, value in unknown.items() if not (key == "alignment" and alignment)}
-        test = planned_of_table(unknown)
-        unknown = {key: value for key, value in unknown.items() if not (key in TABLE_KEYS and test)}
+        alignment, test = alignment_of_table(unknown.get("alignment")), planned_of_table(unknown)
+        understood: dict[str, object] = {
+            "sensors": sensors,
+            "rates_derived": rates_derived,
+            "strides_left_out": left_out_s,
+            "alignment": alignment,
+            **dict.fromkeys(TABLE_KEYS, test),
+        }
+        unknown = {key: value for key, value in unknown.items() if not understood.get(key)}
         recording = Recording(imu={}, left_out_s=left_out_s, alignment=alignment, test=test, unknown=unknown, **values)
         for other in (plan.recording for plan in plans):
             for key in ("name", "folder"):

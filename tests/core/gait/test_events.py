@@ -12,7 +12,7 @@ from scipy.spatial.transform import Rotation
 import core.gait.events as events_module
 from core.body import Side, Site
 from core.calibration.rest import rest_of
-from core.gait.crossings import first_crossing, onset
+from core.gait.crossings import crossing, onset
 from core.gait.events import SOURCES, EventSource, FootEvents, Timing, gait_of, without_stray_toe_offs
 from core.gait.foot import FootMotion
 from core.gait.sole import SoleTravel, travel_of
@@ -207,8 +207,8 @@ def test_a_turn_is_measured() -> None:
 
 
 def test_the_first_crossing_lies_between_samples() -> None:
-    assert first_crossing(np.array([0.0, 1.0, 3.0]), 0, 2, 2.0) == pytest.approx(1.5)
-    assert np.isnan(first_crossing(np.array([0.0, 1.0, 3.0]), 0, 2, 5.0))
+    assert crossing(np.array([0.0, 1.0, 3.0]), 0, 2, 2.0) == pytest.approx(1.5)
+    assert np.isnan(crossing(np.array([0.0, 1.0, 3.0]), 0, 2, 5.0))
 
 
 @pytest.mark.parametrize("is_reversed", [False, True])
