@@ -238,7 +238,7 @@ def _beyond_band(facts: Facts, bands: tuple[str, str]) -> Iterator[Candidate]:
         yield Candidate(Rank.SHAPE, abs(away) / MAX_AWAY_SD, (_topic(side, column, away > 0),), stated)
     for column in ("stance_percent", "stride_length_m"):
         figure = facts.time_distance[column]
-        for side in facts.sides_with_band.intersection(figure.sides):
+        for side in (one for one in facts.first_and_second if one in facts.sides_with_band and one in figure.sides):
             value = facts.value(side, column)
             if figure.judged_band is None or not math.isfinite(value.mean):
                 continue

@@ -2,6 +2,7 @@
 
 import datetime
 import re
+from collections.abc import Iterator, Sequence
 from dataclasses import replace
 from typing import Any
 from uuid import UUID
@@ -16,7 +17,7 @@ from app.summary import comparison
 from app.summary.comparison import Comparison, Contrast
 from app.summary.conditions import Part
 from app.summary.course_lanes import CourseVisit
-from app.summary.facts import Facts
+from app.summary.facts import Facts, role
 from app.summary.goals import goal_sentence
 from app.summary.headline import headline_of
 from app.summary.measure_sentences import unit_and_decimals
@@ -209,6 +210,38 @@ def test_a_stride_length_beyond_two_sd_of_its_band(demo: ReportRequest, more_m: 
     assert bool(reported) is is_reported
     if is_reported:
         assert "more than 2 SD above the reference [2] (1.30 ± 0.11 m with measurement error)." in reported[0]
+
+
+class OrderedLegs(frozenset[Side]):
+    """A set of legs that gives them in a known order."""
+
+    def __new__(cls, order: Sequence[Side]) -> "OrderedLegs":
+        made = super().__new__(cls, order)
+        made.order = order
+        return made
+
+    order: Sequence[Side]
+
+    def __iter__(self) -> Iterator[Side]:
+        return iter(self.order)
+
+
+def test_of_both_legs_beyond_the_band_by_as_much_the_first_is_named_in_every_run(demo: ReportRequest) -> None:
+    """The order of a set of legs is another one in each run."""
+    gait = walk_of(demo.visit.analysis).gait
+    analysis = rewalked(
+        demo.visit.analysis,
+        gait={
+            side: replace(found, parameters={**found.parameters, "stride_length_m": np.full(len(found.strides), 1.9)})
+            for side, found in gait.items()
+        },
+    )
+    facts = facts_of(replace(demo, visit=AnalysedVisit(demo.visit.session, analysis)))
+    first, second = facts.first_and_second
+    for order in ((first, second), (second, first)):
+        facts.__dict__["sides_with_band"] = OrderedLegs(order)
+        reported, *_ = (one for one in findings(facts, None) if one.startswith("Stride length, "))
+        assert reported.startswith(f"Stride length, {role(facts, first)}: ")
 
 
 @pytest.mark.parametrize(
